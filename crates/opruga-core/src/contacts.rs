@@ -1,0 +1,39 @@
+//! What rigid obstacles are to a system: one pass over the nodes after they were moved freely.
+
+use crate::state::{Columns, Layout, Parameter};
+use core::fmt::Debug;
+use core::ops::Range;
+use opruga_math::{Simd, WIDTH};
+
+/// Nodes of a tile, just moved freely, that obstacles may hold back.
+#[derive(Debug)]
+pub struct Moved<'a, const D: usize> {
+    /// The places of the tile.
+    pub range: Range<usize>,
+    /// Positions before the step: `before[d][p - range.start]` [m].
+    pub before: [&'a [f64]; D],
+    /// Positions after it [m]; indexed by place.
+    pub x: &'a mut Columns<D>,
+    /// Velocities after it [m/s]; indexed by place.
+    pub v: &'a mut Columns<D>,
+    /// Mass of each node [kg].
+    pub mass: &'a Parameter,
+    /// One body or eight.
+    pub layout: Layout,
+    /// Time at the end of the step [s].
+    pub time: f64,
+    /// The substep [s].
+    pub h: f64,
+    /// Kinetic energy taken out along the normal [J], eight partial sums.
+    pub loss_contact: &'a mut [f64; WIDTH],
+    /// Kinetic energy taken out by friction [J], eight partial sums.
+    pub loss_friction: &'a mut [f64; WIDTH],
+    /// Work done on the body by obstacles that move [J], eight partial sums.
+    pub work_colliders: &'a mut [f64; WIDTH],
+}
+
+/// The obstacles that a block of bodies may meet within a frame.
+pub trait Contacts<const D: usize>: Send + Sync + Debug {
+    /// Holds back the nodes of a tile: non-penetration, restitution, friction.
+    fn resolve(&self, simd: Simd, moved: &mut Moved<D>);
+}

@@ -1,0 +1,43 @@
+//! What can go wrong while a world is built or stepped.
+
+/// Why a model, integrator or collider could not be built from its parameters and the body.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{kind}: {message}")]
+pub struct BuildError {
+    /// The model, integrator, collider or section that refuses.
+    pub kind: String,
+    /// A stable code, such as `model.open_surface`.
+    pub code: &'static str,
+    /// What is wrong, with the offending value and what is allowed.
+    pub message: String,
+}
+
+impl BuildError {
+    /// An error of a kind of thing, with a stable code and a message.
+    pub fn new(kind: impl Into<String>, code: &'static str, message: impl Into<String>) -> BuildError {
+        BuildError { kind: kind.into(), code, message: message.into() }
+    }
+}
+
+/// Why a substep could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// A position or velocity is not finite any more.
+    #[error("node {node} of body {body} left the finite numbers at t = {time} s")]
+    Diverged {
+        /// The body, by its place in the island.
+        body: usize,
+        /// The node.
+        node: u32,
+        /// The time at the start of the substep [s].
+        time: f64,
+    },
+    /// A model has no meaning in this state.
+    #[error("{model}: {message}")]
+    Model {
+        /// The model.
+        model: &'static str,
+        /// What is wrong.
+        message: String,
+    },
+}

@@ -1,0 +1,536 @@
+//! Models made of pairs of nodes: springs, edges of a gas chamber.
+//!
+//! Pairs are sorted into *runs*, stretches in which both ends advance by one node: a whole outline, a row of a grid.
+//! A run is evaluated once per pair, eight at a time, without any index. Pairs outside of long runs are evaluated from
+//! both of their ends, node by node (*pull*). Both add up in an order that depends neither on tiles nor on the layout.
+//!
+//! ```text
+//! run of 5:   a   0 1 2 3 4        pull of node 7:   partners 2, 9, 12
+//!             b   1 2 3 4 5                          pairs    17, 31, 40
+//! ```
+
+use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
+use crate::tile::Tile;
+use core::ops::Range;
+use opruga_math::{Pack, Strip, StripMut, WIDTH, lanes};
+
+/// The law of a pair: the force on its first node as a function of the differences of its ends.
+pub trait PairLaw<P: Pack, const D: usize>: Copy {
+    /// Whether the law reads velocities.
+    const DAMPED: bool;
+    /// The force on the second node is this times the force on the first: −1 or +1.
+    const SECOND: f64;
+    /// Three numbers per pair that the law reads.
+    fn parameters(&self) -> [&Parameter; 3];
+    /// Force on the first node [N] and dissipated power [W] of eight pairs, from d = xₐ − x_b and its rate.
+    fn force(&self, parameters: [P; 3], d: [P; D], rate: [P; D]) -> ([P; D], P);
+}
+
+/// A function of a pair that is added up over all pairs.
+pub trait PairTerm<P: Pack, const D: usize>: Copy {
+    /// Three numbers per pair that the function reads.
+    fn parameters(&self) -> [&Parameter; 3];
+    /// The value for eight pairs with these ends.
+    fn of(&self, parameters: [P; 3], a: [P; D], b: [P; D]) -> P;
+}
+
+/// A stretch of pairs (a + k, b + k); `first` is the number of its first pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Run {
+    a: u32,
+    b: u32,
+    first: u32,
+    count: u32,
+}
+
+/// Pairs gathered node by node: up to `width` partners of every node of a range.
+#[derive(Clone, Debug, PartialEq)]
+struct Pull {
+    width: usize,
+    /// `[node / 8][slot][node % 8]`: the partner, or the node itself where there is none.
+    partner: Vec<u32>,
+    /// The number of the pair, or that of a pair without effect.
+    pair: Vec<u32>,
+    /// The pulled pairs by number, padded to packs with the pair without effect, and their two ends.
+    loose: Vec<u32>,
+    ends: [Vec<u32>; 2],
+}
+
+/// The pairs of a body, sorted for evaluation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairTable {
+    layout: Layout,
+    runs: Vec<Run>,
+    pull: Option<Pull>,
+    /// Pairs, and one more without effect if some are pulled.
+    count: usize,
+    pairs: Vec<[u32; 2]>,
+}
+
+/// Runs shorter than this are pulled, if pulling is allowed.
+const SHORTEST_RUN: u32 = 24;
+
+impl PairTable {
+    /// Sorts pairs of `nodes` nodes into runs; the shorter ones are pulled where `odd` says that the law changes sign
+    /// with its argument.
+    pub fn new(layout: Layout, nodes: usize, pairs: &[[u32; 2]], odd: bool) -> PairTable {
+        let mut runs: Vec<Run> = Vec::new();
+        for (k, &[a, b]) in pairs.iter().enumerate() {
+            match runs.last_mut() {
+                Some(r) if r.a + r.count == a && r.b + r.count == b => r.count += 1,
+                _ => runs.push(Run { a, b, first: k as u32, count: 1 }),
+            }
+        }
+        // A few short runs are cheaper as runs than a table for every node.
+        let short: u32 = runs.iter().filter(|r| r.count < SHORTEST_RUN).map(|r| r.count).sum();
+        let pulled = odd && short as usize * 2 > pairs.len() && nodes > 16;
+        let mut pull = None;
+        if pulled {
+            let mut lists: Vec<Vec<(u32, u32)>> = vec![Vec::new(); nodes];
+            for r in runs.iter().filter(|r| r.count < SHORTEST_RUN) {
+                for k in 0..r.count {
+                    lists[(r.a + k) as usize].push((r.b + k, r.first + k));
+                    lists[(r.b + k) as usize].push((r.a + k, r.first + k));
+                }
+            }
+            let numbers = |r: &Run| r.first..r.first + r.count;
+            let mut loose: Vec<u32> = runs.iter().filter(|r| r.count < SHORTEST_RUN).flat_map(numbers).collect();
+            let mut ends = [0, 1].map(|e| loose.iter().map(|&p| pairs[p as usize][e]).collect::<Vec<u32>>());
+            let padded = loose.len().next_multiple_of(WIDTH);
+            loose.resize(padded, pairs.len() as u32);
+            ends.iter_mut().for_each(|e| e.resize(padded, 0));
+            runs.retain(|r| r.count >= SHORTEST_RUN);
+            let width = lists.iter().map(Vec::len).max().unwrap_or(0);
+            let packs = nodes.div_ceil(WIDTH);
+            let mut table = Pull {
+                width,
+                partner: vec![0; packs * width * WIDTH],
+                pair: vec![pairs.len() as u32; packs * width * WIDTH],
+                loose,
+                ends,
+            };
+            for node in 0..packs * WIDTH {
+                for slot in 0..width {
+                    let at = (node / WIDTH * width + slot) * WIDTH + node % WIDTH;
+                    table.partner[at] = node.min(nodes - 1) as u32;
+                    if let Some((partner, pair)) = lists.get(node).and_then(|l| l.get(slot)) {
+                        table.partner[at] = *partner;
+                        table.pair[at] = *pair;
+                    }
+                }
+            }
+            pull = Some(table);
+        }
+        PairTable { layout, runs, count: pairs.len() + usize::from(pulled), pull, pairs: pairs.to_vec() }
+    }
+
+    /// How many pairs need parameters: all, and one without effect if some are pulled.
+    pub fn parameter_count(&self) -> usize {
+        self.count
+    }
+    /// The pairs themselves.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+    /// The lowest and highest node of every pair.
+    pub fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        for &[a, b] in &self.pairs {
+            visit(a.min(b), a.max(b));
+        }
+    }
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let pull = self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity()));
+        pull + self.runs.capacity() * size_of::<Run>() + self.pairs.capacity() * 8
+    }
+
+    /// Adds the forces of all pairs on the nodes of a tile.
+    #[inline(always)]
+    pub fn add_force<P: Pack, L: PairLaw<P, D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) {
+        let stride = self.layout.stride();
+        let (start, end) = (tile.range.start, tile.range.end);
+        let mut power = P::zero();
+        for run in &self.runs {
+            let (a, b) = (run.a as usize * stride, run.b as usize * stride);
+            let (first, length) = (run.first as usize * stride, run.count as usize * stride);
+            // The places of the run whose first (second) node lies in the tile.
+            let own = within(a, length, start, end);
+            let other = within(b, length, start, end);
+            if own.is_empty() && other.is_empty() {
+                continue;
+            }
+            if run.b == run.a + 1 && length > WIDTH {
+                match self.layout {
+                    Layout::Single => self.chain::<P, L, false, D>(law, view, [a, first, length], tile, &mut power),
+                    Layout::Batch => self.chain::<P, L, true, D>(law, view, [a, first, length], tile, &mut power),
+                }
+                continue;
+            }
+            if length <= WIDTH {
+                self.short::<P, L, D>(law, view, [a, b, first, length], own, other, tile, &mut power);
+                continue;
+            }
+            if other.start <= own.end && own.start <= other.end {
+                let all = own.start.min(other.start)..own.end.max(other.end);
+                self.run::<P, L, D>(law, view, [a, b, first], all, own, other, tile, &mut power);
+            } else {
+                self.run::<P, L, D>(law, view, [a, b, first], own.clone(), own, 0..0, tile, &mut power);
+                self.run::<P, L, D>(law, view, [a, b, first], other.clone(), 0..0, other, tile, &mut power);
+            }
+        }
+        if let Some(pull) = &self.pull {
+            self.pull::<P, L, D>(pull, law, view, tile, &mut power);
+        }
+        if L::DAMPED {
+            (P::from_array(*tile.power) + power).store(tile.power);
+        }
+    }
+
+    /// Evaluates a run whose second nodes are the next ones: an outline, a row. Node p receives the force of its own pair
+    /// and that of the pair before it, which is the pack of forces moved up by one node.
+    #[inline(always)]
+    fn chain<P: Pack, L: PairLaw<P, D>, const BATCH: bool, const D: usize>(
+        &self,
+        law: L,
+        view: &View<D>,
+        [a, first, length]: [usize; 3],
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        let next = if BATCH { WIDTH } else { 1 };
+        let (start, end) = (tile.range.start.max(a), tile.range.end.min(a + length + next));
+        // The pack before the first node supplies the force of the pair that ends there.
+        let lead = if start > a { if BATCH || start >= a + WIDTH { WIDTH } else { start - a } } else { 0 };
+        let packed = (end - start).next_multiple_of(WIDTH);
+        let x = Strip::<D>::new(&view.x, start - lead, lead + packed + next);
+        let v = Strip::<D>::new(&view.v, start - lead, lead + packed + next);
+        let [p0, p1, p2] = law.parameters();
+        let from = first + start - lead - a;
+        let until = lead + packed;
+        let (p0, p1, p2) = (p0.strip(from, until), p1.strip(from, until), p2.strip(from, until));
+        let mut force = StripMut::<D>::new(tile.force.each_mut().map(|f| &mut **f), start - tile.range.start, packed);
+        let mut previous = [P::zero(); D];
+        if lead > 0 {
+            let d = lanes!(P, i => x.load::<P>(i, 0) - x.load::<P>(i, next));
+            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, 0) - v.load::<P>(i, next)) } else { [P::zero(); D] };
+            let (f, _) = law.force([p0.load(0), p1.load(0), p2.load(0)], d, rate);
+            previous = f;
+            if lead < WIDTH {
+                // The pair before the first node is not the last of the pack.
+                for i in 0..D {
+                    let last = f[i].to_array()[lead - 1];
+                    previous[i] = P::splat(last);
+                }
+            }
+        }
+        // Pairs end before the last node.
+        let pairs = a + length - start;
+        for k in (0..packed).step_by(WIDTH) {
+            let at = lead + k;
+            let d = lanes!(P, i => x.load::<P>(i, at) - x.load::<P>(i, at + next));
+            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, at) - v.load::<P>(i, at + next)) } else { [P::zero(); D] };
+            let (mut f, mut dissipated) = law.force([p0.load(at), p1.load(at), p2.load(at)], d, rate);
+            if k + WIDTH > pairs {
+                let real = P::first(pairs.saturating_sub(k));
+                for i in 0..D {
+                    f[i] = P::select(real, f[i], P::zero());
+                }
+                dissipated = P::select(real, dissipated, P::zero());
+            }
+            for i in 0..D {
+                let arriving = if BATCH { previous[i] } else { f[i].after(previous[i]) };
+                let sum = force.load::<P>(i, k) + f[i];
+                let sum = if L::SECOND < 0.0 { sum - arriving } else { sum + arriving };
+                force.store(i, k, sum);
+                previous[i] = f[i];
+            }
+            if L::DAMPED {
+                *power += dissipated;
+            }
+        }
+    }
+
+    /// Evaluates a run of at most one pack.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
+    fn short<P: Pack, L: PairLaw<P, D>, const D: usize>(
+        &self,
+        law: L,
+        view: &View<D>,
+        [a, b, first, length]: [usize; 4],
+        own: Range<usize>,
+        other: Range<usize>,
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        let d = lanes!(P, i => P::load(&view.x[i][a..]) - P::load(&view.x[i][b..]));
+        let rate = if L::DAMPED { lanes!(P, i => P::load(&view.v[i][a..]) - P::load(&view.v[i][b..])) } else { [P::zero(); D] };
+        let (force, dissipated) = law.force(load_parameters(&law.parameters(), At::Run(first)), d, rate);
+        let start = tile.range.start;
+        for i in 0..D {
+            let into = &mut *tile.force[i];
+            if own.len() == WIDTH && other.len() == WIDTH && self.layout == Layout::Batch {
+                (P::load(&into[a - start..]) + force[i]).store(&mut into[a - start..]);
+                let old = P::load(&into[b - start..]);
+                let new = if L::SECOND < 0.0 { old - force[i] } else { old + force[i] };
+                new.store(&mut into[b - start..]);
+                continue;
+            }
+            let each = force[i].to_array();
+            for k in own.clone() {
+                into[a + k - start] += each[k];
+            }
+            for k in other.clone() {
+                into[b + k - start] += L::SECOND * each[k];
+            }
+        }
+        if L::DAMPED {
+            let _ = length;
+            let until = P::select(P::first(own.end), dissipated, P::zero());
+            *power += P::select(P::first(own.start), P::zero(), until);
+        }
+    }
+
+    /// Evaluates the places `all` of a run once and adds them to the nodes of the tile.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
+    fn run<P: Pack, L: PairLaw<P, D>, const D: usize>(
+        &self,
+        law: L,
+        view: &View<D>,
+        [a, b, first]: [usize; 3],
+        all: Range<usize>,
+        own: Range<usize>,
+        other: Range<usize>,
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        if all.is_empty() {
+            return;
+        }
+        let packed = all.len().next_multiple_of(WIDTH);
+        let room = packed + 2 * WIDTH;
+        if tile.slots.len() < D * room {
+            tile.slots.resize(D * room, 0.0);
+        }
+        // One strip from the lower end on serves both ends: few pointers stay in registers.
+        let base = a.min(b);
+        let (to_a, to_b) = (a - base, b - base);
+        let span = packed + to_a.max(to_b);
+        let x = Strip::<D>::new(&view.x, base + all.start, span);
+        let v = Strip::<D>::new(&view.v, base + all.start, span);
+        let [p0, p1, p2] = law.parameters();
+        let (p0, p1, p2) =
+            (p0.strip(first + all.start, packed), p1.strip(first + all.start, packed), p2.strip(first + all.start, packed));
+        // Slot columns begin with a spare pack, so that a shifted read stays inside.
+        let mut slots = StripMut::<1>::new([tile.slots.as_mut_slice()], 0, D * room);
+        // Places of the run, counted from `all.start`, whose first node belongs to the tile.
+        let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
+        for k in (0..packed).step_by(WIDTH) {
+            let (at_a, at_b) = (k + to_a, k + to_b);
+            let d = lanes!(P, i => x.load::<P>(i, at_a) - x.load::<P>(i, at_b));
+            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, at_a) - v.load::<P>(i, at_b)) } else { [P::zero(); D] };
+            let (force, dissipated) = law.force([p0.load(k), p1.load(k), p2.load(k)], d, rate);
+            for i in 0..D {
+                slots.store(0, i * room + WIDTH + k, force[i]);
+            }
+            if L::DAMPED {
+                // The tile of the first node enters the power.
+                if k >= low && k + WIDTH <= high {
+                    *power += dissipated;
+                } else {
+                    let before = low.saturating_sub(k).min(WIDTH);
+                    let until = high.saturating_sub(k).min(WIDTH);
+                    let kept = P::select(P::first(until), dissipated, P::zero());
+                    *power += P::select(P::first(before), P::zero(), kept);
+                }
+            }
+        }
+        // Places that are a first node, and a second node; most are both.
+        let firsts = a + own.start..a + own.end;
+        let seconds = b + other.start..b + other.end;
+        let both = firsts.start.max(seconds.start)..firsts.end.min(seconds.end);
+        let start = tile.range.start;
+        for i in 0..D {
+            let column = &tile.slots[i * room..(i + 1) * room];
+            let into = &mut *tile.force[i];
+            // Stretches of first nodes alone, of second nodes alone, and of both.
+            let overlap = !(both.is_empty() || own.is_empty() || other.is_empty());
+            let alone = if overlap {
+                [
+                    (firsts.start..both.start, a, 1.0),
+                    (both.end..firsts.end, a, 1.0),
+                    (seconds.start..both.start, b, L::SECOND),
+                    (both.end..seconds.end, b, L::SECOND),
+                ]
+            } else {
+                [(firsts.clone(), a, 1.0), (0..0, a, 1.0), (seconds.clone(), b, L::SECOND), (0..0, b, 1.0)]
+            };
+            for (range, node, sign) in alone {
+                if !range.is_empty() {
+                    let slot = slot_of(range.start, node, all.start);
+                    add_slots::<P, false>(into, range.start - start, range.len(), column, slot, slot, sign);
+                }
+            }
+            if overlap {
+                let (slot_a, slot_b) = (slot_of(both.start, a, all.start), slot_of(both.start, b, all.start));
+                add_slots::<P, true>(into, both.start - start, both.len(), column, slot_a, slot_b, L::SECOND);
+            }
+        }
+    }
+
+    /// Evaluates the pulled pairs of the nodes of a tile.
+    #[inline(always)]
+    fn pull<P: Pack, L: PairLaw<P, D>, const D: usize>(
+        &self,
+        pull: &Pull,
+        law: L,
+        view: &View<D>,
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        let half = P::splat(0.5);
+        for place in tile.range.clone().step_by(WIDTH) {
+            let x: [P; D] = load(&view.x, place);
+            let v: [P; D] = if L::DAMPED { load(&view.v, place) } else { [P::zero(); D] };
+            let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][place - tile.range.start..]));
+            match self.layout {
+                Layout::Single => {
+                    for slot in 0..pull.width {
+                        let at = (place / WIDTH * pull.width + slot) * WIDTH;
+                        let partner = &pull.partner[at..at + WIDTH];
+                        let pair = &pull.pair[at..at + WIDTH];
+                        let d = lanes!(P, i => x[i] - P::gather(view.x[i], partner));
+                        let rate = lanes!(P, i => {
+                            if L::DAMPED { v[i] - P::gather(view.v[i], partner) } else { P::zero() }
+                        });
+                        let (f, dissipated) = law.force(load_parameters(&law.parameters(), At::Each(pair)), d, rate);
+                        for i in 0..D {
+                            force[i] += f[i];
+                        }
+                        if L::DAMPED {
+                            *power += half * dissipated;
+                        }
+                    }
+                }
+                Layout::Batch => {
+                    let node = place / WIDTH;
+                    for slot in 0..pull.width {
+                        let at = (node / WIDTH * pull.width + slot) * WIDTH + node % WIDTH;
+                        let partner = pull.partner[at] as usize * WIDTH;
+                        let pair = pull.pair[at] as usize * WIDTH;
+                        let d = lanes!(P, i => x[i] - P::load(&view.x[i][partner..]));
+                        let rate = lanes!(P, i => {
+                            if L::DAMPED { v[i] - P::load(&view.v[i][partner..]) } else { P::zero() }
+                        });
+                        let (f, dissipated) = law.force(load_parameters(&law.parameters(), At::Run(pair)), d, rate);
+                        for i in 0..D {
+                            force[i] += f[i];
+                        }
+                        if L::DAMPED {
+                            *power += half * dissipated;
+                        }
+                    }
+                }
+            }
+            for i in 0..D {
+                force[i].store(&mut tile.force[i][place - tile.range.start..]);
+            }
+        }
+    }
+
+    /// Adds up a function of both ends over all pairs, with bits that do not depend on the layout.
+    #[inline(always)]
+    pub fn sum<P: Pack, T: PairTerm<P, D>, const D: usize>(&self, view: &View<D>, term: T) -> P {
+        let stride = self.layout.stride();
+        let mut sum = OrderedSum::<P>::new(self.layout);
+        for run in &self.runs {
+            let (a, b) = (run.a as usize * stride, run.b as usize * stride);
+            let (first, length) = (run.first as usize * stride, run.count as usize * stride);
+            let packed = length.next_multiple_of(WIDTH);
+            let base = a.min(b);
+            let (to_a, to_b) = (a - base, b - base);
+            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b));
+            let [p0, p1, p2] = term.parameters();
+            let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
+            for k in (0..packed).step_by(WIDTH) {
+                let (from, to) = (lanes!(P, i => x.load::<P>(i, k + to_a)), lanes!(P, i => x.load::<P>(i, k + to_b)));
+                sum.add(k, length, term.of([p0.load(k), p1.load(k), p2.load(k)], from, to));
+            }
+        }
+        if let Some(pull) = &self.pull {
+            match self.layout {
+                Layout::Single => {
+                    for k in (0..pull.loose.len()).step_by(WIDTH) {
+                        let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
+                        let xa = lanes!(P, i => P::gather(view.x[i], a));
+                        let xb = lanes!(P, i => P::gather(view.x[i], b));
+                        sum.add(k, pull.loose.len(), term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb));
+                    }
+                }
+                Layout::Batch => {
+                    for (k, &pair) in pull.loose.iter().enumerate() {
+                        let (a, b) = (pull.ends[0][k] as usize * WIDTH, pull.ends[1][k] as usize * WIDTH);
+                        let at = load_parameters(&term.parameters(), At::Run(pair as usize * WIDTH));
+                        sum.add(k * WIDTH, usize::MAX, term.of(at, load(&view.x, a), load(&view.x, b)));
+                    }
+                }
+            }
+        }
+        sum.total()
+    }
+}
+
+#[inline(always)]
+fn load_parameters<P: Pack>(parameters: &[&Parameter; 3], at: At) -> [P; 3] {
+    [parameters[0].load_at(at), parameters[1].load_at(at), parameters[2].load_at(at)]
+}
+
+/// The part of `0..length` for which `from + k` lies in `start..end`.
+#[inline(always)]
+fn within(from: usize, length: usize, start: usize, end: usize) -> Range<usize> {
+    let low = start.saturating_sub(from).min(length);
+    let high = end.saturating_sub(from).min(length);
+    low..high.max(low)
+}
+
+/// Where the slot lies that a place of a run's first (second) nodes receives.
+#[inline(always)]
+fn slot_of(place: usize, node: usize, start: usize) -> usize {
+    WIDTH + place - node - start
+}
+
+/// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then
+/// `sign` times that of the second. What lies behind stays as it is.
+#[inline(always)]
+fn add_slots<P: Pack, const BOTH: bool>(
+    into: &mut [f64],
+    at: usize,
+    count: usize,
+    slots: &[f64],
+    first: usize,
+    second: usize,
+    sign: f64,
+) {
+    let packed = count.next_multiple_of(WIDTH);
+    let first = Strip::<1>::new(&[slots], first, packed);
+    let second = Strip::<1>::new(&[slots], if BOTH { second } else { 0 }, packed);
+    let mut into = StripMut::<1>::new([into], at, packed);
+    for k in (0..packed).step_by(WIDTH) {
+        let old: P = into.load(0, k);
+        let slot: P = first.load(0, k);
+        let new = if BOTH {
+            let other: P = second.load(0, k);
+            if sign < 0.0 { (old + slot) - other } else { (old + slot) + other }
+        } else if sign < 0.0 {
+            old - slot
+        } else {
+            old + slot
+        };
+        if k + WIDTH <= count {
+            into.store(0, k, new);
+        } else {
+            into.store(0, k, P::select(P::first(count - k), new, old));
+        }
+    }
+}

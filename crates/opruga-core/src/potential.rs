@@ -1,0 +1,182 @@
+//! What a model is to an integrator: forces, energy and second derivatives, and nothing about how it steps.
+
+use crate::error::{BuildError, StepError};
+use crate::spec::{Spec, Values};
+use crate::state::{Layout, View};
+use crate::tile::Tile;
+use core::fmt::Debug;
+use opruga_math::{Simd, WIDTH};
+use opruga_mesh::Mesh;
+
+/// Which questions a model answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Views {
+    /// There is an energy whose negative gradient is the force at rest.
+    pub energy: bool,
+    /// There is a Hessian.
+    pub hessian: bool,
+    /// The force depends on velocities.
+    pub damping: bool,
+}
+
+impl Views {
+    /// Whether everything that is needed is there.
+    pub fn include(self, needed: Views) -> bool {
+        (self.energy || !needed.energy) && (self.hessian || !needed.hessian) && (self.damping || !needed.damping)
+    }
+}
+
+/// Where the energy and the power of a model are entered in the ledger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Account {
+    /// Elastic energy; power is dissipated by damping.
+    Elastic,
+    /// Energy of the gas.
+    Gas,
+    /// Work of forces from outside.
+    User,
+}
+
+/// Whether a Hessian is taken as it is, or each stencil's block without its negative eigenvalues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Definiteness {
+    /// The second derivatives.
+    Exact,
+    /// Each block made positive semi-definite.
+    Clamped,
+}
+
+/// Where a model delivers its Hessian.
+pub trait Sink<const D: usize> {
+    /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
+    fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]);
+    /// Adds c·u uᵀ, where u is given by its entries at some places: never written out as a dense matrix.
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
+}
+
+/// A model of one body, or of eight alike bodies side by side: the energy U(x) and what derives from it.
+///
+/// This is the only dynamic dispatch: one call per model and tile. `memory` is what the model remembers from step to
+/// step (an amount of gas, a ramp); it is part of the state. `scratch` is what [`Potential::prepare`] works out for the
+/// calls that follow it.
+pub trait Potential<const D: usize>: Send + Sync + Debug {
+    /// The word that names the model.
+    fn name(&self) -> &'static str;
+    /// Which questions it answers.
+    fn views(&self) -> Views;
+    /// Where energy and power are entered.
+    fn account(&self) -> Account {
+        Account::Elastic
+    }
+    /// Calls back with the lowest and highest node of every stencil whose nodes read one another's state.
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32));
+    /// What is remembered at the start.
+    fn initial_memory(&self) -> Vec<f64> {
+        Vec::new()
+    }
+    /// How many numbers `prepare` leaves behind.
+    fn scratch_len(&self) -> usize {
+        0
+    }
+    /// Works out what concerns the body as a whole (volume, pressure, a factor over time).
+    ///
+    /// # Errors
+    /// [`StepError::Model`] where the model has no meaning in this state.
+    fn prepare(&self, _simd: Simd, _view: &View<D>, _memory: &[f64], _scratch: &mut [f64]) -> Result<(), StepError> {
+        Ok(())
+    }
+    /// Adds the whole force of the model, −∂U/∂x and damping [N], on every node of the tile.
+    fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
+    /// Moves the memory on by one substep; returns the energy put into each body by that [J].
+    fn remember(&self, _simd: Simd, _view: &View<D>, _h: f64, _scratch: &[f64], _memory: &mut [f64]) -> [f64; WIDTH] {
+        [0.0; WIDTH]
+    }
+    /// The energy U of each body [J], after `prepare` in the same state: eight numbers whose sum is that of one body,
+    /// or one number for each of eight bodies.
+    fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
+        [0.0; WIDTH]
+    }
+    /// Delivers ∂²U/∂x∂x, after `prepare` in the same state.
+    fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
+    /// Adds ∂²U/∂x∂x · direction; places outside of the bodies are left alone.
+    fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
+        let mut product = ProductSink { direction, out };
+        self.hessian(view, scratch, Definiteness::Exact, &mut product);
+    }
+    /// Names and values per body of what a reader may want to see (`volume`, `pressure`), body by body.
+    fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+    /// How often a limit of the model acted (a cap on pressure): a name and a count kept in the memory.
+    fn counts(&self, _memory: &[f64]) -> Vec<(&'static str, u64)> {
+        Vec::new()
+    }
+    /// Bytes on the heap.
+    fn heap_bytes(&self) -> usize {
+        0
+    }
+}
+
+/// Multiplies the blocks of a Hessian with a vector as they arrive.
+struct ProductSink<'a, 'b, const D: usize> {
+    direction: &'a [&'a [f64]; D],
+    out: &'a mut [&'b mut [f64]; D],
+}
+
+impl<const D: usize> Sink<D> for ProductSink<'_, '_, D> {
+    fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]) {
+        for i in 0..D {
+            for j in 0..D {
+                self.out[i][a] += value[i][j] * self.direction[j][b];
+            }
+        }
+    }
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
+        let mut dot = 0.0;
+        for (place, entry) in u {
+            for d in 0..D {
+                dot += entry[d] * self.direction[d][*place];
+            }
+        }
+        for (place, entry) in u {
+            for d in 0..D {
+                self.out[d][*place] += c * dot * entry[d];
+            }
+        }
+    }
+}
+
+/// What a model is built from: a body at rest, or eight alike ones with their own parameters.
+#[derive(Clone, Debug)]
+pub struct Ingredients<'a, const D: usize> {
+    /// The rest shape, the same for all.
+    pub mesh: &'a Mesh<D>,
+    /// One body or eight side by side.
+    pub layout: Layout,
+    /// The parameters of each body: one entry, or eight.
+    pub values: &'a [&'a Values],
+    /// Mass of every node [kg], laid out like the columns.
+    pub mass: &'a crate::state::Parameter,
+    /// Thickness out of the plane in 2D, of a sheet in 3D [m].
+    pub thickness: f64,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; D],
+}
+
+impl<const D: usize> Ingredients<'_, D> {
+    /// The same number of every body, eight times if there is only one.
+    pub fn by_body(&self, mut number: impl FnMut(&Values) -> f64) -> [f64; WIDTH] {
+        core::array::from_fn(|l| number(self.values[l.min(self.values.len() - 1)]))
+    }
+}
+
+/// A kind of model that scenes can name.
+pub trait Model<const D: usize>: Send + Sync {
+    /// Its parameters and documentation.
+    fn spec(&self) -> &'static Spec;
+    /// Builds it for one body, or for eight alike ones.
+    ///
+    /// # Errors
+    /// [`BuildError`] where the body cannot carry the model or a combination of parameters has no meaning.
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError>;
+}

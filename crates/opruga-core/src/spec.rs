@@ -1,0 +1,398 @@
+//! What a model, integrator, shape or collider says about its parameters.
+//!
+//! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels
+//! of the studio. It knows nothing of any file format.
+
+/// Everything there is to know about one kind of thing that a scene can name.
+#[derive(Clone, Copy, Debug)]
+pub struct Spec {
+    /// The word in the scene file.
+    pub kind: &'static str,
+    /// One line for lists.
+    pub summary: &'static str,
+    /// Physics, formula, source and limits, in Markdown.
+    pub documentation: &'static str,
+    /// The dimensions in which it exists.
+    pub dimensions: &'static [usize],
+    /// The parameters, in the order of the documentation.
+    pub fields: &'static [Field],
+}
+
+/// One parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// The word in the scene file.
+    pub name: &'static str,
+    /// What values are allowed.
+    pub range: Allowed,
+    /// The SI unit; empty for a plain number or word.
+    pub unit: &'static str,
+    /// What holds where the scene is silent.
+    pub default: Default,
+    /// One sentence in words of physics.
+    pub documentation: &'static str,
+}
+
+/// The values that a field may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Allowed {
+    /// A finite number between two bounds.
+    Number {
+        /// The least value.
+        least: Bound,
+        /// The greatest value.
+        greatest: Bound,
+    },
+    /// A whole number between two bounds, both allowed.
+    Integer {
+        /// The least value.
+        least: i64,
+        /// The greatest value.
+        greatest: i64,
+    },
+    /// `true` or `false`.
+    Boolean,
+    /// Any text of at most 256 bytes.
+    Text,
+    /// One of several words.
+    Choice(&'static [&'static str]),
+    /// As many finite numbers as the scene has dimensions.
+    Vector,
+    /// A list of points, each as many numbers as the scene has dimensions.
+    Points,
+    /// A list of whole numbers not below zero.
+    Integers,
+    /// A list of numbers.
+    Numbers,
+    /// A curve over time: `[[t, value], …]`, t rising.
+    Curve,
+    /// A path over time: `[[t, x, y(, z)], …]`, t rising.
+    Path,
+}
+
+/// One end of an interval of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// No bound (but finite).
+    None,
+    /// The number itself is allowed.
+    Closed(f64),
+    /// The number itself is not allowed.
+    Open(f64),
+}
+
+impl Allowed {
+    /// Any finite number.
+    pub const ANY: Allowed = Allowed::Number { least: Bound::None, greatest: Bound::None };
+    /// Zero or more.
+    pub const NOT_NEGATIVE: Allowed = Allowed::Number { least: Bound::Closed(0.0), greatest: Bound::None };
+    /// More than zero.
+    pub const POSITIVE: Allowed = Allowed::Number { least: Bound::Open(0.0), greatest: Bound::None };
+    /// Between zero and one.
+    pub const FRACTION: Allowed = Allowed::Number { least: Bound::Closed(0.0), greatest: Bound::Closed(1.0) };
+}
+
+/// What holds where the scene is silent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Default {
+    /// The scene must say it.
+    Required,
+    /// The field stays empty.
+    Absent,
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Integer(i64),
+    /// A truth value.
+    Boolean(bool),
+    /// A word.
+    Text(&'static str),
+    /// A vector of zeros.
+    Origin,
+}
+
+/// The value of one field.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number in SI units.
+    Number(f64),
+    /// A whole number.
+    Integer(i64),
+    /// A truth value.
+    Boolean(bool),
+    /// A text or a word.
+    Text(String),
+    /// A vector, or a plain list of numbers.
+    Numbers(Vec<f64>),
+    /// A list of whole numbers.
+    Integers(Vec<u32>),
+    /// A list of rows: points, a curve or a path.
+    Rows(Vec<Vec<f64>>),
+}
+
+/// The values of the fields of one [`Spec`], checked and complete: defaults are filled in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    kind: &'static str,
+    entries: Vec<(&'static str, Value)>,
+}
+
+impl Values {
+    /// The defaults of a specification; required fields stay empty until [`Values::set`] fills them.
+    pub fn defaults(spec: &Spec, dimension: usize) -> Values {
+        let mut entries = Vec::new();
+        for field in spec.fields {
+            let value = match field.default {
+                Default::Required | Default::Absent => continue,
+                Default::Number(x) => Value::Number(x),
+                Default::Integer(x) => Value::Integer(x),
+                Default::Boolean(x) => Value::Boolean(x),
+                Default::Text(x) => Value::Text(x.to_string()),
+                Default::Origin => Value::Numbers(vec![0.0; dimension]),
+            };
+            entries.push((field.name, value));
+        }
+        Values { kind: spec.kind, entries }
+    }
+    /// The word that names the kind.
+    pub fn kind(&self) -> &'static str {
+        self.kind
+    }
+    /// Sets a field after checking it against its specification.
+    ///
+    /// # Errors
+    /// A [`ValueError`] says what is allowed; the values stay as they were.
+    pub fn set(&mut self, spec: &Spec, name: &str, value: Value, dimension: usize) -> Result<(), ValueError> {
+        let Some(field) = spec.fields.iter().find(|f| f.name == name) else {
+            return Err(ValueError::UnknownField {
+                name: name.to_string(),
+                nearest: nearest(name, spec.fields.iter().map(|f| f.name)),
+            });
+        };
+        let value = field.range.accept(value, dimension).map_err(|(value, allowed)| ValueError::NotAllowed {
+            name: name.to_string(),
+            value,
+            allowed,
+        })?;
+        match self.entries.iter_mut().find(|(n, _)| *n == name) {
+            Some(entry) => entry.1 = value,
+            None => self.entries.push((field.name, value)),
+        }
+        Ok(())
+    }
+    /// The value of a field, if it has one.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.entries.iter().find(|(n, _)| *n == name).map(|(_, v)| v)
+    }
+    /// Every field that has a value.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Value)> {
+        self.entries.iter().map(|(n, v)| (*n, v))
+    }
+    /// The number of a field, if it has one.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.get(name) {
+            Some(Value::Number(x)) => Some(*x),
+            Some(Value::Integer(x)) => Some(*x as f64),
+            _ => None,
+        }
+    }
+    /// The whole number of a field, if it has one.
+    pub fn integer(&self, name: &str) -> Option<i64> {
+        match self.get(name) {
+            Some(Value::Integer(x)) => Some(*x),
+            _ => None,
+        }
+    }
+    /// The truth value of a field; `false` where it has none.
+    pub fn flag(&self, name: &str) -> bool {
+        matches!(self.get(name), Some(Value::Boolean(true)))
+    }
+    /// The word of a field, if it has one.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.get(name) {
+            Some(Value::Text(x)) => Some(x),
+            _ => None,
+        }
+    }
+    /// The numbers of a field, if it has some.
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        match self.get(name) {
+            Some(Value::Numbers(x)) => Some(x),
+            _ => None,
+        }
+    }
+    /// The vector of a field; zeros where it has none.
+    pub fn vector<const D: usize>(&self, name: &str) -> [f64; D] {
+        let mut out = [0.0; D];
+        for (o, x) in out.iter_mut().zip(self.numbers(name).unwrap_or(&[])) {
+            *o = *x;
+        }
+        out
+    }
+    /// The rows of a field; none where it has none.
+    pub fn rows(&self, name: &str) -> &[Vec<f64>] {
+        match self.get(name) {
+            Some(Value::Rows(x)) => x,
+            _ => &[],
+        }
+    }
+    /// The whole numbers of a field; none where it has none.
+    pub fn integers(&self, name: &str) -> &[u32] {
+        match self.get(name) {
+            Some(Value::Integers(x)) => x,
+            _ => &[],
+        }
+    }
+    /// The required fields that have no value yet.
+    pub fn missing(&self, spec: &Spec) -> Vec<&'static str> {
+        let absent = |f: &&Field| f.default == Default::Required && self.get(f.name).is_none();
+        spec.fields.iter().filter(absent).map(|f| f.name).collect()
+    }
+}
+
+/// Why a value was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ValueError {
+    /// There is no field of that name.
+    #[error("there is no field `{name}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
+    UnknownField {
+        /// The name that was given.
+        name: String,
+        /// The nearest name that exists.
+        nearest: Option<String>,
+    },
+    /// The value is outside of its range or of another type.
+    #[error("`{name}` is {value}; allowed: {allowed}")]
+    NotAllowed {
+        /// The field.
+        name: String,
+        /// The value that was given.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+}
+
+impl Allowed {
+    /// The value itself if it is allowed; else the value and what is allowed, in words.
+    ///
+    /// # Errors
+    /// A pair of texts: the offending value and the allowed range.
+    pub fn accept(&self, value: Value, dimension: usize) -> Result<Value, (String, String)> {
+        let refuse = |v: &Value| Err((v.to_string(), self.describe(dimension)));
+        let rows_ok = |rows: &[Vec<f64>], length: usize| {
+            !rows.is_empty() && rows.iter().all(|r| r.len() == length && r.iter().all(|x| x.is_finite()))
+        };
+        let rising = |rows: &[Vec<f64>]| rows.windows(2).all(|w| w[0][0] < w[1][0]);
+        match (self, &value) {
+            (Allowed::Number { least, greatest }, Value::Number(_) | Value::Integer(_)) => {
+                let x = match value {
+                    Value::Integer(i) => i as f64,
+                    Value::Number(x) => x,
+                    _ => f64::NAN,
+                };
+                let low = match least {
+                    Bound::None => true,
+                    Bound::Closed(b) => x >= *b,
+                    Bound::Open(b) => x > *b,
+                };
+                let high = match greatest {
+                    Bound::None => true,
+                    Bound::Closed(b) => x <= *b,
+                    Bound::Open(b) => x < *b,
+                };
+                if x.is_finite() && low && high { Ok(Value::Number(x + 0.0)) } else { refuse(&value) }
+            }
+            (Allowed::Integer { least, greatest }, Value::Integer(i)) if i >= least && i <= greatest => Ok(value),
+            (Allowed::Boolean, Value::Boolean(_)) => Ok(value),
+            (Allowed::Text, Value::Text(t)) if t.len() <= 256 => Ok(value),
+            (Allowed::Choice(words), Value::Text(t)) if words.contains(&t.as_str()) => Ok(value),
+            (Allowed::Vector, Value::Numbers(v)) if v.len() == dimension && v.iter().all(|x| x.is_finite()) => Ok(value),
+            (Allowed::Numbers, Value::Numbers(v)) if v.iter().all(|x| x.is_finite()) => Ok(value),
+            (Allowed::Integers, Value::Integers(_)) => Ok(value),
+            (Allowed::Points, Value::Rows(rows)) if rows_ok(rows, dimension) => Ok(value),
+            (Allowed::Curve, Value::Rows(rows)) if rows_ok(rows, 2) && rising(rows) => Ok(value),
+            (Allowed::Path, Value::Rows(rows)) if rows_ok(rows, dimension + 1) && rising(rows) => Ok(value),
+            _ => refuse(&value),
+        }
+    }
+
+    /// What is allowed, in words.
+    pub fn describe(&self, dimension: usize) -> String {
+        match self {
+            Allowed::Number { least, greatest } => {
+                let low = match least {
+                    Bound::None => None,
+                    Bound::Closed(b) => Some(format!(">= {b}")),
+                    Bound::Open(b) => Some(format!("> {b}")),
+                };
+                let high = match greatest {
+                    Bound::None => None,
+                    Bound::Closed(b) => Some(format!("<= {b}")),
+                    Bound::Open(b) => Some(format!("< {b}")),
+                };
+                let bounds: Vec<String> = [low, high].into_iter().flatten().collect();
+                if bounds.is_empty() { "a finite number".into() } else { format!("a number {}", bounds.join(" and ")) }
+            }
+            Allowed::Integer { least, greatest } => format!("a whole number from {least} to {greatest}"),
+            Allowed::Boolean => "true or false".into(),
+            Allowed::Text => "a text of at most 256 bytes".into(),
+            Allowed::Choice(words) => {
+                format!("one of {}", words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", "))
+            }
+            Allowed::Vector => format!("{dimension} finite numbers"),
+            Allowed::Numbers => "a list of finite numbers".into(),
+            Allowed::Integers => "a list of whole numbers from 0".into(),
+            Allowed::Points => format!("a list of points of {dimension} finite numbers"),
+            Allowed::Curve => "a curve [[t, value], …] of finite numbers with rising t".into(),
+            Allowed::Path => format!("a path [[t, {}], …] of finite numbers with rising t", if dimension == 2 { "x, y" } else { "x, y, z" }),
+        }
+    }
+}
+
+impl core::fmt::Display for Value {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Value::Number(x) => write!(f, "{x}"),
+            Value::Integer(x) => write!(f, "{x}"),
+            Value::Boolean(x) => write!(f, "{x}"),
+            Value::Text(x) => write!(f, "\"{}\"", x.escape_debug()),
+            Value::Numbers(x) => write!(f, "{x:?}"),
+            Value::Integers(x) => write!(f, "{x:?}"),
+            Value::Rows(x) => write!(f, "{x:?}"),
+        }
+    }
+}
+
+/// The candidate that differs from a word in the fewest letters, if it is near enough to be meant.
+pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    let limit = word.chars().count() / 3 + 1;
+    candidates
+        .map(|c| (letters_apart(word, c), c))
+        .filter(|(distance, _)| *distance <= limit)
+        .min()
+        .map(|(_, c)| c.to_string())
+}
+
+/// The number of letters to insert, delete, replace or swap between two words.
+fn letters_apart(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
+    let mut rows = vec![vec![0usize; b.len() + 1]; a.len() + 1];
+    for (i, row) in rows.iter_mut().enumerate() {
+        row[0] = i;
+    }
+    for j in 0..=b.len() {
+        rows[0][j] = j;
+    }
+    for i in 1..=a.len() {
+        for j in 1..=b.len() {
+            let change = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut best = change.min(rows[i - 1][j] + 1).min(rows[i][j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(rows[i - 2][j - 2] + 1);
+            }
+            rows[i][j] = best;
+        }
+    }
+    rows[a.len()][b.len()]
+}

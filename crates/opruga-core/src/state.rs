@@ -1,0 +1,250 @@
+//! Where positions and velocities live: one column per coordinate, one body or eight alike bodies side by side.
+
+use std::borrow::Cow;
+use opruga_math::{Pack, RepeatStrip, StripMut, WIDTH, lanes};
+
+/// How the nodes of a block lie in its columns.
+///
+/// A *place* is an index into a column. Every loop of physics runs over places, eight at a time:
+///
+/// ```text
+/// Single: node i of the one body        at place i           (a pack = 8 neighbouring nodes)
+/// Batch:  node i of body l (of eight)   at place 8 i + l     (a pack = the same node of 8 bodies)
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// One body.
+    Single,
+    /// Up to eight bodies of the same topology.
+    Batch,
+}
+
+impl Layout {
+    /// The distance in a column between a node and the next one.
+    #[inline(always)]
+    pub fn stride(self) -> usize {
+        match self {
+            Layout::Single => 1,
+            Layout::Batch => WIDTH,
+        }
+    }
+    /// The number of places of so many nodes, padded to whole packs.
+    pub fn places(self, nodes: usize) -> usize {
+        (nodes * self.stride()).next_multiple_of(WIDTH)
+    }
+    /// The place of a node of a body.
+    #[inline(always)]
+    pub fn place(self, node: usize, body: usize) -> usize {
+        match self {
+            Layout::Single => node,
+            Layout::Batch => node * WIDTH + body,
+        }
+    }
+}
+
+/// One column of numbers per coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns<const D: usize>(pub [Vec<f64>; D]);
+
+impl<const D: usize> Columns<D> {
+    /// Zeros, with room for a whole pack behind the last place.
+    pub fn zeros(places: usize) -> Columns<D> {
+        Columns(core::array::from_fn(|_| vec![0.0; places + WIDTH]))
+    }
+    /// The columns as slices.
+    #[inline(always)]
+    pub fn slices(&self) -> [&[f64]; D] {
+        core::array::from_fn(|d| self.0[d].as_slice())
+    }
+    /// Eight places at once.
+    #[inline(always)]
+    pub fn load<P: Pack>(&self, place: usize) -> [P; D] {
+        lanes!(P, d => P::load(&self.0[d][place..]))
+    }
+    /// Writes eight places at once.
+    #[inline(always)]
+    pub fn store<P: Pack>(&mut self, place: usize, value: [P; D]) {
+        for d in 0..D {
+            value[d].store(&mut self.0[d][place..]);
+        }
+    }
+    /// A piece of every column for a loop over packs.
+    #[inline(always)]
+    pub fn strip_mut(&mut self, start: usize, length: usize) -> StripMut<'_, D> {
+        StripMut::new(self.0.each_mut().map(Vec::as_mut_slice), start, length)
+    }
+    /// The vector at one place.
+    #[inline(always)]
+    pub fn at(&self, place: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.0[d][place])
+    }
+    /// Writes the vector at one place.
+    #[inline(always)]
+    pub fn set(&mut self, place: usize, value: [f64; D]) {
+        for d in 0..D {
+            self.0[d][place] = value[d];
+        }
+    }
+}
+
+/// Loads eight places of every coordinate.
+#[inline(always)]
+pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], place: usize) -> [P; D] {
+    lanes!(P, d => P::load(&columns[d][place..]))
+}
+
+/// A number per place that is often the same everywhere: then eight values stand for the whole column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    values: Cow<'static, [f64]>,
+    step: usize,
+}
+
+impl Parameter {
+    /// Zero everywhere, for laws that read fewer numbers than there is room for.
+    pub const NONE: Parameter = Parameter { values: Cow::Borrowed(&[0.0; WIDTH]), step: 0 };
+
+    /// The same number everywhere.
+    pub fn uniform(value: f64) -> Parameter {
+        Parameter::by_body([value; WIDTH])
+    }
+    /// One number for each of eight bodies side by side.
+    pub fn by_body(values: [f64; WIDTH]) -> Parameter {
+        Parameter { values: Cow::Owned(values.to_vec()), step: 0 }
+    }
+    /// A number for every place; stored once if they are all the same to the bit.
+    pub fn column(mut values: Vec<f64>) -> Parameter {
+        let first = values.first().copied().unwrap_or(0.0);
+        if values.iter().all(|v| v.to_bits() == first.to_bits()) {
+            return Parameter::uniform(first);
+        }
+        values.extend([0.0; WIDTH]);
+        Parameter { values: Cow::Owned(values), step: 1 }
+    }
+    /// From the number of every item (node, spring, …) and body, laid out like the columns.
+    pub fn from_items(layout: Layout, items: usize, mut number: impl FnMut(usize, usize) -> f64) -> Parameter {
+        let mut values = vec![0.0; items * layout.stride()];
+        for item in 0..items {
+            for body in 0..layout.stride() {
+                values[layout.place(item, body)] = number(item, body);
+            }
+        }
+        let repeats = layout == Layout::Batch && values.chunks(WIDTH).all(|c| c == &values[..WIDTH]);
+        if repeats && !values.is_empty() {
+            let mut first = [0.0; WIDTH];
+            first.copy_from_slice(&values[..WIDTH]);
+            return Parameter::by_body(first);
+        }
+        Parameter::column(values)
+    }
+    /// The numbers of eight places.
+    #[inline(always)]
+    pub fn load<P: Pack>(&self, place: usize) -> P {
+        P::load(&self.values[place * self.step..])
+    }
+    /// A piece of the column for a loop over packs.
+    #[inline(always)]
+    pub fn strip(&self, start: usize, length: usize) -> RepeatStrip<'_> {
+        RepeatStrip::new(&self.values, self.step, start, length)
+    }
+    /// The numbers of eight items.
+    #[inline(always)]
+    pub fn load_at<P: Pack>(&self, items: At) -> P {
+        match items {
+            At::Run(place) => self.load(place),
+            At::Each(places) if self.step == 1 => P::gather(&self.values, places),
+            At::Each(_) => P::load(&self.values),
+        }
+    }
+    /// The number at one place.
+    #[inline(always)]
+    pub fn at(&self, place: usize) -> f64 {
+        if self.step == 0 { self.values[place % WIDTH] } else { self.values[place] }
+    }
+    /// Whether it is zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        self.values.iter().all(|v| *v == 0.0)
+    }
+    /// The number of bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        self.values.len() * 8
+    }
+}
+
+/// Eight items of a column: neighbours from a place on, or each at a place of its own.
+#[derive(Clone, Copy, Debug)]
+pub enum At<'a> {
+    /// From this place on.
+    Run(usize),
+    /// One place each; eight of them.
+    Each(&'a [u32]),
+}
+
+/// The state in which forces are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, const D: usize> {
+    /// Positions x [m].
+    pub x: [&'a [f64]; D],
+    /// Velocities v [m/s].
+    pub v: [&'a [f64]; D],
+    /// Nodes of one body.
+    pub nodes: usize,
+    /// One body or eight.
+    pub layout: Layout,
+    /// Time [s].
+    pub time: f64,
+}
+
+impl<const D: usize> View<'_, D> {
+    /// The position at a place [m].
+    #[inline(always)]
+    pub fn position(&self, place: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.x[d][place])
+    }
+    /// The velocity at a place [m/s].
+    #[inline(always)]
+    pub fn velocity(&self, place: usize) -> [f64; D] {
+        core::array::from_fn(|d| self.v[d][place])
+    }
+}
+
+/// A sum over items whose bits do not depend on the layout: eight partial sums by item number modulo eight.
+///
+/// With one body the eight partial sums are the eight places of one pack. With eight bodies side by side they are eight
+/// packs. Both are added up in the same order.
+#[derive(Clone, Copy)]
+pub struct OrderedSum<P: Pack> {
+    layout: Layout,
+    /// The partial sums of one body.
+    lanes: P,
+    /// The partial sums of eight bodies.
+    packs: [P; WIDTH],
+}
+
+impl<P: Pack> OrderedSum<P> {
+    /// An empty sum.
+    #[inline(always)]
+    pub fn new(layout: Layout) -> Self {
+        OrderedSum { layout, lanes: P::zero(), packs: [P::zero(); WIDTH] }
+    }
+    /// Adds the values of a pack that starts at place `place` of a run of `end` places.
+    #[inline(always)]
+    pub fn add(&mut self, place: usize, end: usize, value: P) {
+        match self.layout {
+            Layout::Single if place + WIDTH <= end => self.lanes += value,
+            Layout::Single => self.lanes += P::select(P::first(end - place), value, P::zero()),
+            Layout::Batch => self.packs[(place / WIDTH) % WIDTH] += value,
+        }
+    }
+    /// The sum: for one body the same number eight times, else the number of each of eight bodies.
+    #[inline(always)]
+    pub fn total(&self) -> P {
+        match self.layout {
+            Layout::Single => P::splat(self.lanes.sum()),
+            Layout::Batch => {
+                let a = &self.packs;
+                ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
+            }
+        }
+    }
+}

@@ -1,0 +1,475 @@
+//! A system: bodies that are stepped together, the models that act on them and what they collide with.
+
+use crate::contacts::{Contacts, Moved};
+use crate::error::StepError;
+use crate::potential::{Account, Potential};
+use crate::state::{Columns, Layout, Parameter, View};
+use crate::tile::{TILE, Tile, TilePlan};
+use core::ops::Range;
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work, lanes};
+
+/// Which columns hold the state in which forces are evaluated, or into which an update writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Positions and velocities of the system.
+    Current,
+    /// Work columns of that number.
+    Work(usize),
+}
+
+/// Positions and velocities, and room for stages of an integrator.
+#[derive(Clone, Debug)]
+pub struct State<const D: usize> {
+    /// Positions x [m].
+    pub x: Columns<D>,
+    /// Velocities v [m/s].
+    pub v: Columns<D>,
+    /// Stages: pairs of columns for positions and velocities.
+    pub work: Vec<[Columns<D>; 2]>,
+}
+
+/// A node held in some axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pin<const D: usize> {
+    /// Where the node lies in the columns.
+    pub place: usize,
+    /// Which axes are held.
+    pub axes: [bool; D],
+    /// Where it is held [m].
+    pub anchor: [f64; D],
+    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty: none.
+    pub motion: std::sync::Arc<Vec<Vec<f64>>>,
+}
+
+impl<const D: usize> Pin<D> {
+    /// The prescribed position and velocity at a time.
+    pub fn target(&self, time: f64) -> ([f64; D], [f64; D]) {
+        let (offset, rate) = along_path::<D>(&self.motion, time);
+        (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
+    }
+}
+
+/// The point and its velocity on a piecewise straight path with rows `[t, x, y(, z)]`, at rest before and after it.
+pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f64; D]) {
+    let point = |row: &Vec<f64>| core::array::from_fn(|d| row[d + 1]);
+    let (Some(first), Some(last)) = (path.first(), path.last()) else {
+        return ([0.0; D], [0.0; D]);
+    };
+    if time < first[0] {
+        return (point(first), [0.0; D]);
+    }
+    for pair in path.windows(2) {
+        if time < pair[1][0] {
+            let span = pair[1][0] - pair[0][0];
+            let s = (time - pair[0][0]) / span;
+            let (a, b): ([f64; D], [f64; D]) = (point(&pair[0]), point(&pair[1]));
+            return (
+                core::array::from_fn(|d| a[d] + s * (b[d] - a[d])),
+                core::array::from_fn(|d| (b[d] - a[d]) / span),
+            );
+        }
+    }
+    (point(last), [0.0; D])
+}
+
+/// Limits of the thesis against instability, off by default; every use is counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stabilisers {
+    /// The largest force on a node [N].
+    pub largest_force: Option<f64>,
+    /// The largest speed of a node [m/s].
+    pub largest_velocity: Option<f64>,
+}
+
+/// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work8 {
+    /// Work of forces and pins from outside, and of moving obstacles.
+    pub user: [f64; WIDTH],
+    /// Energy given to the gas by ramps, heating and leaks.
+    pub gas: [f64; WIDTH],
+    /// Energy taken by damping.
+    pub damping: [f64; WIDTH],
+    /// Energy taken by friction.
+    pub friction: [f64; WIDTH],
+    /// Energy taken by impacts.
+    pub contact: [f64; WIDTH],
+    /// How often a force was limited.
+    pub limited_forces: u64,
+    /// How often a velocity was limited.
+    pub limited_velocities: u64,
+}
+
+/// What an integrator does with the forces of a tile: reads the state, writes positions and velocities.
+pub trait Update<const D: usize> {
+    /// Which columns are written.
+    fn writes(&self) -> Stage;
+    /// The time of the written state after the start of the step [s].
+    fn time(&self) -> f64;
+    /// Moves the nodes of a tile; `force[d][p - range.start]` [N] belongs to place p.
+    fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>);
+}
+
+/// One model of a system and what it keeps.
+#[derive(Debug)]
+pub struct Member<const D: usize> {
+    /// The model.
+    pub potential: Box<dyn Potential<D>>,
+    /// What it remembers from step to step; part of the state.
+    pub memory: Vec<f64>,
+    /// What `prepare` left behind.
+    pub scratch: Vec<f64>,
+}
+
+/// Bodies that are stepped together: one, or up to eight alike ones side by side.
+#[derive(Debug)]
+pub struct System<const D: usize> {
+    /// The vector instructions in force.
+    pub simd: Simd,
+    /// One body or eight.
+    pub layout: Layout,
+    /// Nodes of one body.
+    pub nodes: usize,
+    /// Bodies: 1 to 8.
+    pub bodies: usize,
+    /// Time [s].
+    pub time: f64,
+    /// Positions, velocities, stages.
+    pub state: State<D>,
+    /// Mass of each node [kg].
+    pub mass: Parameter,
+    /// 1 / mass [1/kg].
+    pub inverse_mass: Parameter,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; D],
+    /// The models.
+    pub members: Vec<Member<D>>,
+    /// Held nodes, by place.
+    pub pins: Vec<Pin<D>>,
+    /// What the nodes may collide with in this frame.
+    pub contacts: Option<std::sync::Arc<dyn Contacts<D>>>,
+    /// The thesis's limits.
+    pub stabilisers: Stabilisers,
+    /// Energy that went in and out.
+    pub work: Work8,
+    plan: TilePlan,
+    forces: [Vec<f64>; D],
+    before: [Vec<f64>; D],
+    slots: Vec<f64>,
+}
+
+impl<const D: usize> System<D> {
+    /// A system of bodies at positions `x` with velocities `v`, laid out in columns.
+    pub fn new(simd: Simd, layout: Layout, nodes: usize, bodies: usize, x: Columns<D>, v: Columns<D>, mass: Parameter) -> Self {
+        let places = layout.places(nodes);
+        let inverse = Parameter::column(
+            (0..places)
+                .map(|p| if p < nodes * layout.stride() && mass.at(p) > 0.0 { 1.0 / mass.at(p) } else { 0.0 })
+                .collect(),
+        );
+        let one_mass = Parameter::column((0..nodes * layout.stride()).map(|p| inverse.at(p)).collect());
+        System {
+            simd,
+            layout,
+            nodes,
+            bodies,
+            time: 0.0,
+            state: State { x, v, work: Vec::new() },
+            mass,
+            inverse_mass: one_mass,
+            gravity: [0.0; D],
+            members: Vec::new(),
+            pins: Vec::new(),
+            contacts: None,
+            stabilisers: Stabilisers::default(),
+            work: Work8::default(),
+            plan: TilePlan::new(places, std::iter::empty()),
+            forces: core::array::from_fn(|_| Vec::new()),
+            before: core::array::from_fn(|_| vec![0.0; TILE + WIDTH]),
+            slots: Vec::new(),
+        }
+    }
+    /// Adds a model.
+    pub fn add(&mut self, potential: Box<dyn Potential<D>>) {
+        let memory = potential.initial_memory();
+        let scratch = vec![0.0; potential.scratch_len()];
+        self.members.push(Member { potential, memory, scratch });
+    }
+    /// Lays out tiles and buffers after the models or the integrator changed.
+    pub fn plan(&mut self, work_columns: usize) {
+        let places = self.layout.places(self.nodes);
+        let stride = self.layout.stride();
+        let mut spans = Vec::new();
+        let mut last = (usize::MAX, usize::MAX);
+        for member in &self.members {
+            member.potential.spans(&mut |a, b| {
+                // Only pairs of different tiles matter; neighbours repeat.
+                let pair = (a as usize * stride, (b as usize + 1) * stride - 1);
+                let tiles = (pair.0 / TILE, pair.1 / TILE);
+                if tiles.0 != tiles.1 && tiles != last {
+                    last = tiles;
+                    spans.push(pair);
+                }
+            });
+        }
+        self.plan = TilePlan::new(places, spans.into_iter());
+        self.forces = core::array::from_fn(|_| vec![0.0; self.plan.buffer_places() + WIDTH]);
+        self.state.work.resize_with(work_columns, || [Columns::zeros(places), Columns::zeros(places)]);
+    }
+    /// The number of places.
+    pub fn places(&self) -> usize {
+        self.layout.places(self.nodes)
+    }
+    /// The state of a stage at a time.
+    pub fn view(&self, stage: Stage, time: f64) -> View<'_, D> {
+        view(&self.state, self.nodes, self.layout, stage, time)
+    }
+
+    /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
+    ///
+    /// `weight` [s] is the share of this evaluation in the step's work integrals. `step` is the substep if the update
+    /// ends it: then obstacles act.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub fn advance<U: Update<D>>(&mut self, evaluate: Stage, time: f64, weight: f64, step: Option<f64>, update: &U) -> Result<(), StepError> {
+        let now = self.time + time;
+        self.prepare(evaluate, now)?;
+        for tile in 0..self.plan.len() {
+            self.add_forces(evaluate, now, weight, tile);
+            for k in 0..self.plan.released_after(tile).len() {
+                let done = self.plan.released_after(tile)[k] as usize;
+                self.update_tile(done, update);
+                if let Some(h) = step {
+                    self.collide(done, h);
+                }
+            }
+        }
+        if !self.pins.is_empty() {
+            self.hold_pins(update.writes(), self.time + update.time());
+        }
+        Ok(())
+    }
+
+    /// Lets every model look at the body as a whole.
+    fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
+        let view = view(&self.state, self.nodes, self.layout, stage, time);
+        for member in &mut self.members {
+            member.potential.prepare(self.simd, &view, &member.memory, &mut member.scratch)?;
+        }
+        Ok(())
+    }
+
+    /// Adds up the forces of all models on the nodes of one tile.
+    #[inline]
+    fn add_forces(&mut self, stage: Stage, time: f64, weight: f64, tile: usize) {
+        let view = view(&self.state, self.nodes, self.layout, stage, time);
+        let range = self.plan.range(tile);
+        let buffer = self.plan.buffer(tile);
+        let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
+        let weights = Weigh { range: range.clone(), mass: &self.mass, gravity: self.gravity, force: &mut force };
+        self.simd.run(weights);
+        let mut power = [0.0; WIDTH];
+        for member in &self.members {
+            let mut tile = Tile { range: range.clone(), force: force.each_mut().map(|f| &mut **f), power: &mut power, slots: &mut self.slots };
+            member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
+            let views = member.potential.views();
+            if views.damping || member.potential.account() == Account::User {
+                let account = match member.potential.account() {
+                    Account::User => &mut self.work.user,
+                    _ => &mut self.work.damping,
+                };
+                for l in 0..WIDTH {
+                    account[l] += weight * power[l];
+                    power[l] = 0.0;
+                }
+            }
+        }
+        if let Some(limit) = self.stabilisers.largest_force {
+            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit);
+        }
+    }
+
+    /// Lets the integrator move the nodes of a tile.
+    #[inline]
+    fn update_tile<U: Update<D>>(&mut self, tile: usize, update: &U) {
+        let range = self.plan.range(tile);
+        let buffer = self.plan.buffer(tile);
+        if self.contacts.is_some() {
+            for d in 0..D {
+                self.before[d][..range.len()].copy_from_slice(&self.state.x.0[d][range.clone()]);
+            }
+        }
+        let force = self.forces.each_ref().map(|f| &f[buffer..buffer + range.len() + WIDTH]);
+        self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
+    }
+
+    /// Lets obstacles hold back the nodes of a tile.
+    #[inline]
+    fn collide(&mut self, tile: usize, h: f64) {
+        let range = self.plan.range(tile);
+        if let Some(limit) = self.stabilisers.largest_velocity {
+            let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
+            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit);
+        }
+        let Some(contacts) = &self.contacts else { return };
+        contacts.resolve(
+            self.simd,
+            &mut Moved {
+                range,
+                before: self.before.each_ref().map(|b| b.as_slice()),
+                x: &mut self.state.x,
+                v: &mut self.state.v,
+                mass: &self.mass,
+                layout: self.layout,
+                time: self.time + h,
+                h,
+                loss_contact: &mut self.work.contact,
+                loss_friction: &mut self.work.friction,
+                work_colliders: &mut self.work.user,
+            },
+        );
+    }
+
+    /// Puts held nodes where they are prescribed to be.
+    fn hold_pins(&mut self, stage: Stage, time: f64) {
+        let (x, v) = match stage {
+            Stage::Current => (&mut self.state.x, &mut self.state.v),
+            Stage::Work(k) => {
+                let [x, v] = &mut self.state.work[k];
+                (x, v)
+            }
+        };
+        for pin in &self.pins {
+            let (position, velocity) = pin.target(time);
+            for d in 0..D {
+                if pin.axes[d] {
+                    x.0[d][pin.place] = position[d];
+                    v.0[d][pin.place] = velocity[d];
+                }
+            }
+        }
+    }
+
+    /// Ends a substep: models move their memory on, time passes.
+    pub fn finish_step(&mut self, h: f64) {
+        let now = self.time + h;
+        let view = view(&self.state, self.nodes, self.layout, Stage::Current, now);
+        for member in &mut self.members {
+            if !member.memory.is_empty() {
+                let given = member.potential.remember(self.simd, &view, h, &member.scratch, &mut member.memory);
+                for l in 0..WIDTH {
+                    self.work.gas[l] += given[l];
+                }
+            }
+        }
+        self.time = now;
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let columns = |c: &[Vec<f64>; D]| c.iter().map(|v| v.capacity() * 8).sum::<usize>();
+        let state = columns(&self.state.x.0) + columns(&self.state.v.0);
+        let work: usize = self.state.work.iter().flatten().map(|c| columns(&c.0)).sum();
+        let models: usize = self
+            .members
+            .iter()
+            .map(|m| m.potential.heap_bytes() + (m.memory.capacity() + m.scratch.capacity()) * 8)
+            .sum();
+        state + work + models + columns(&self.forces) + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
+    }
+
+    /// The force on every node in the current state [N], gravity included, laid out in columns.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub fn forces(&mut self, velocities: bool) -> Result<Columns<D>, StepError> {
+        let mut out = Columns::zeros(self.places());
+        let saved = self.work;
+        let rest = (!velocities).then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.places(self.nodes))));
+        let outcome = self.prepare(Stage::Current, self.time);
+        if outcome.is_ok() {
+            for tile in 0..self.plan.len() {
+                self.add_forces(Stage::Current, self.time, 0.0, tile);
+                let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
+                for d in 0..D {
+                    out.0[d][range.clone()].copy_from_slice(&self.forces[d][buffer..buffer + range.len()]);
+                }
+            }
+        }
+        if let Some(v) = rest {
+            self.state.v = v;
+        }
+        self.work = saved;
+        outcome.map(|()| out)
+    }
+}
+
+fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: Stage, time: f64) -> View<'_, D> {
+    let (x, v) = match stage {
+        Stage::Current => (&state.x, &state.v),
+        Stage::Work(k) => (&state.work[k][0], &state.work[k][1]),
+    };
+    View { x: x.slices(), v: v.slices(), nodes, layout, time }
+}
+
+/// Starts the forces of a tile with the weight m g.
+struct Weigh<'a, 'b, const D: usize> {
+    range: Range<usize>,
+    mass: &'a Parameter,
+    gravity: [f64; D],
+    force: &'a mut [&'b mut [f64]; D],
+}
+impl<const D: usize> Work for Weigh<'_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let gravity: [P; D] = lanes!(P, d => P::splat(self.gravity[d]));
+        for k in (0..self.range.len()).step_by(WIDTH) {
+            let mass: P = self.mass.load(self.range.start + k);
+            for d in 0..D {
+                (mass * gravity[d]).store(&mut self.force[d][k..]);
+            }
+        }
+    }
+}
+
+/// Hands a tile to the integrator.
+struct Move<'a, U, const D: usize> {
+    update: &'a U,
+    range: Range<usize>,
+    force: [&'a [f64]; D],
+    inverse_mass: &'a Parameter,
+    state: &'a mut State<D>,
+}
+impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        self.update.tile::<P>(self.range, &self.force, self.inverse_mass, self.state);
+    }
+}
+
+/// Shortens vectors longer than a limit; returns how many.
+fn limit_lengths<const D: usize>(columns: &mut [&mut [f64]; D], count: usize, limit: f64) -> u64 {
+    let mut acted = 0;
+    for k in 0..count {
+        let mut square = 0.0;
+        for column in columns.iter() {
+            square += column[k] * column[k];
+        }
+        if square > limit * limit {
+            let factor = limit / square.sqrt();
+            for column in columns.iter_mut() {
+                column[k] *= factor;
+            }
+            acted += 1;
+        }
+    }
+    acted
+}
+
+/// The larger of two numbers, `b` if `a` is not a number.
+pub fn larger(a: f64, b: f64) -> f64 {
+    a.larger(b)
+}

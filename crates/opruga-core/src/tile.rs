@@ -1,0 +1,98 @@
+//! Tiles: the columns are walked in pieces that fit the first-level cache.
+
+use core::ops::Range;
+use opruga_math::WIDTH;
+
+/// Places of a tile.
+pub const TILE: usize = 512;
+
+/// The forces on the nodes of one tile, while models add to them.
+#[derive(Debug)]
+pub struct Tile<'a, const D: usize> {
+    /// The places of the tile; both ends are multiples of eight.
+    pub range: Range<usize>,
+    /// Force [N]: `force[d][p - range.start]` belongs to place p.
+    pub force: [&'a mut [f64]; D],
+    /// Power that the model takes from (dissipation) or gives to (loads) the bodies [W], eight partial sums.
+    pub power: &'a mut [f64; WIDTH],
+    /// Room for the forces of stencils before they are added up at the nodes.
+    pub slots: &'a mut Vec<f64>,
+}
+
+/// In which order tiles are evaluated and moved.
+///
+/// The forces of a tile read positions of its neighbours. A tile may move only when every tile that reads it has its
+/// forces. For a chain that is one tile later, so the forces wait in the cache; for a mesh of wide numbering it is
+/// later, and more buffers are needed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TilePlan {
+    tiles: Vec<Range<usize>>,
+    buffer: Vec<u32>,
+    /// For every tile the tiles that may move after its forces are known, in order.
+    release: Vec<u32>,
+    release_start: Vec<u32>,
+    buffers: usize,
+}
+
+impl TilePlan {
+    /// The plan of so many places, given every pair (first, last) of places that a stencil spans.
+    pub fn new(places: usize, spans: impl Iterator<Item = (usize, usize)>) -> TilePlan {
+        let count = places.div_ceil(TILE);
+        let tiles: Vec<_> = (0..count).map(|t| t * TILE..((t + 1) * TILE).min(places)).collect();
+        // The last tile whose forces read a tile.
+        let mut last_reader: Vec<usize> = (0..count).collect();
+        for (first, last) in spans {
+            let (low, high) = (first.min(last) / TILE, first.max(last) / TILE);
+            last_reader[low] = last_reader[low].max(high);
+        }
+        let mut release_start = vec![0u32];
+        let mut release = Vec::with_capacity(count);
+        let mut buffer = vec![0u32; count];
+        let mut free: Vec<u32> = Vec::new();
+        let mut buffers = 0;
+        let mut by_reader: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (tile, reader) in last_reader.iter().enumerate() {
+            by_reader[*reader].push(tile as u32);
+        }
+        for (tile, released) in by_reader.iter().enumerate() {
+            buffer[tile] = free.pop().unwrap_or_else(|| {
+                buffers += 1;
+                buffers as u32 - 1
+            });
+            for &done in released {
+                release.push(done);
+                free.push(buffer[done as usize]);
+            }
+            release_start.push(release.len() as u32);
+        }
+        TilePlan { tiles, buffer, release, release_start, buffers }
+    }
+    /// The number of tiles.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.tiles.len()
+    }
+    /// Whether there is no tile.
+    pub fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+    /// The places of a tile.
+    #[inline(always)]
+    pub fn range(&self, tile: usize) -> Range<usize> {
+        self.tiles[tile].clone()
+    }
+    /// Where the forces of a tile lie among the buffers.
+    #[inline(always)]
+    pub fn buffer(&self, tile: usize) -> usize {
+        self.buffer[tile] as usize * TILE
+    }
+    /// The tiles that may move once the forces of this one are known.
+    #[inline(always)]
+    pub fn released_after(&self, tile: usize) -> &[u32] {
+        &self.release[self.release_start[tile] as usize..self.release_start[tile + 1] as usize]
+    }
+    /// Places of all buffers together.
+    pub fn buffer_places(&self) -> usize {
+        self.buffers * TILE
+    }
+}

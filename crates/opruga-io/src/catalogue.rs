@@ -1,0 +1,19 @@
+//! What the caller offers to scenes: the models, integrators and colliders that exist.
+
+use opruga_core::spec::Spec;
+
+/// The specifications that a scene may name by `kind`.
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    /// Models of bodies.
+    pub models: Vec<&'static Spec>,
+    /// Integrators.
+    pub integrators: Vec<&'static Spec>,
+    /// Rigid obstacles.
+    pub colliders: Vec<&'static Spec>,
+}
+
+/// The specification of a kind, if it is in the list.
+pub(crate) fn find(list: &[&'static Spec], kind: &str) -> Option<&'static Spec> {
+    list.iter().copied().find(|s| s.kind == kind)
+}

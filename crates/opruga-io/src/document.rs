@@ -1,0 +1,216 @@
+//! A parsed scene as a tree of values, each of which knows where it was written.
+
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where a value was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// From byte to byte of the scene.
+    Bytes(usize, usize),
+    /// In the override of this number.
+    Override(usize),
+}
+
+/// A value and its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) place: Place,
+    pub(crate) data: Data,
+}
+
+/// A value.
+#[derive(Clone, Debug)]
+pub(crate) enum Data {
+    Table(Vec<Entry>),
+    Array(Vec<Node>),
+    Text(String),
+    /// A whole number; none if it does not fit into 64 bits.
+    Integer(Option<i64>, String),
+    /// A number as it was written, perhaps not finite.
+    Number(f64, String),
+    Boolean(bool),
+    Date(String),
+}
+
+/// A key and its value.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) place: Place,
+    pub(crate) value: Node,
+}
+
+impl Node {
+    pub(crate) fn entries(&self) -> &[Entry] {
+        match &self.data {
+            Data::Table(entries) => entries,
+            _ => &[],
+        }
+    }
+    pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries().iter().find(|e| e.key == key)
+    }
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|e| &e.value)
+    }
+    pub(crate) fn text(&self) -> Option<&str> {
+        match &self.data {
+            Data::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+    /// What kind of value it is, in words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match &self.data {
+            Data::Table(_) => "a table",
+            Data::Array(_) => "a list",
+            Data::Text(_) => "a text",
+            Data::Integer(..) => "a whole number",
+            Data::Number(..) => "a number",
+            Data::Boolean(_) => "a truth value",
+            Data::Date(_) => "a date",
+        }
+    }
+    /// The value as a short text for messages.
+    pub(crate) fn shown(&self) -> String {
+        match &self.data {
+            Data::Table(entries) if entries.is_empty() => "{}".into(),
+            Data::Table(_) => "{ … }".into(),
+            Data::Array(items) if items.len() <= 4 => {
+                format!("[{}]", items.iter().map(Node::shown).collect::<Vec<_>>().join(", "))
+            }
+            Data::Array(items) => format!("a list of {}", items.len()),
+            Data::Text(text) => format!("\"{}\"", visible(text)),
+            Data::Integer(_, text) | Data::Number(_, text) | Data::Date(text) => visible(text),
+            Data::Boolean(x) => x.to_string(),
+        }
+    }
+}
+
+/// Parses a scene. Errors of syntax stop it; keys that occur twice are reported and the first one counts.
+pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
+    let (table, problems) = DeTable::parse_recoverable(source.text);
+    let end = table.span().end;
+    let root = table_node(table.into_inner(), Place::Bytes(0, end.min(1)));
+    let mut errors: Vec<SceneError> = Vec::new();
+    let mut broken = false;
+    for problem in &problems {
+        let span = problem.span().unwrap_or(0..0);
+        if problem.message() == "duplicate key" {
+            errors.push(duplicate(source, &root, span.start, span.end));
+            continue;
+        }
+        // One error a line: the rest follows from the first.
+        let message = problem.message().replace(", expected nothing", "");
+        let error = source.mark(SceneError::new("scene.syntax", format!("the text is no TOML: {message}")), span.start, span.end);
+        if !errors.iter().any(|e| e.line == error.line && e.code == "scene.syntax") {
+            errors.push(error);
+        }
+        broken = true;
+    }
+    (if broken { None } else { Some(root) }, errors)
+}
+
+/// The error for a key that was written a second time, naming the first place.
+fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> SceneError {
+    let word = source.text.get(start..end).unwrap_or("").trim_matches(['"', '\'']);
+    let mut first = None;
+    last_before(root, word, start, &mut first);
+    let (line, _) = source.position(start);
+    let message = match first.map(|at| source.position(at).0) {
+        Some(other) if other != line => format!("`{}` is given twice, first in line {other}", visible(word)),
+        _ => format!("`{}` is given twice", visible(word)),
+    };
+    source.mark(SceneError::new("scene.duplicate_key", message).path(word), start, end).hint("keep one of the two")
+}
+
+/// The last place before a byte where a key of this name stands.
+fn last_before(node: &Node, word: &str, before: usize, best: &mut Option<usize>) {
+    match &node.data {
+        Data::Table(entries) => {
+            for entry in entries {
+                if let Place::Bytes(at, _) = entry.place
+                    && entry.key == word
+                    && at < before
+                    && best.is_none_or(|b| at > b)
+                {
+                    *best = Some(at);
+                }
+                last_before(&entry.value, word, before, best);
+            }
+        }
+        Data::Array(items) => items.iter().for_each(|item| last_before(item, word, before, best)),
+        _ => {}
+    }
+}
+
+fn table_node(table: DeTable<'_>, place: Place) -> Node {
+    let entries = table
+        .into_iter()
+        .map(|(key, value)| {
+            let span = key.span();
+            Entry { key: key.into_inner().into_owned(), place: Place::Bytes(span.start, span.end), value: node(value) }
+        })
+        .collect();
+    Node { place, data: Data::Table(entries) }
+}
+
+fn node(value: Spanned<DeValue<'_>>) -> Node {
+    let span = value.span();
+    let place = Place::Bytes(span.start, span.end);
+    let data = match value.into_inner() {
+        DeValue::Table(table) => return table_node(table, place),
+        DeValue::Array(items) => Data::Array(items.into_iter().map(node).collect()),
+        DeValue::String(text) => Data::Text(text.into_owned()),
+        DeValue::Integer(x) => {
+            let text = match x.radix() {
+                16 => format!("0x{}", x.as_str()),
+                8 => format!("0o{}", x.as_str()),
+                2 => format!("0b{}", x.as_str()),
+                _ => x.as_str().to_string(),
+            };
+            Data::Integer(i64::from_str_radix(x.as_str(), x.radix()).ok(), text)
+        }
+        DeValue::Float(x) => {
+            let number = match x.as_str() {
+                "inf" | "+inf" => f64::INFINITY,
+                "-inf" => f64::NEG_INFINITY,
+                text => text.parse().unwrap_or(f64::NAN),
+            };
+            Data::Number(number, x.as_str().to_string())
+        }
+        DeValue::Boolean(x) => Data::Boolean(x),
+        DeValue::Datetime(x) => Data::Date(x.to_string()),
+    };
+    Node { place, data }
+}
+
+/// The value of an override: a TOML value, or a bare word.
+pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, String> {
+    let trimmed = text.trim();
+    let (parsed, errors) = DeValue::parse_recoverable(trimmed);
+    let mut value = if errors.is_empty() {
+        node(parsed)
+    } else if !trimmed.is_empty() && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./".contains(c)) && trimmed.starts_with(char::is_alphabetic) {
+        Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
+    } else {
+        return Err(errors.first().map(|e| e.message().to_string()).unwrap_or_default());
+    };
+    set_place(&mut value, Place::Override(number));
+    Ok(value)
+}
+
+fn set_place(node: &mut Node, place: Place) {
+    node.place = place;
+    match &mut node.data {
+        Data::Table(entries) => entries.iter_mut().for_each(|e| {
+            e.place = place;
+            set_place(&mut e.value, place);
+        }),
+        Data::Array(items) => items.iter_mut().for_each(|item| set_place(item, place)),
+        _ => {}
+    }
+}

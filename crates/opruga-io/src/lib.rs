@@ -1,0 +1,18 @@
+//! What Opruga reads and writes: scene files with all their errors at once, their reference page and JSON Schema,
+//! tables, checkpoints, and files that are never half written.
+
+pub mod catalogue;
+pub mod checkpoint;
+mod document;
+mod overrides;
+pub mod problem;
+pub mod reference;
+pub mod safe_write;
+pub mod scene;
+pub mod schema;
+mod source;
+pub mod tables;
+pub mod template;
+
+pub use catalogue::Catalogue;
+pub use problem::{Notice, SceneError};

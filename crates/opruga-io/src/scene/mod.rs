@@ -1,0 +1,214 @@
+//! Scene files: text → checked [`Blueprint`], or every error at once.
+//!
+//! Bytes → encoding, size and depth are checked → TOML with places → overrides → sections, by the constants of
+//! [`opruga_world::schema`] and the caller's [`Catalogue`] → meshes, once the estimate of memory is within its limit →
+//! references and selectors.
+
+mod actions;
+mod bodies;
+mod parameters;
+mod plain;
+mod reader;
+mod selectors;
+
+use crate::catalogue::Catalogue;
+use crate::document::{self, Node, Place};
+use crate::overrides;
+use crate::problem::{Notice, SceneError};
+use crate::source::Source;
+use opruga_core::spec::Values;
+use opruga_world::blueprint::{AnyBlueprint, Blueprint, ColliderBlueprint, Surroundings, Time};
+use opruga_world::schema;
+use reader::Reader;
+use std::path::Path;
+
+/// What a scene may cost, checked before anything is allocated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// The largest scene file [bytes].
+    pub file_bytes: u64,
+    /// How deep tables and arrays may be nested.
+    pub depth: usize,
+    /// The largest number of values in a scene file.
+    pub values: u64,
+    /// The largest number of bodies.
+    pub bodies: u64,
+    /// The largest number of nodes of all bodies together.
+    pub nodes: u64,
+    /// The largest estimate of memory [bytes].
+    pub memory_bytes: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits { file_bytes: 64 << 20, depth: 128, values: 4 << 20, bodies: 4_000_000, nodes: 200_000_000, memory_bytes: 8 << 30 }
+    }
+}
+
+/// How a scene is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// What it may cost.
+    pub limits: Limits,
+    /// Unknown fields are noticed instead of refused.
+    pub lenient: bool,
+    /// Notices are errors.
+    pub strict: bool,
+    /// Overrides of parameters, each a path and a value, as `--set PATH=VALUE` gives them.
+    pub overrides: Vec<(String, String)>,
+}
+
+/// Reads a scene from bytes.
+///
+/// # Errors
+/// All errors that can be found at once, in the order of their places.
+pub fn read(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
+    let source = Source::new(file, bytes, &options.limits).map_err(|e| vec![e])?;
+    let (document, mut errors) = document::parse(&source);
+    let Some(mut document) = document else { return Err(errors) };
+    if let Err(mut problems) = overrides::apply_all(&mut document, &options.overrides) {
+        errors.append(&mut problems);
+    }
+    let mut reader = Reader::new(&source, catalogue, options, errors);
+    let result = match reader.format_and_dimension(&document) {
+        Some(2) => scene::<2>(&mut reader, &document).map(AnyBlueprint::Plane),
+        Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
+        None => None,
+    };
+    let (errors, notices) = reader.finish();
+    match result {
+        Some(blueprint) if errors.is_empty() => Ok((blueprint, notices)),
+        _ => Err(errors),
+    }
+}
+
+/// Reads a scene from a file. What is no regular file or larger than the limit is refused before it is read.
+///
+/// # Errors
+/// As [`read`], and `read.failed` where the file cannot be read.
+pub fn read_file(path: &Path, catalogue: &Catalogue, options: &Options) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
+    let file = path.display().to_string();
+    let bytes = bytes_of(path, &options.limits).map_err(|e| vec![SceneError { file: file.clone(), ..e }])?;
+    read(&bytes, &file, catalogue, options)
+}
+
+/// The bytes of a regular file no larger than the limit.
+///
+/// # Errors
+/// `read.failed`, `read.not_regular_file` or `scene.too_large`.
+pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
+    use std::io::Read as _;
+    let failed = |e: std::io::Error| {
+        let error = SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
+        if e.kind() == std::io::ErrorKind::NotFound { error.hint("`opruga list` shows the scenes that come with the program") } else { error }
+    };
+    let about = std::fs::metadata(path).map_err(failed)?;
+    if !about.is_file() {
+        return Err(SceneError::new("read.not_regular_file", "this is no regular file"));
+    }
+    let too_large = |size: u64| {
+        SceneError::new("scene.too_large", format!("the scene has {size} bytes"))
+            .value(size.to_string())
+            .allowed(format!("at most {} bytes", limits.file_bytes))
+    };
+    if about.len() > limits.file_bytes {
+        return Err(too_large(about.len()));
+    }
+    // One byte more than allowed, in case that the file grows while it is read.
+    let mut bytes = Vec::new();
+    std::fs::File::open(path).map_err(failed)?.take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    Ok(bytes)
+}
+
+/// The reason of an error of the system, without its number.
+pub(crate) fn reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
+}
+
+/// Everything below the head of a scene.
+fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Blueprint<D>> {
+    let top = reader.fields(root, "", &schema::SCENE, None);
+    let time = time(reader, root);
+    let surroundings = surroundings(reader, root);
+    let integrators = reader.catalogue.integrators.clone();
+    let integrator = root.get("integrator").and_then(|node| reader.kind_table(node, "integrator", "integrator", &integrators));
+    let colliders = reader.catalogue.colliders.clone();
+    let colliders: Vec<ColliderBlueprint> = reader
+        .list(root, "", "collider")
+        .into_iter()
+        .filter_map(|(node, path)| reader.kind_table(node, &path, "collider", &colliders))
+        .map(|values| ColliderBlueprint { values })
+        .collect();
+    let bodies = bodies::all::<D>(reader, root, top.integer("seed").unwrap_or(1) as u64);
+    let loads = actions::loads(reader, root, &bodies);
+    let commands = actions::commands(reader, root, &bodies, integrator.as_ref(), &colliders);
+    let probes = actions::probes(reader, root, &bodies);
+    Some(Blueprint {
+        name: scene_name(reader.source.file),
+        title: top.text("title").unwrap_or("").to_string(),
+        seed: top.integer("seed").unwrap_or(1) as u64,
+        time,
+        surroundings,
+        integrator: integrator?,
+        bodies: bodies.list,
+        colliders,
+        loads,
+        commands,
+        probes,
+    })
+}
+
+/// The name of the file without folder and ending.
+fn scene_name(file: &str) -> String {
+    Path::new(file).file_stem().map_or_else(|| "scene".to_string(), |s| s.to_string_lossy().into_owned())
+}
+
+fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
+    let Some(node) = root.get("time") else { return Time { seconds: 0.0, frame: 1.0, substeps: 1 } };
+    let before = reader.errors.len();
+    let values = reader.fields(node, "time", &schema::TIME, None);
+    let seconds = values.number("seconds").unwrap_or(0.0);
+    let frame = values.number("frame").unwrap_or(1.0);
+    let substeps = values.integer("substeps").unwrap_or(1);
+    let h = frame / substeps as f64;
+    if reader.errors.len() == before && seconds > 0.0 {
+        let at = node.get("frame").unwrap_or(node);
+        if seconds + h == seconds {
+            reader.report(
+                at.place,
+                SceneError::new("scene.range", format!("a step of {h:e} s is lost in {seconds} s: time would stand still"))
+                    .path("time.frame")
+                    .value(format!("{frame:e}"))
+                    .allowed("a step that changes the time"),
+            );
+        } else if seconds / frame > 1e12 {
+            reader.report(
+                at.place,
+                SceneError::new("scene.range", format!("{seconds} s are {:e} frames", seconds / frame))
+                    .path("time.frame")
+                    .value(format!("{frame:e}"))
+                    .allowed("at most 1e12 frames"),
+            );
+        }
+    }
+    Time { seconds, frame, substeps: u32::try_from(substeps).unwrap_or(1) }
+}
+
+fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroundings<D> {
+    let values = match root.get("world") {
+        Some(node) => reader.fields(node, "world", &schema::WORLD, None),
+        None => Values::defaults(schema::WORLD.spec, D),
+    };
+    Surroundings {
+        gravity: values.vector("gravity"),
+        drag: values.number("drag").unwrap_or(0.0),
+        largest_force: values.number("largest_force"),
+        largest_velocity: values.number("largest_velocity"),
+    }
+}
+
+/// The place of a value, or of the table that lacks it.
+pub(crate) fn place_of(node: &Node, key: &str) -> Place {
+    node.get(key).map_or(node.place, |n| n.place)
+}

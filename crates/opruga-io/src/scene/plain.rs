@@ -1,0 +1,192 @@
+//! Values of plain fields: types are never converted, numbers are finite, rows have the length that they need.
+
+use super::reader::{Reader, join};
+use crate::document::{Data, Node};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::{Allowed, Value, nearest};
+use opruga_world::schema::LARGEST_WHOLE;
+
+impl Reader<'_> {
+    /// The value of a field, or a report of what is wrong with it.
+    pub(crate) fn plain(&mut self, node: &Node, path: &str, name: &str, range: &Allowed) -> Option<Value> {
+        let value = match range {
+            Allowed::Number { .. } => Value::Number(self.number(node, path, range)?),
+            Allowed::Integer { .. } => Value::Integer(self.integer(node, path, range)?),
+            Allowed::Boolean => match node.data {
+                Data::Boolean(x) => Value::Boolean(x),
+                _ => return self.refuse_type(node, path, range),
+            },
+            Allowed::Text => match &node.data {
+                Data::Text(text) => Value::Text(text.clone()),
+                _ => return self.refuse_type(node, path, range),
+            },
+            Allowed::Choice(words) => match &node.data {
+                Data::Text(text) if words.contains(&text.as_str()) => Value::Text(text.clone()),
+                Data::Text(text) => {
+                    let error = SceneError::new("scene.unknown_word", format!("`{name}` is {}", node.shown()))
+                        .path(path)
+                        .value(node.shown())
+                        .allowed(range.describe(self.dimension))
+                        .nearest(nearest(text, words.iter().copied()));
+                    self.report(node.place, error);
+                    return None;
+                }
+                _ => return self.refuse_type(node, path, range),
+            },
+            Allowed::Vector => Value::Numbers(self.row(node, path, self.dimension, range)?),
+            Allowed::Numbers => match &node.data {
+                Data::Array(items) => Value::Numbers(self.row(node, path, items.len(), range)?),
+                _ => return self.refuse_type(node, path, range),
+            },
+            Allowed::Integers => Value::Integers(self.naturals(node, path, range)?),
+            Allowed::Points => Value::Rows(self.rows(node, path, self.dimension, false, range)?),
+            Allowed::Curve => Value::Rows(self.rows(node, path, 2, true, range)?),
+            Allowed::Path => Value::Rows(self.rows(node, path, self.dimension + 1, true, range)?),
+        };
+        match range.accept(value, self.dimension) {
+            Ok(value) => Some(value),
+            Err((_, allowed)) => {
+                let shown = node.shown();
+                let text = if name.is_empty() { shown.clone() } else { format!("`{name}` is {shown}") };
+                self.report(node.place, SceneError::new("scene.range", text).path(path).value(shown).allowed(allowed));
+                None
+            }
+        }
+    }
+
+    fn refuse_type<T>(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<T> {
+        let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
+        let mut error = SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
+        error.value = Some(node.shown());
+        error.allowed = Some(range.describe(self.dimension));
+        if let Data::Text(text) = &node.data
+            && !matches!(range, Allowed::Choice(_) | Allowed::Text)
+            && (text.trim().parse::<f64>().is_ok() || text == "true" || text == "false")
+        {
+            error.hint = Some("write it without quotes".into());
+        }
+        self.report(node.place, error);
+        None
+    }
+
+    /// A finite number; −0 becomes 0.
+    pub(crate) fn number(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<f64> {
+        match &node.data {
+            Data::Number(x, text) if !x.is_finite() => {
+                let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
+                let why = if text.contains("nan") || text.contains("inf") { "is not finite" } else { "is too large for a 64-bit number" };
+                let error = SceneError::new("scene.not_finite", format!("`{name}` {why}")).path(path).value(node.shown());
+                self.report(node.place, error.allowed(range.describe(self.dimension)));
+                None
+            }
+            Data::Number(x, _) => Some(*x + 0.0),
+            Data::Integer(..) => self.whole(node, path).map(|x| x as f64),
+            _ => self.refuse_type(node, path, range),
+        }
+    }
+
+    fn integer(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<i64> {
+        match &node.data {
+            Data::Integer(Some(x), _) if x.abs() <= LARGEST_WHOLE => Some(*x),
+            Data::Integer(..) => self.whole(node, path),
+            _ => self.refuse_type(node, path, range),
+        }
+    }
+
+    /// A whole number that a 64-bit float holds exactly.
+    fn whole(&mut self, node: &Node, path: &str) -> Option<i64> {
+        match &node.data {
+            Data::Integer(Some(x), _) if x.unsigned_abs() <= LARGEST_WHOLE as u64 => Some(*x),
+            _ => {
+                let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
+                let error = SceneError::new("scene.range", format!("`{name}` is {}", node.shown()))
+                    .path(path)
+                    .value(node.shown())
+                    .allowed("whole numbers between -9007199254740992 and 9007199254740992 (2^53)")
+                    .hint("write a larger number with a decimal point");
+                self.report(node.place, error);
+                None
+            }
+        }
+    }
+
+    /// A list of exactly so many finite numbers.
+    pub(crate) fn row(&mut self, node: &Node, path: &str, length: usize, range: &Allowed) -> Option<Vec<f64>> {
+        let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
+        if items.len() != length {
+            let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
+            let numbers = if items.len() == 1 { "number" } else { "numbers" };
+            let error = SceneError::new("scene.length", format!("`{}` has {} {numbers}", visible(name), items.len())).path(path).value(node.shown());
+            self.report(node.place, error.allowed(range.describe(self.dimension)));
+            return None;
+        }
+        let before = self.errors.len();
+        let numbers: Vec<f64> = items.iter().enumerate().filter_map(|(k, item)| self.number(item, &join(path, &k.to_string()), &Allowed::ANY)).collect();
+        (self.errors.len() == before).then_some(numbers)
+    }
+
+    /// Rows of equal length; in a curve or path the first number of each row is a time that rises.
+    pub(crate) fn rows(&mut self, node: &Node, path: &str, length: usize, rising: bool, range: &Allowed) -> Option<Vec<Vec<f64>>> {
+        let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
+        let before = self.errors.len();
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(items.len());
+        for (k, item) in items.iter().enumerate() {
+            let here = join(path, &k.to_string());
+            let Some(row) = self.row(item, &here, length, range) else { continue };
+            if rising
+                && let Some(last) = rows.last()
+                && row[0] <= last[0]
+            {
+                let error = SceneError::new("scene.range", format!("t does not rise: {} follows {}", row[0], last[0])).path(here).value(item.shown());
+                self.report(item.place, error.allowed(range.describe(self.dimension)));
+            }
+            rows.push(row);
+        }
+        (self.errors.len() == before).then_some(rows)
+    }
+
+    /// A list of whole numbers not below zero.
+    pub(crate) fn naturals(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<Vec<u32>> {
+        let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
+        let before = self.errors.len();
+        let numbers = items.iter().enumerate().filter_map(|(k, item)| self.natural(item, &join(path, &k.to_string()))).collect();
+        (self.errors.len() == before).then_some(numbers)
+    }
+
+    /// A whole number not below zero.
+    pub(crate) fn natural(&mut self, node: &Node, path: &str) -> Option<u32> {
+        let range = Allowed::Integer { least: 0, greatest: i64::from(u32::MAX) };
+        let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path).to_string();
+        match self.plain(node, path, &name, &range)? {
+            Value::Integer(x) => u32::try_from(x).ok(),
+            _ => None,
+        }
+    }
+
+    /// A rotation: one number in 2D, three in 3D.
+    pub(crate) fn turn(&mut self, node: Option<&Node>, path: &str) -> Vec<f64> {
+        let parts = if self.dimension == 2 { 1 } else { 3 };
+        let zero = vec![0.0; parts];
+        match node {
+            None => zero,
+            Some(node) if parts == 1 => self.number(node, path, &Allowed::ANY).map_or(zero, |x| vec![x]),
+            Some(node) => self.row(node, path, 3, &Allowed::Vector).unwrap_or(zero),
+        }
+    }
+
+    /// The value of a `set` command: any plain value, to be checked against the parameter that it is for.
+    pub(crate) fn any_value(&mut self, node: &Node, path: &str) -> Option<Value> {
+        match &node.data {
+            Data::Integer(..) => self.whole(node, path).map(Value::Integer),
+            Data::Number(..) => self.number(node, path, &Allowed::ANY).map(Value::Number),
+            Data::Boolean(x) => Some(Value::Boolean(*x)),
+            Data::Text(text) => Some(Value::Text(text.clone())),
+            Data::Array(items) if items.iter().any(|i| matches!(i.data, Data::Array(_))) => {
+                let length = items.iter().map(|i| if let Data::Array(row) = &i.data { row.len() } else { 0 }).next().unwrap_or(0);
+                self.rows(node, path, length, false, &Allowed::Points).map(Value::Rows)
+            }
+            Data::Array(items) => self.row(node, path, items.len(), &Allowed::Numbers).map(Value::Numbers),
+            _ => self.refuse_type(node, path, &Allowed::ANY),
+        }
+    }
+}

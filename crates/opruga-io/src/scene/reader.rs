@@ -1,0 +1,248 @@
+//! The reader's common ground: reports, tables by specification, words and their nearest neighbours.
+
+use super::Options;
+use crate::catalogue::{Catalogue, find};
+use crate::document::{Data, Node, Place};
+use crate::problem::{Notice, SceneError, visible};
+use crate::source::Source;
+use opruga_core::spec::{Default, Spec, Values, nearest};
+use opruga_world::schema::{self, Child, Section};
+
+/// More errors than this are counted, not listed.
+const MOST_ERRORS: usize = 200;
+
+/// What every part of the reader needs.
+pub(crate) struct Reader<'a> {
+    pub(crate) source: &'a Source<'a>,
+    pub(crate) catalogue: &'a Catalogue,
+    pub(crate) options: &'a Options,
+    pub(crate) dimension: usize,
+    pub(crate) errors: Vec<SceneError>,
+    notices: Vec<Notice>,
+}
+
+/// `a.b`, or `b` at the top.
+pub(crate) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(source: &'a Source<'a>, catalogue: &'a Catalogue, options: &'a Options, errors: Vec<SceneError>) -> Reader<'a> {
+        Reader { source, catalogue, options, dimension: 2, errors, notices: Vec::new() }
+    }
+
+    /// Adds an error with its place.
+    pub(crate) fn report(&mut self, place: Place, error: SceneError) {
+        let error = self.placed(place, error);
+        self.errors.push(error);
+    }
+
+    /// Adds a notice with its place; with `strict` an error.
+    pub(crate) fn notice(&mut self, place: Place, about: SceneError) {
+        let about = self.placed(place, about);
+        if self.options.strict {
+            self.errors.push(about);
+        } else {
+            self.notices.push(Notice { about, count: 1 });
+        }
+    }
+
+    fn placed(&self, place: Place, error: SceneError) -> SceneError {
+        match place {
+            Place::Bytes(start, end) => self.source.mark(error, start, end),
+            Place::Override(k) => {
+                let (path, value) = self.options.overrides.get(k).cloned().unwrap_or_default();
+                SceneError { file: format!("--set {path}={value}"), ..error }
+            }
+        }
+    }
+
+    /// Errors in the order of their places, and notices.
+    pub(crate) fn finish(mut self) -> (Vec<SceneError>, Vec<Notice>) {
+        self.errors.sort_by_key(|e| (e.line.unwrap_or(0), e.column.unwrap_or(0)));
+        if self.errors.len() > MOST_ERRORS {
+            let rest = self.errors.split_off(MOST_ERRORS).len();
+            self.errors.push(SceneError { file: self.source.file.to_string(), ..SceneError::new("scene.more", format!("{rest} more errors")) });
+        }
+        (self.errors, self.notices)
+    }
+
+    /// The head of a scene: without it nothing else can be understood.
+    pub(crate) fn format_and_dimension(&mut self, root: &Node) -> Option<usize> {
+        let readable = format!("\"{}\"", schema::FORMAT);
+        match root.get("format") {
+            Some(node) if node.text() == Some(schema::FORMAT) => {}
+            Some(node) => {
+                let error = SceneError::new("scene.format", format!("the format is {}", node.shown()))
+                    .path("format")
+                    .value(node.shown())
+                    .allowed(readable)
+                    .hint("this version reads opruga-1 only; another version of the program may read this scene");
+                self.report(node.place, error);
+                return None;
+            }
+            None => {
+                let near = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
+                let mut error = SceneError::new("scene.format", "the format is missing").path("format").allowed(readable);
+                error.hint = Some(match near {
+                    Some(word) => format!("`{}` is misspelt", visible(&word)),
+                    None => format!("begin the file with format = \"{}\"", schema::FORMAT),
+                });
+                self.report(Place::Bytes(0, 0), error);
+                return None;
+            }
+        }
+        match root.get("dimension").map(|n| (&n.data, n)) {
+            Some((Data::Integer(Some(d @ (2 | 3)), _), _)) => {
+                self.dimension = *d as usize;
+                Some(self.dimension)
+            }
+            Some((_, node)) => {
+                let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown())).path("dimension").value(node.shown());
+                self.report(node.place, error.allowed("2 or 3"));
+                None
+            }
+            None => {
+                let error = SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
+                self.report(Place::Bytes(0, 0), error);
+                None
+            }
+        }
+    }
+
+    /// The plain fields of a table, checked; errors and missing fields are reported and leave the default. Structured
+    /// fields are left to the caller, who reads them by their names.
+    pub(crate) fn fields(&mut self, node: &Node, path: &str, section: &Section, tag: Option<&'static str>) -> Values {
+        let mut values = Values::defaults(section.spec, self.dimension);
+        if !matches!(node.data, Data::Table(_)) {
+            self.wrong_type(node, path, "a table");
+            return values;
+        }
+        let names = || {
+            let fields = section.spec.fields.iter().map(|f| f.name);
+            fields.chain(section.children.iter().map(|c| c.name)).chain(tag)
+        };
+        for entry in node.entries() {
+            let here = join(path, &entry.key);
+            if let Some(field) = section.spec.fields.iter().find(|f| f.name == entry.key) {
+                if let Some(value) = self.plain(&entry.value, &here, field.name, &field.range)
+                    && let Err(e) = values.set(section.spec, field.name, value, self.dimension)
+                {
+                    self.report(entry.value.place, SceneError::new("scene.range", e.to_string()).path(here));
+                }
+            } else if !names().any(|n| n == entry.key) {
+                let known = if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
+                let mut error = SceneError::new("scene.unknown_field", format!("there is no field `{}`{known}", visible(&entry.key)))
+                    .path(visible(&here))
+                    .value(visible(&entry.key))
+                    .nearest(nearest(&entry.key, names()));
+                error.allowed = Some(listed(names()));
+                if self.options.lenient { self.notice(entry.place, error) } else { self.report(entry.place, error) }
+            }
+        }
+        self.missing(node, path, section);
+        values
+    }
+
+    /// Reports all missing fields of a table at once.
+    fn missing(&mut self, node: &Node, path: &str, section: &Section) {
+        let plain = section.spec.fields.iter().filter(|f| f.default == Default::Required).map(|f| f.name);
+        let structured = section.children.iter().filter(|c: &&Child| c.required).map(|c| c.name);
+        let missing: Vec<&str> = plain.chain(structured).filter(|name| node.get(name).is_none()).collect();
+        if missing.is_empty() {
+            return;
+        }
+        let words = missing.iter().map(|m| format!("`{m}`")).collect::<Vec<_>>().join(", ");
+        let verb = if missing.len() == 1 { "is" } else { "are" };
+        let whole = if path.is_empty() { "the scene".to_string() } else { format!("`{}`", section.spec.kind) };
+        let mut error = SceneError::new("scene.missing", format!("{words} {verb} missing in {whole}")).path(join(path, missing[0]));
+        if let Some(field) = section.spec.fields.iter().find(|f| f.name == missing[0] && missing.len() == 1) {
+            error.allowed = Some(field.range.describe(self.dimension));
+            error.hint = Some(field.documentation.to_string());
+        }
+        self.report(node.place, error);
+    }
+
+    /// A table whose `kind` names one of several specifications.
+    pub(crate) fn kind_table(&mut self, node: &Node, path: &str, what: &str, list: &[&'static Spec]) -> Option<Values> {
+        let word = self.tag(node, path, "kind", what, &list.iter().map(|s| s.kind).collect::<Vec<_>>())?;
+        let spec = find(list, &word)?;
+        if !spec.dimensions.contains(&self.dimension) {
+            let place = super::place_of(node, "kind");
+            let error = SceneError::new("scene.dimension", format!("`{}` does not exist in {}D", spec.kind, self.dimension))
+                .path(join(path, "kind"))
+                .value(spec.kind)
+                .allowed(format!("dimension {}", spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ")));
+            self.report(place, error);
+            return None;
+        }
+        Some(self.fields(node, path, &Section { spec, children: &[] }, Some("kind")))
+    }
+
+    /// The word that says what a table is.
+    pub(crate) fn tag(&mut self, node: &Node, path: &str, tag: &str, what: &str, words: &[&str]) -> Option<String> {
+        if !matches!(node.data, Data::Table(_)) {
+            self.wrong_type(node, path, "a table");
+            return None;
+        }
+        let here = join(path, tag);
+        let Some(value) = node.get(tag) else {
+            let error = SceneError::new("scene.missing", format!("`{tag}` is missing in `{what}`")).path(here).allowed(listed(words.iter().copied()));
+            self.report(node.place, error);
+            return None;
+        };
+        let Some(word) = value.text() else {
+            self.wrong_type(value, &here, "a text");
+            return None;
+        };
+        if words.contains(&word) {
+            return Some(word.to_string());
+        }
+        let error = SceneError::new("scene.unknown_kind", format!("there is no {what} `{}`", visible(word)))
+            .path(here)
+            .value(visible(word))
+            .allowed(listed(words.iter().copied()))
+            .nearest(nearest(word, words.iter().copied()));
+        self.report(value.place, error);
+        None
+    }
+
+    /// The tables of a list, with their paths. A single table is no list.
+    pub(crate) fn list<'n>(&mut self, node: &'n Node, path: &str, name: &str) -> Vec<(&'n Node, String)> {
+        let Some(value) = node.get(name) else { return Vec::new() };
+        let here = join(path, name);
+        match &value.data {
+            Data::Array(items) => items.iter().enumerate().map(|(k, item)| (item, format!("{here}.{k}"))).collect(),
+            _ => {
+                self.wrong_type(value, &here, "a list of tables");
+                if matches!(value.data, Data::Table(_))
+                    && let Some(error) = self.errors.last_mut()
+                {
+                    let hint = if path.is_empty() { format!("write [[{name}]]") } else { format!("write {name} = [ {{ … }} ]") };
+                    error.hint = Some(hint);
+                }
+                Vec::new()
+            }
+        }
+    }
+
+    /// Reports a value of another type than wanted.
+    pub(crate) fn wrong_type(&mut self, node: &Node, path: &str, wanted: &str) {
+        let name = if path.is_empty() { "the scene" } else { path };
+        let mut error = SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
+        error.value = Some(node.shown());
+        error.allowed = Some(wanted.to_string());
+        if let Data::Text(text) = &node.data
+            && wanted.contains("number")
+            && text.trim().parse::<f64>().is_ok()
+        {
+            error.hint = Some("write it without quotes".into());
+        }
+        self.report(node.place, error);
+    }
+}
+
+/// Words as a list in a sentence; a long list is cut.
+pub(crate) fn listed<'w>(words: impl Iterator<Item = &'w str>) -> String {
+    words.collect::<Vec<_>>().join(", ")
+}

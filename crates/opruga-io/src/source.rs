@@ -1,0 +1,219 @@
+//! The bytes of a scene before they are parsed: encoding, size, depth, and where a byte lies in the text.
+
+use crate::problem::{Excerpt, SceneError, unprintable};
+use crate::scene::Limits;
+
+/// A text with its name, able to say in which line a byte lies.
+#[derive(Debug)]
+pub(crate) struct Source<'a> {
+    pub(crate) file: &'a str,
+    pub(crate) text: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// Checks size and encoding. A byte-order mark of UTF-8 is skipped.
+    pub(crate) fn new(file: &'a str, bytes: &'a [u8], limits: &Limits) -> Result<Source<'a>, SceneError> {
+        let error = |code, message: String| SceneError { file: file.to_string(), ..SceneError::new(code, message) };
+        if bytes.len() as u64 > limits.file_bytes {
+            return Err(error("scene.too_large", format!("the scene has {} bytes", bytes.len()))
+                .value(bytes.len().to_string())
+                .allowed(format!("at most {} bytes", limits.file_bytes)));
+        }
+        let zeros = |k: usize| bytes.iter().skip(k).step_by(2).take(32).filter(|b| **b == 0).count();
+        let wide = bytes.starts_with(&[0xff, 0xfe])
+            || bytes.starts_with(&[0xfe, 0xff])
+            || (bytes.len() >= 4 && (zeros(0) > 0 || zeros(1) > 0) && (zeros(0) * 4 >= bytes.len().div_ceil(2).min(32) || zeros(1) * 4 >= bytes.len().div_ceil(2).min(32)));
+        if wide {
+            return Err(Source { file, text: "" }
+                .mark(error("scene.encoding", "the scene is written in UTF-16 or UTF-32".into()), 0, 0)
+                .allowed("UTF-8")
+                .hint("save it as UTF-8"));
+        }
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let text = match core::str::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(e) => {
+                let good = core::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or("");
+                let source = Source { file, text: good };
+                let byte = bytes.get(good.len()).copied().unwrap_or(0);
+                return Err(source
+                    .mark(error("scene.encoding", format!("byte 0x{byte:02x} is no UTF-8")), good.len(), good.len())
+                    .allowed("UTF-8")
+                    .hint("save it as UTF-8"));
+            }
+        };
+        let source = Source { file, text };
+        if text.trim().is_empty() {
+            return Err(source
+                .mark(error("scene.empty", "the scene is empty".into()), 0, 0)
+                .hint("`opruga new NAME` writes a scene to begin with"));
+        }
+        source.check_nesting(limits)?;
+        Ok(source)
+    }
+
+    /// Line and column of a byte, both from 1; columns count characters.
+    pub(crate) fn position(&self, offset: usize) -> (usize, usize) {
+        let offset = self.boundary(offset);
+        let before = &self.text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |k| k + 1);
+        (before.bytes().filter(|b| *b == b'\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+
+    /// Adds place and excerpt to an error.
+    pub(crate) fn mark(&self, mut error: SceneError, start: usize, end: usize) -> SceneError {
+        let start = self.boundary(start);
+        let end = self.boundary(end.max(start));
+        let (line, column) = self.position(start);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |k| k + 1);
+        let line_end = self.text[start..].find('\n').map_or(self.text.len(), |k| start + k);
+        // A long line is shown from 40 characters before the marked part.
+        let shown_from = self.text[line_start..start].char_indices().rev().nth(39).map_or(line_start, |(k, _)| line_start + k);
+        let mut excerpt = Excerpt { line: String::new(), start: 0, length: 0 };
+        let mut count = 0;
+        for (k, c) in self.text[shown_from..line_end].trim_end_matches('\r').char_indices() {
+            let here = shown_from + k;
+            let width = if unprintable(c) { c.escape_unicode().count() } else { 1 };
+            if here < start {
+                excerpt.start += width;
+            } else if here < end {
+                excerpt.length += width;
+            }
+            if unprintable(c) { excerpt.line.extend(c.escape_unicode()) } else { excerpt.line.push(c) }
+            count += 1;
+            if count == 100 {
+                break;
+            }
+        }
+        excerpt.length = excerpt.length.max(1);
+        error.file = self.file.to_string();
+        error.line = Some(line);
+        error.column = Some(column);
+        error.excerpt = Some(excerpt);
+        error
+    }
+
+    fn boundary(&self, offset: usize) -> usize {
+        let mut offset = offset.min(self.text.len());
+        while !self.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        offset
+    }
+
+    /// One pass that knows strings and comments and counts how deep tables and arrays are nested (by brackets and by
+    /// dots in keys) and how many values there are, before a parser allocates or recurses.
+    fn check_nesting(&self, limits: &Limits) -> Result<(), SceneError> {
+        let too_deep = |at: usize| {
+            self.mark(SceneError::new("scene.depth", format!("tables and arrays are nested more than {} deep", limits.depth)), at, at + 1)
+                .allowed(format!("at most {} levels", limits.depth))
+        };
+        let bytes = self.text.as_bytes();
+        // An open bracket: whether it is an inline table, and how deep the key before it was.
+        let mut open: Vec<(bool, usize)> = Vec::new();
+        let (mut depth, mut key, mut in_key, mut header, mut items) = (0usize, 0usize, true, 0usize, 0u64);
+        let mut at = 0;
+        let mut line_begins = true;
+        while at < bytes.len() {
+            let byte = bytes[at];
+            match byte {
+                b'#' => at += bytes[at..].iter().position(|b| *b == b'\n').unwrap_or(bytes.len() - at) - 1,
+                b'"' | b'\'' => {
+                    at = end_of_string(bytes, at) - 1;
+                    line_begins = false;
+                }
+                b'\n' if open.is_empty() => {
+                    (in_key, key, line_begins) = (true, 0, true);
+                    at += 1;
+                    continue;
+                }
+                b' ' | b'\t' | b'\r' | b'\n' => {}
+                b'[' if line_begins && open.is_empty() => {
+                    // A header: its depth holds for all lines below it.
+                    at += usize::from(bytes.get(at + 1) == Some(&b'['));
+                    let end = end_of_header(bytes, at + 1);
+                    header = 1 + bytes[at..end].iter().filter(|b| **b == b'.').count();
+                    items += 1;
+                    if header > limits.depth || bytes[at + 1..end].iter().filter(|b| **b == b'[').count() > limits.depth {
+                        return Err(too_deep(at));
+                    }
+                    at = end.max(at + 1) - 1;
+                    line_begins = false;
+                }
+                b'[' | b'{' => {
+                    open.push((byte == b'{', key));
+                    depth += key + 1;
+                    (key, in_key) = (0, byte == b'{');
+                    items += 1;
+                    line_begins = false;
+                }
+                b']' | b'}' => {
+                    if open.last().is_some_and(|(table, _)| *table == (byte == b'}')) {
+                        let (_, before) = open.pop().unwrap_or_default();
+                        depth = depth.saturating_sub(before + 1);
+                        (key, in_key) = (before, false);
+                    }
+                }
+                b'=' => {
+                    in_key = false;
+                    items += 1;
+                    line_begins = false;
+                }
+                b',' => {
+                    items += 1;
+                    if open.last().is_some_and(|(table, _)| *table) {
+                        (key, in_key) = (0, true);
+                    }
+                }
+                b'.' if in_key => key += 1,
+                _ => line_begins = false,
+            }
+            if header + depth + key > limits.depth {
+                return Err(too_deep(at));
+            }
+            if items > limits.values {
+                return Err(self
+                    .mark(SceneError::new("scene.too_large", format!("the scene has more than {} values", limits.values)), at, at + 1)
+                    .allowed(format!("at most {} values", limits.values))
+                    .hint("large shapes belong in mesh files"));
+            }
+            at += 1;
+        }
+        Ok(())
+    }
+}
+
+/// One past the end of a string that begins at `at`; an unclosed one ends with its line or the text.
+fn end_of_string(bytes: &[u8], at: usize) -> usize {
+    let quote = bytes[at];
+    let long = bytes[at..].starts_with(&[quote; 3]);
+    let mut k = at + if long { 3 } else { 1 };
+    while k < bytes.len() {
+        if bytes[k] == b'\\' && quote == b'"' {
+            k += 2;
+        } else if long && bytes[k..].starts_with(&[quote; 3]) {
+            k += 3;
+            // Two more quotes may belong to the text.
+            while k < bytes.len() && bytes[k] == quote {
+                k += 1;
+            }
+            return k;
+        } else if !long && bytes[k] == quote {
+            return k + 1;
+        } else if !long && bytes[k] == b'\n' {
+            return k;
+        } else {
+            k += 1;
+        }
+    }
+    bytes.len()
+}
+
+/// The end of the line of a header, or of its bracket.
+fn end_of_header(bytes: &[u8], from: usize) -> usize {
+    let mut k = from;
+    while k < bytes.len() && bytes[k] != b'\n' && bytes[k] != b']' && bytes[k] != b'#' {
+        k = if bytes[k] == b'"' || bytes[k] == b'\'' { end_of_string(bytes, k) } else { k + 1 };
+    }
+    k.min(bytes.len())
+}

@@ -1,0 +1,15 @@
+//! Logarithm and exponential with the same bits on every machine.
+//!
+//! They go through `libm`, a translation of musl's C code to Rust without any platform call.
+
+/// Natural logarithm of `x`.
+#[inline]
+pub fn natural_logarithm(x: f64) -> f64 {
+    libm::log(x)
+}
+
+/// Exponential function of `x`.
+#[inline]
+pub fn exponential(x: f64) -> f64 {
+    libm::exp(x)
+}

@@ -1,0 +1,174 @@
+//! One number, or eight of them: the type over which every formula of physics is written.
+
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// How many numbers the wide lane holds, on every machine.
+///
+/// The width is *virtual*: a processor with narrower registers takes several instructions per
+/// operation. Sums are therefore split the same way everywhere, which is what makes their bits equal.
+pub const WIDTH: usize = 8;
+
+/// `f64`, or eight of them: one formula serves the scalar reference and the vector path.
+///
+/// Branches are written as [`Lane::select`], so that both sides are always evaluated and the
+/// operations (and with them the bits) do not depend on the width.
+pub trait Lane:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// The outcome of a comparison, one truth value per number.
+    type Mask: Copy;
+
+    /// The same number in every place.
+    fn splat(value: f64) -> Self;
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// Where `self < other`.
+    fn less(self, other: Self) -> Self::Mask;
+    /// Where `self <= other`.
+    fn less_or_equal(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask holds, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Where both masks hold.
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Whether the mask holds anywhere.
+    fn any(mask: Self::Mask) -> bool;
+    /// Natural logarithm (own series, the same bits everywhere); the argument must be positive and normal.
+    fn ln(self) -> Self;
+    /// Exponential function (own series, the same bits everywhere).
+    fn exp(self) -> Self;
+
+    /// The lesser of the two; `other` where `self` is not a number.
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self::select(self.less(other), self, other)
+    }
+    /// The greater of the two; `other` where `self` is not a number.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self::select(other.less(self), self, other)
+    }
+    /// Zero in every place.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::splat(0.0)
+    }
+    /// One in every place.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::splat(1.0)
+    }
+}
+
+impl Lane for f64 {
+    type Mask = bool;
+    #[inline(always)]
+    fn splat(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn less(self, other: f64) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn less_or_equal(self, other: f64) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: f64, no: f64) -> f64 {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn both(a: bool, b: bool) -> bool {
+        a & b
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn ln(self) -> f64 {
+        crate::elementary::natural_logarithm(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        crate::elementary::exponential(self)
+    }
+}
+
+/// Eight numbers computed side by side: a [`Lane`] that can be read from and written to columns of memory.
+///
+/// The types behind it belong to one set of vector instructions each and are made by [`crate::Simd::run`] alone.
+pub trait Pack: Lane {
+    /// Reads eight numbers from the start of a slice.
+    fn load(from: &[f64]) -> Self;
+    /// Writes the eight numbers to the start of a slice.
+    fn store(self, to: &mut [f64]);
+    /// Reads eight numbers.
+    ///
+    /// # Safety
+    /// Eight numbers must lie there.
+    #[allow(unsafe_code)]
+    unsafe fn read(from: *const f64) -> Self;
+    /// Writes eight numbers.
+    ///
+    /// # Safety
+    /// There must be room for eight numbers.
+    #[allow(unsafe_code)]
+    unsafe fn write(self, to: *mut f64);
+    /// Reads eight numbers from eight places of a slice.
+    fn gather(from: &[f64], places: &[u32]) -> Self;
+    /// The eight numbers in order.
+    fn to_array(self) -> [f64; WIDTH];
+    /// Eight numbers in order.
+    fn from_array(numbers: [f64; WIDTH]) -> Self;
+    /// The numbers moved up by one place, the last number of `previous` first.
+    fn after(self, previous: Self) -> Self;
+    /// Where the place is less than `count`.
+    fn first(count: usize) -> Self::Mask;
+    /// The sum of the eight numbers in one fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        sum_in_fixed_order(&self.to_array())
+    }
+}
+
+/// The sum of eight numbers in one fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).
+#[inline(always)]
+pub fn sum_in_fixed_order(a: &[f64; WIDTH]) -> f64 {
+    ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
+}
+
+/// An array of lanes, each from its number: `lanes!(P, d => expression)`.
+///
+/// A macro and not a function with a closure: closures are not inlined into code for vector instructions reliably,
+/// and what is not inlined costs ten times the time.
+#[macro_export]
+macro_rules! lanes {
+    ($type:ty, $number:ident => $value:expr) => {{
+        let mut out = [<$type as $crate::Lane>::zero(); D];
+        for $number in 0..D {
+            out[$number] = $value;
+        }
+        out
+    }};
+}

@@ -1,0 +1,15 @@
+//! Numbers of Opruga: one formula over `f64` or eight of them, the same bits with every set of vector instructions.
+
+pub mod elementary;
+pub mod lane;
+mod operators;
+#[cfg(any(not(target_arch = "x86_64"), test))]
+mod portable;
+pub mod simd;
+pub mod strip;
+#[cfg(target_arch = "x86_64")]
+mod x86_64;
+
+pub use lane::{Lane, Pack, WIDTH, sum_in_fixed_order};
+pub use simd::{Simd, Work};
+pub use strip::{RepeatStrip, Strip, StripMut};

@@ -1,0 +1,148 @@
+//! Which vector instructions run the wide lane, chosen once at run time.
+//!
+//! The same body of code is compiled three times, inside functions that are allowed to use SSE2,
+//! AVX2 or AVX-512. Rust never contracts `a * b + c` into a fused operation, so the three give the same bits.
+
+use crate::lane::Pack;
+
+/// A set of vector instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Simd {
+    /// What every machine of the target has (SSE2 on x86-64, 128-bit vectors or none elsewhere).
+    Baseline,
+    /// 256-bit vectors.
+    Avx2,
+    /// 512-bit vectors.
+    Avx512,
+}
+
+impl Simd {
+    /// The name that `OPRUGA_SIMD` and the summaries use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Simd::Baseline => "scalar",
+            Simd::Avx2 => "avx2",
+            Simd::Avx512 => "avx512",
+        }
+    }
+    /// The best set that this processor has.
+    #[inline]
+    pub fn best() -> Simd {
+        // The standard library remembers what the processor answered.
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+            {
+                return Simd::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Simd::Avx2;
+            }
+        }
+        Simd::Baseline
+    }
+    /// The set of a name (`scalar`, `avx2`, `avx512`), or the best one below it that this processor has.
+    pub fn named(name: &str) -> Option<Simd> {
+        let wanted = match name {
+            "scalar" => Simd::Baseline,
+            "avx2" => Simd::Avx2,
+            "avx512" => Simd::Avx512,
+            _ => return None,
+        };
+        Some(if wanted < Simd::best() { wanted } else { Simd::best() })
+    }
+    /// Every set that this processor has.
+    pub fn available() -> Vec<Simd> {
+        [Simd::Baseline, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()).collect()
+    }
+    /// Runs a piece of work compiled for this set of instructions.
+    ///
+    /// A set that the processor lacks is replaced by what every machine has.
+    #[inline(always)]
+    pub fn run<W: Work>(self, work: W) -> W::Output {
+        #[cfg(target_arch = "x86_64")]
+        {
+            match self {
+                // SAFETY: the processor was asked for the features that the shells enable.
+                #[allow(unsafe_code)]
+                Simd::Avx512 if Simd::best() >= Simd::Avx512 => return unsafe { run_avx512(work) },
+                #[allow(unsafe_code)]
+                Simd::Avx2 if Simd::best() >= Simd::Avx2 => return unsafe { run_avx2(work) },
+                _ => {}
+            }
+            work.run::<crate::x86_64::Sse2>()
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        work.run::<crate::portable::Portable>()
+    }
+}
+
+/// A piece of work that is compiled once per set of instructions; its `run` must be `#[inline(always)]`.
+pub trait Work {
+    /// What the work gives back.
+    type Output;
+    /// Does the work with eight numbers at a time.
+    fn run<P: Pack>(self) -> Self::Output;
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
+fn run_avx512<W: Work>(work: W) -> W::Output {
+    work.run::<crate::x86_64::Avx512>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx,avx2")]
+fn run_avx2<W: Work>(work: W) -> W::Output {
+    work.run::<crate::x86_64::Avx2>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lane::WIDTH;
+    use crate::portable::Portable;
+
+    /// Every operation on awkward numbers, written one after the other.
+    struct Everything;
+    impl Work for Everything {
+        type Output = Vec<u64>;
+        #[inline(always)]
+        fn run<P: Pack>(self) -> Vec<u64> {
+            let numbers = [1.5, -0.0, 3.75e-300, -2.0e200, 7.0, 0.1, -1.0 / 3.0, 42.0];
+            let a = P::from_array(numbers);
+            let b = P::from_array([0.3, 2.0, -5.0e-8, 1.0, 0.0, -0.1, 9.0, 1.0e-3]);
+            let positive = a.abs() + P::splat(1.0e-3);
+            let less = a.less(b);
+            let most = [
+                a + b, a - b, a * b, a / positive, -a, a.abs(), positive.sqrt(), a.smaller(b), a.larger(b),
+                P::select(less, a, b), P::select(P::both(less, a.less_or_equal(P::zero())), a, b), a.after(b),
+                P::select(P::first(3), a, b), P::gather(&numbers, &[7, 0, 6, 1, 5, 2, 4, 3]), positive.ln(), b.exp(),
+                P::splat(a.sum()),
+            ];
+            let mut out = vec![u64::from(P::any(less)), u64::from(P::any(a.less(a)))];
+            for value in most {
+                out.extend(value.to_array().map(f64::to_bits));
+            }
+            out
+        }
+    }
+
+    #[test]
+    fn all_sets_of_instructions_give_the_bits_of_plain_rust() {
+        let plain = Everything.run::<Portable>();
+        assert_eq!(plain.len(), 2 + 17 * WIDTH);
+        for simd in Simd::available() {
+            assert_eq!(simd.run(Everything), plain, "{simd:?}");
+        }
+    }
+
+    #[test]
+    fn names_are_understood_and_capped_by_the_processor() {
+        assert_eq!(Simd::named("scalar"), Some(Simd::Baseline));
+        assert_eq!(Simd::named("avx512"), Some(Simd::best()));
+        assert_eq!(Simd::named("neon"), None);
+    }
+}

@@ -1,0 +1,101 @@
+//! Pieces of columns that a loop walks eight numbers at a time.
+//!
+//! A strip checks once that all of its columns are long enough; after that a single comparison guards a step of the
+//! loop, however many columns it touches.
+//!
+//! # Safety
+//! The pointers come from slices that were long enough when the strip was made and that it borrows. Every access
+//! asserts that it stays below the common length.
+#![allow(unsafe_code)]
+
+use crate::lane::{Pack, WIDTH};
+use core::marker::PhantomData;
+
+/// The same piece of `N` columns, to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Strip<'a, const N: usize> {
+    start: [*const f64; N],
+    length: usize,
+    borrow: PhantomData<&'a f64>,
+}
+
+/// The same piece of `N` columns, to be read and written.
+#[derive(Debug)]
+pub struct StripMut<'a, const N: usize> {
+    start: [*mut f64; N],
+    length: usize,
+    borrow: PhantomData<&'a mut f64>,
+}
+
+impl<'a, const N: usize> Strip<'a, N> {
+    /// The numbers from `start` on, `length` of each column.
+    #[inline(always)]
+    pub fn new(columns: &[&'a [f64]; N], start: usize, length: usize) -> Self {
+        let mut pointers = [core::ptr::null(); N];
+        for n in 0..N {
+            pointers[n] = columns[n][start..start + length].as_ptr();
+        }
+        Strip { start: pointers, length, borrow: PhantomData }
+    }
+    /// Eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load<P: Pack>(&self, column: usize, k: usize) -> P {
+        assert!(k + WIDTH <= self.length);
+        // SAFETY: see the head of the file.
+        unsafe { P::read(self.start[column].add(k)) }
+    }
+}
+
+impl<'a, const N: usize> StripMut<'a, N> {
+    /// The numbers from `start` on, `length` of each column.
+    #[inline(always)]
+    pub fn new(columns: [&'a mut [f64]; N], start: usize, length: usize) -> Self {
+        let mut pointers = [core::ptr::null_mut(); N];
+        let mut n = 0;
+        for column in columns {
+            pointers[n] = column[start..start + length].as_mut_ptr();
+            n += 1;
+        }
+        StripMut { start: pointers, length, borrow: PhantomData }
+    }
+    /// Eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load<P: Pack>(&self, column: usize, k: usize) -> P {
+        assert!(k + WIDTH <= self.length);
+        // SAFETY: see the head of the file.
+        unsafe { P::read(self.start[column].add(k)) }
+    }
+    /// Writes eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn store<P: Pack>(&mut self, column: usize, k: usize, value: P) {
+        assert!(k + WIDTH <= self.length);
+        // SAFETY: see the head of the file.
+        unsafe { value.write(self.start[column].add(k)) }
+    }
+}
+
+/// A piece of a column, or eight numbers that repeat all along it.
+#[derive(Clone, Copy, Debug)]
+pub struct RepeatStrip<'a> {
+    start: *const f64,
+    step: usize,
+    length: usize,
+    borrow: PhantomData<&'a f64>,
+}
+
+impl<'a> RepeatStrip<'a> {
+    /// The numbers from `start` on; if `step` is zero, the first eight of the column all along.
+    #[inline(always)]
+    pub fn new(column: &'a [f64], step: usize, start: usize, length: usize) -> Self {
+        assert!(step <= 1 && column.len() >= WIDTH);
+        let piece = if step == 0 { &column[..WIDTH] } else { &column[start..start + length] };
+        RepeatStrip { start: piece.as_ptr(), step, length, borrow: PhantomData }
+    }
+    /// Eight numbers from place `k` on.
+    #[inline(always)]
+    pub fn load<P: Pack>(&self, k: usize) -> P {
+        assert!(k + WIDTH <= self.length);
+        // SAFETY: see the head of the file; with step zero the first eight numbers are read.
+        unsafe { P::read(self.start.add(k * self.step)) }
+    }
+}

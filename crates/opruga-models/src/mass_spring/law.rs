@@ -1,0 +1,77 @@
+//! The law of one spring.
+
+use opruga_core::pair::{PairLaw, PairTerm};
+use opruga_core::state::Parameter;
+use opruga_math::{Lane, Pack, lanes};
+
+/// A linear spring with damping along its axis, over the parameters of all springs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpringLaw<'a, const DAMPED: bool> {
+    pub(super) rest_length: &'a Parameter,
+    pub(super) stiffness: &'a Parameter,
+    pub(super) damping: &'a Parameter,
+}
+
+/// Length of d and its inverse; both zero for coincident ends, whose force has no direction and is taken as zero.
+#[inline(always)]
+pub(super) fn length<S: Lane, const D: usize>(d: &[S; D]) -> (S, S) {
+    let mut square = d[0] * d[0];
+    for i in 1..D {
+        square += d[i] * d[i];
+    }
+    let inverse = S::one() / square.sqrt();
+    // Squares below the smallest normal number count as coincident.
+    let inverse = S::select(S::splat(f64::MIN_POSITIVE).less_or_equal(square), inverse, S::zero());
+    (square * inverse, inverse)
+}
+
+/// Scalar product.
+#[inline(always)]
+pub(super) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {
+    let mut sum = a[0] * b[0];
+    for i in 1..D {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+impl<P: Pack, const DAMPED: bool, const D: usize> PairLaw<P, D> for SpringLaw<'_, DAMPED> {
+    const DAMPED: bool = DAMPED;
+    const SECOND: f64 = -1.0;
+
+    #[inline(always)]
+    fn parameters(&self) -> [&Parameter; 3] {
+        [self.rest_length, self.stiffness, self.damping]
+    }
+    #[inline(always)]
+    fn force(&self, [rest_length, stiffness, damping]: [P; 3], d: [P; D], rate: [P; D]) -> ([P; D], P) {
+        let (length, inverse) = length(&d);
+        let stretch = length - rest_length;
+        let mut tension = stiffness * stretch;
+        let mut power = P::zero();
+        if DAMPED {
+            // Rate of the length; zero under any rigid motion.
+            let speed = dot(&rate, &d) * inverse;
+            let drag = damping * speed;
+            tension += drag;
+            power = drag * speed;
+        }
+        let factor = -(tension * inverse);
+        (lanes!(P, i => d[i] * factor), power)
+    }
+}
+
+/// The energy of a spring [J].
+impl<P: Pack, const D: usize> PairTerm<P, D> for SpringLaw<'_, false> {
+    #[inline(always)]
+    fn parameters(&self) -> [&Parameter; 3] {
+        [self.rest_length, self.stiffness, self.damping]
+    }
+    #[inline(always)]
+    fn of(&self, [rest_length, stiffness, _]: [P; 3], a: [P; D], b: [P; D]) -> P {
+        let d = lanes!(P, i => a[i] - b[i]);
+        let (length, _) = length(&d);
+        let stretch = length - rest_length;
+        P::splat(0.5) * stiffness * stretch * stretch
+    }
+}

@@ -1,0 +1,193 @@
+//! # Mass–spring system
+//!
+//! Particles joined by linear springs (Nealen et al. 2005, §4; thesis 3.2). Energy of one spring between a and b with
+//! d = x_a − x_b and r = |d|:
+//!
+//! U = ½ k (r − l₀)²,  f_a = −k (r − l₀) d/r − c (ḋ·d/r) d/r,  f_b = −f_a,
+//!
+//! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its
+//! axis; the clamped Hessian drops it. Springs resist neither bending nor a change of enclosed area.
+
+mod law;
+mod spec;
+
+use law::SpringLaw;
+pub use spec::SPEC;
+
+use opruga_core::error::BuildError;
+use opruga_core::pair::PairTable;
+use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::spec::Spec;
+use opruga_core::state::{Layout, Parameter, View};
+use opruga_core::tile::Tile;
+use opruga_math::{Pack, Simd, WIDTH, Work};
+use opruga_mesh::EdgeSet;
+
+/// The kind `mass_spring`.
+#[derive(Debug)]
+pub struct MassSpring;
+
+/// Springs of one body, or of eight alike ones.
+#[derive(Debug)]
+pub struct Springs {
+    layout: Layout,
+    table: PairTable,
+    rest_length: Parameter,
+    stiffness: Parameter,
+    damping: Parameter,
+    damped: bool,
+}
+
+impl<const D: usize> Model<D> for MassSpring {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let refuse = |code, message: String| Err(BuildError::new("mass_spring", code, message));
+        let mesh = ingredients.mesh;
+        let set = match ingredients.values[0].text("edges") {
+            Some("boundary") => EdgeSet::Boundary,
+            Some("shear") => EdgeSet::AllWithShear,
+            _ => EdgeSet::All,
+        };
+        let edges = mesh.edges(set);
+        if edges.is_empty() {
+            return refuse("model.no_edges", format!("the body has no {set:?} edges to carry springs"));
+        }
+        let lengths: Vec<f64> = edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();
+        for values in ingredients.values {
+            match (values.number("stiffness"), values.number("modulus")) {
+                (Some(_), None) => {}
+                (None, Some(_)) => {
+                    if let Some(k) = lengths.iter().position(|l| *l == 0.0) {
+                        return refuse("model.zero_length", format!("edge {k} has no length; `modulus` needs one"));
+                    }
+                }
+                _ => return refuse("model.one_of", "exactly one of `stiffness` and `modulus` must be given".into()),
+            }
+        }
+        let areas = mesh.edge_areas(&edges);
+        if ingredients.values[0].number("modulus").is_some() && areas.iter().all(|a| *a == 0.0) {
+            return refuse("model.no_area", "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline".into());
+        }
+        let table = PairTable::new(ingredients.layout, mesh.positions.len(), &edges, true);
+        let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];
+        let count = table.parameter_count();
+        let each = |number: &dyn Fn(usize, usize) -> f64| {
+            // The pair without effect behind the last one has no stiffness and no damping.
+            Parameter::from_items(ingredients.layout, count, |spring, body| if spring < edges.len() { number(spring, body) } else { 0.0 })
+        };
+        let damped = ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0);
+        Ok(Box::new(Springs {
+            layout: ingredients.layout,
+            rest_length: each(&|s, b| lengths[s] * values(b).number("rest_scale").unwrap_or(1.0)),
+            stiffness: each(&|s, b| match values(b).number("modulus") {
+                Some(modulus) => modulus * areas[s] / (lengths[s] * lengths[s]),
+                None => values(b).number("stiffness").unwrap_or(0.0),
+            }),
+            damping: each(&|_, b| values(b).number("damping").unwrap_or(0.0)),
+            table,
+            damped,
+        }))
+    }
+}
+
+fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    let d: [f64; D] = core::array::from_fn(|i| a[i] - b[i]);
+    law::dot(&d, &d).sqrt()
+}
+
+impl Springs {
+    fn law<const DAMPED: bool>(&self) -> SpringLaw<'_, DAMPED> {
+        SpringLaw { rest_length: &self.rest_length, stiffness: &self.stiffness, damping: &self.damping }
+    }
+}
+
+impl<const D: usize> Potential<D> for Springs {
+    fn name(&self) -> &'static str {
+        "mass_spring"
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: self.damped }
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        self.table.spans(visit);
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        simd.run(Force { springs: self, view, tile });
+    }
+    fn energy(&self, simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
+        simd.run(Energy { springs: self, view })
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        let bodies = self.layout.stride();
+        for (spring, &[a, b]) in self.table.pairs().iter().enumerate() {
+            for body in 0..bodies {
+                let (a, b) = (self.layout.place(a as usize, body), self.layout.place(b as usize, body));
+                let at = self.layout.place(spring, body);
+                let (xa, xb) = (view.position(a), view.position(b));
+                let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
+                let (length, inverse) = law::length(&d);
+                if inverse == 0.0 {
+                    continue;
+                }
+                let k = self.stiffness.at(at);
+                let mut across = k * (1.0 - self.rest_length.at(at) / length);
+                if keep == Definiteness::Clamped && across < 0.0 {
+                    across = 0.0;
+                }
+                let n = d.map(|c| c * inverse);
+                let block: [[f64; D]; D] = core::array::from_fn(|i| {
+                    core::array::from_fn(|j| {
+                        let along = n[i] * n[j];
+                        k * along + across * (if i == j { 1.0 - along } else { -along })
+                    })
+                });
+                let minus = block.map(|row| row.map(|c| -c));
+                sink.block(a, a, block);
+                sink.block(b, b, block);
+                sink.block(a, b, minus);
+                sink.block(b, a, minus);
+            }
+        }
+    }
+    fn heap_bytes(&self) -> usize {
+        self.table.heap_bytes() + self.rest_length.heap_bytes() + self.stiffness.heap_bytes() + self.damping.heap_bytes()
+    }
+}
+
+struct Force<'a, 'b, 'c, const D: usize> {
+    springs: &'a Springs,
+    view: &'a View<'a, D>,
+    tile: &'b mut Tile<'c, D>,
+}
+impl<const D: usize> Work for Force<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        if self.springs.damped {
+            self.springs.table.add_force::<P, _, D>(self.springs.law::<true>(), self.view, self.tile);
+        } else {
+            self.springs.table.add_force::<P, _, D>(self.springs.law::<false>(), self.view, self.tile);
+        }
+    }
+}
+
+struct Energy<'a, const D: usize> {
+    springs: &'a Springs,
+    view: &'a View<'a, D>,
+}
+impl<const D: usize> Work for Energy<'_, D> {
+    type Output = [f64; WIDTH];
+    #[inline(always)]
+    fn run<P: Pack>(self) -> [f64; WIDTH] {
+        let law = self.springs.law::<false>();
+        let sum = self.springs.table.sum::<P, _, D>(self.view, law);
+        let mut out = [0.0; WIDTH];
+        match self.springs.layout {
+            Layout::Single => out[0] = sum.to_array()[0],
+            Layout::Batch => sum.store(&mut out),
+        }
+        out
+    }
+}

@@ -1,0 +1,51 @@
+//! Parameters of the spring model.
+
+use opruga_core::spec::{Allowed, Default, Field, Spec};
+
+/// The parameters of `mass_spring`.
+pub const SPEC: Spec = Spec {
+    kind: "mass_spring",
+    summary: "linear springs along the edges of the mesh, with damping along each spring",
+    documentation: "Energy U = Σ ½ k (|x_a − x_b| − l₀)²; force on node a −k (r − l₀) d/r with d = x_a − x_b, r = |d|; damping −c (ḋ·d/r) d/r. \
+With `modulus` E₂D, k = E₂D ΣA/l₀² from the triangles A next to the edge: on a regular triangular lattice √3/2·E₂D, \
+half of that on the boundary, which acts as a sheet of Poisson's ratio 1/3. Coincident ends have no direction: their force is zero. \
+A ring of springs alone resists neither bending nor a change of its enclosed area. Source: Nealen et al. 2005, §4.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field {
+            name: "stiffness",
+            range: Allowed::NOT_NEGATIVE,
+            unit: "N/m",
+            default: Default::Absent,
+            documentation: "Spring constant k of every spring; exactly one of `stiffness` and `modulus`.",
+        },
+        Field {
+            name: "modulus",
+            range: Allowed::NOT_NEGATIVE,
+            unit: "N/m",
+            default: Default::Absent,
+            documentation: "Membrane modulus E₂D (Young's modulus times thickness) from which each spring's stiffness follows.",
+        },
+        Field {
+            name: "damping",
+            range: Allowed::NOT_NEGATIVE,
+            unit: "N·s/m",
+            default: Default::Number(0.0),
+            documentation: "Damping c along every spring; zero under rigid motion.",
+        },
+        Field {
+            name: "edges",
+            range: Allowed::Choice(&["boundary", "all", "shear"]),
+            unit: "",
+            default: Default::Text("all"),
+            documentation: "Which edges carry springs: those of the boundary, all, or all and the diagonals of grid cells.",
+        },
+        Field {
+            name: "rest_scale",
+            range: Allowed::NOT_NEGATIVE,
+            unit: "",
+            default: Default::Number(1.0),
+            documentation: "Rest length as a multiple of the length in the rest shape.",
+        },
+    ],
+};

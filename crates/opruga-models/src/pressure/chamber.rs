@@ -1,0 +1,272 @@
+//! The boundary of a chamber: its volume and how it changes with every node.
+
+use opruga_core::pair::{PairLaw, PairTable, PairTerm};
+use opruga_core::potential::Sink;
+use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
+use opruga_core::tile::Tile;
+use opruga_math::{Pack, WIDTH, lanes};
+
+/// A closed boundary.
+#[derive(Debug)]
+pub(super) enum Boundary {
+    /// Oriented edges in the plane, interior to the left.
+    Plane(PairTable),
+    /// The ring of neighbours of every node of a triangulated surface, counter-clockwise seen from outside.
+    Space(NodeRings),
+}
+
+/// Rings of neighbours, eight nodes side by side.
+#[derive(Debug)]
+pub(super) struct NodeRings {
+    pub(super) width: usize,
+    /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which adds nothing.
+    pub(super) neighbour: Vec<u32>,
+    pub(super) facets: Vec<[u32; 3]>,
+}
+
+/// Edges of the plane: each end gets half of the outward normal times the gauge pressure.
+#[derive(Clone, Copy)]
+struct EdgePush<'a, P> {
+    half: P,
+    none: &'a Parameter,
+}
+
+impl<P: Pack, const D: usize> PairLaw<P, D> for EdgePush<'_, P> {
+    const DAMPED: bool = false;
+    const SECOND: f64 = 1.0;
+    #[inline(always)]
+    fn parameters(&self) -> [&Parameter; 3] {
+        [self.none; 3]
+    }
+    #[inline(always)]
+    fn force(&self, _none: [P; 3], d: [P; D], _rate: [P; D]) -> ([P; D], P) {
+        let mut force = [P::zero(); D];
+        force[0] = -(d[1] * self.half);
+        force[1] = d[0] * self.half;
+        (force, P::zero())
+    }
+}
+
+/// Twice the area of the triangle between an edge and the origin.
+#[derive(Clone, Copy)]
+struct TwiceArea<'a, P, const D: usize> {
+    origin: [P; D],
+    none: &'a Parameter,
+}
+
+impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
+    #[inline(always)]
+    fn parameters(&self) -> [&Parameter; 3] {
+        [self.none; 3]
+    }
+    #[inline(always)]
+    fn of(&self, _none: [P; 3], a: [P; D], b: [P; D]) -> P {
+        let (xa, ya) = (a[0] - self.origin[0], a[1] - self.origin[1]);
+        let (xb, yb) = (b[0] - self.origin[0], b[1] - self.origin[1]);
+        xa * yb - xb * ya
+    }
+}
+
+/// What all bodies subtract from positions so that far from the origin no digits are lost: the first node.
+#[inline(always)]
+fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
+    match view.layout {
+        Layout::Single => lanes!(P, d => P::splat(view.x[d][0])),
+        Layout::Batch => load(&view.x, 0),
+    }
+}
+
+impl Boundary {
+    /// Volume of each body (area in the plane); in space also ∂V/∂x of every node into `area`, column by column.
+    #[inline(always)]
+    pub(super) fn volume<P: Pack, const D: usize>(&self, view: &View<D>, area: &mut [f64]) -> P {
+        let origin = origin::<P, D>(view);
+        match self {
+            Boundary::Plane(edges) => {
+                let twice = edges.sum::<P, _, D>(view, TwiceArea { origin, none: &Parameter::NONE });
+                twice * P::splat(0.5)
+            }
+            Boundary::Space(rings) => rings.volume::<P, D>(view, &origin, area),
+        }
+    }
+
+    /// Adds gauge pressure times ∂V/∂x on the nodes of a tile.
+    #[inline(always)]
+    pub(super) fn add_force<P: Pack, const D: usize>(&self, view: &View<D>, gauge: P, area: &[f64], tile: &mut Tile<D>) {
+        match self {
+            Boundary::Plane(edges) => edges.add_force::<P, _, D>(EdgePush { half: gauge * P::splat(0.5), none: &Parameter::NONE }, view, tile),
+            Boundary::Space(_) => {
+                let places = area.len() / D;
+                for place in tile.range.clone().step_by(WIDTH) {
+                    let k = place - tile.range.start;
+                    for d in 0..D {
+                        let force = P::load(&tile.force[d][k..]) + gauge * P::load(&area[d * places + place..]);
+                        force.store(&mut tile.force[d][k..]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// ∂V/∂x of every node of the boundary of one body (per depth in the plane), place by place.
+    pub(super) fn slope<const D: usize>(&self, view: &View<D>, body: usize) -> Vec<(usize, [f64; D])> {
+        let mut slope: std::collections::BTreeMap<usize, [f64; D]> = std::collections::BTreeMap::new();
+        let at = |node: u32| view.layout.place(node as usize, body);
+        match self {
+            Boundary::Plane(edges) => {
+                for &[a, b] in edges.pairs() {
+                    let (xa, xb) = (view.position(at(a)), view.position(at(b)));
+                    for node in [a, b] {
+                        let entry = slope.entry(at(node)).or_insert([0.0; D]);
+                        entry[0] += 0.5 * (xb[1] - xa[1]);
+                        entry[1] -= 0.5 * (xb[0] - xa[0]);
+                    }
+                }
+            }
+            Boundary::Space(rings) => {
+                for facet in &rings.facets {
+                    let [a, b, c] = facet.map(|n| view.position(at(n)));
+                    for (node, [p, q]) in facet.iter().zip([[b, c], [c, a], [a, b]]) {
+                        let entry = slope.entry(at(*node)).or_insert([0.0; D]);
+                        for d in 0..3 {
+                            let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                            entry[d] += (p[e] * q[f] - p[f] * q[e]) / 6.0;
+                        }
+                    }
+                }
+            }
+        }
+        slope.into_iter().collect()
+    }
+
+    /// Delivers `factor` times ∂²V/∂x∂x of one body (per depth in the plane).
+    pub(super) fn second_derivatives<const D: usize>(&self, view: &View<D>, body: usize, factor: f64, sink: &mut dyn Sink<D>) {
+        let at = |node: u32| view.layout.place(node as usize, body);
+        match self {
+            Boundary::Plane(edges) => {
+                // A = ½ Σ (xₐ y_b − x_b yₐ)
+                let mut block = [[0.0; D]; D];
+                block[0][1] = 0.5 * factor;
+                block[1][0] = -0.5 * factor;
+                let transposed = core::array::from_fn(|i| core::array::from_fn(|j| block[j][i]));
+                for &[a, b] in edges.pairs() {
+                    sink.block(at(a), at(b), block);
+                    sink.block(at(b), at(a), transposed);
+                }
+            }
+            Boundary::Space(rings) => {
+                // V = ⅙ Σ xₐ·(x_b × x_c): ∂²V/∂xₐ∂x_b = −⅙ [x_c]×, cyclically.
+                for facet in &rings.facets {
+                    for k in 0..3 {
+                        let [a, b, c] = [facet[k], facet[(k + 1) % 3], facet[(k + 2) % 3]];
+                        let x = view.position(at(c)).map(|v| v * factor / 6.0);
+                        let mut block = [[0.0; D]; D];
+                        for d in 0..3 {
+                            let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                            // [x]× has −x_f at (d, e) and x_e at (d, f).
+                            block[d][e] = x[f];
+                            block[d][f] = -x[e];
+                        }
+                        let transposed = core::array::from_fn(|i| core::array::from_fn(|j| block[j][i]));
+                        sink.block(at(a), at(b), block);
+                        sink.block(at(b), at(a), transposed);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The lowest and highest node of what lies next to each other.
+    pub(super) fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        // In space the area vectors are known before any node moves: forces read no neighbours.
+        if let Boundary::Plane(edges) = self {
+            edges.spans(visit);
+        }
+    }
+
+    /// Numbers of scratch for the area vectors.
+    pub(super) fn area_len<const D: usize>(&self, layout: Layout, nodes: usize) -> usize {
+        match self {
+            Boundary::Plane(_) => 0,
+            Boundary::Space(_) => D * layout.places(nodes),
+        }
+    }
+
+    /// Bytes on the heap.
+    pub(super) fn heap_bytes(&self) -> usize {
+        match self {
+            Boundary::Plane(edges) => edges.heap_bytes(),
+            Boundary::Space(rings) => rings.neighbour.capacity() * 4 + rings.facets.capacity() * 12,
+        }
+    }
+}
+
+impl NodeRings {
+    /// Lays out the rings of neighbours; nodes that are not on the boundary have an empty one.
+    pub(super) fn new(rings: &[Vec<u32>], facets: Vec<[u32; 3]>) -> NodeRings {
+        let width = rings.iter().map(Vec::len).max().unwrap_or(0);
+        let packs = rings.len().div_ceil(WIDTH);
+        let mut neighbour = vec![0; packs * width * WIDTH];
+        for node in 0..packs * WIDTH {
+            let ring = rings.get(node).map_or(&[][..], Vec::as_slice);
+            for slot in 0..width {
+                let at = (node / WIDTH * width + slot) * WIDTH + node % WIDTH;
+                neighbour[at] = ring.get(slot).or(ring.first()).copied().unwrap_or(0);
+            }
+        }
+        NodeRings { width, neighbour, facets }
+    }
+
+    /// V = Σ xᵢ·∂V/∂xᵢ / 3 with ∂V/∂xᵢ = ⅙ Σ x_k × x_{k+1} around the ring of node i.
+    #[inline(always)]
+    fn volume<P: Pack, const D: usize>(&self, view: &View<D>, origin: &[P; D], area: &mut [f64]) -> P {
+        let places = view.layout.places(view.nodes);
+        let end = view.nodes * view.layout.stride();
+        let mut sum = OrderedSum::<P>::new(view.layout);
+        let sixth = P::splat(1.0 / 6.0);
+        for place in (0..places).step_by(WIDTH) {
+            let mut total = [P::zero(); 3];
+            let first = self.neighbour_position::<P, D>(view, origin, place, 0);
+            let mut previous = first;
+            for slot in 1..=self.width {
+                let next =
+                    if slot == self.width { first } else { self.neighbour_position::<P, D>(view, origin, place, slot) };
+                total[0] += previous[1] * next[2] - previous[2] * next[1];
+                total[1] += previous[2] * next[0] - previous[0] * next[2];
+                total[2] += previous[0] * next[1] - previous[1] * next[0];
+                previous = next;
+            }
+            let mut product = P::zero();
+            for d in 0..3 {
+                let vector = total[d] * sixth;
+                vector.store(&mut area[d * places + place..]);
+                product += vector * (P::load(&view.x[d][place..]) - origin[d]);
+            }
+            sum.add(place, end, product);
+        }
+        sum.total() * P::splat(1.0 / 3.0)
+    }
+
+    #[inline(always)]
+    fn neighbour_position<P: Pack, const D: usize>(&self, view: &View<D>, origin: &[P; D], place: usize, slot: usize) -> [P; 3] {
+        let mut out = [P::zero(); 3];
+        match view.layout {
+            Layout::Single => {
+                let at = (place / WIDTH * self.width + slot) * WIDTH;
+                let places = &self.neighbour[at..at + WIDTH];
+                for d in 0..3 {
+                    out[d] = P::gather(view.x[d], places) - origin[d];
+                }
+            }
+            Layout::Batch => {
+                let node = place / WIDTH;
+                let at = (node / WIDTH * self.width + slot) * WIDTH + node % WIDTH;
+                let from = self.neighbour[at] as usize * WIDTH;
+                for d in 0..3 {
+                    out[d] = P::load(&view.x[d][from..]) - origin[d];
+                }
+            }
+        }
+        out
+    }
+}

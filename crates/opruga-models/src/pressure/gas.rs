@@ -1,0 +1,137 @@
+//! The law of the gas: pressure and energy as functions of the volume.
+
+use opruga_core::spec::Values;
+use opruga_math::Lane;
+
+/// How the temperature of the gas behaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Process {
+    /// Constant temperature: P V = nRT.
+    Isothermal,
+    /// No heat exchanged: P V^γ constant.
+    Adiabatic {
+        /// The ratio of heat capacities γ > 1.
+        gamma: f64,
+    },
+}
+
+/// The gas of one chamber of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Gas {
+    pub(super) process: Process,
+    /// nRT at the rest volume [J].
+    pub(super) amount: f64,
+    /// Rest volume V₀ [m³].
+    pub(super) rest_volume: f64,
+    /// Pressure outside [Pa].
+    pub(super) ambient: f64,
+    /// The volume below which the pressure stays as it is there, as a fraction of V₀.
+    pub(super) smallest_volume: f64,
+    /// The largest pressure [Pa].
+    pub(super) largest_pressure: Option<f64>,
+    /// Length of the start-up ramp [s].
+    pub(super) ramp: f64,
+    /// Rate of loss [1/s].
+    pub(super) leak: f64,
+    /// Whether nRT depends on time.
+    pub(super) changes: bool,
+    /// T/T₀ over time.
+    pub(super) temperature: Vec<Vec<f64>>,
+}
+
+/// Pressure inside, energy and slope at a volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct GasState {
+    /// P [Pa].
+    pub(super) pressure: f64,
+    /// U(V), ambient pressure included [J].
+    pub(super) energy: f64,
+    /// U″(V) = γP/V [Pa/m³]; zero where the pressure is limited.
+    pub(super) curvature: f64,
+    /// Whether the volume is below the limit.
+    pub(super) limited: bool,
+}
+
+impl Gas {
+    pub(super) fn new(values: &Values, rest_volume: f64) -> Gas {
+        let number = |name| values.number(name);
+        let process = match values.text("process") {
+            Some("adiabatic") => Process::Adiabatic { gamma: number("gamma").unwrap_or(1.4) },
+            _ => Process::Isothermal,
+        };
+        let (ramp, leak) = (number("ramp").unwrap_or(0.0), number("leak").unwrap_or(0.0));
+        let temperature = values.rows("temperature").to_vec();
+        Gas {
+            changes: ramp > 0.0 || leak > 0.0 || !temperature.is_empty(),
+            process,
+            amount: number("nRT").unwrap_or_else(|| number("pressure").unwrap_or(0.0) * rest_volume),
+            rest_volume,
+            ambient: number("ambient").unwrap_or(0.0),
+            smallest_volume: number("smallest_volume").unwrap_or(1e-3),
+            largest_pressure: number("largest_pressure"),
+            ramp,
+            leak,
+            temperature,
+        }
+    }
+    /// nRT at the rest volume at a time, if this fraction has not leaked [J].
+    pub(super) fn amount_at(&self, time: f64, fraction: f64) -> f64 {
+        let ramp = if self.ramp > 0.0 { (time / self.ramp).larger(0.0).smaller(1.0) } else { 1.0 };
+        let warmth = opruga_core::system::along_path::<1>(&self.temperature, time).0[0];
+        let warmth = if self.temperature.is_empty() { 1.0 } else { warmth };
+        self.amount * fraction * ramp * warmth
+    }
+    /// The state at a volume V for this nRT (at the rest volume).
+    ///
+    /// Below the volume V_s (a fraction of the rest volume, or where the largest pressure is reached) the pressure stays
+    /// P(V_s) and the energy goes on as its tangent, also through zero and for a body turned inside out. U stays a
+    /// function of V with a continuous slope, so no energy is made, and the force keeps pushing the body open.
+    pub(super) fn at(&self, volume: f64, amount: f64) -> GasState {
+        let v0 = self.rest_volume;
+        let mut least = self.smallest_volume * v0;
+        if let Some(cap) = self.largest_pressure {
+            least = least.larger(self.volume_at(cap, amount));
+        }
+        let limited = volume < least;
+        let v = if limited { least } else { volume };
+        let (pressure, mut energy, exponent) = match self.process {
+            Process::Isothermal => (amount / v, -amount * Lane::ln(v / v0), 1.0),
+            Process::Adiabatic { gamma } => {
+                let pressure = amount / v0 * Lane::exp(-gamma * Lane::ln(v / v0));
+                (pressure, pressure * v / (gamma - 1.0), gamma)
+            }
+        };
+        if limited {
+            energy += pressure * (v - volume);
+        }
+        GasState {
+            pressure,
+            energy: energy + self.ambient * volume,
+            curvature: if limited { 0.0 } else { exponent * pressure / v },
+            limited,
+        }
+    }
+    /// The pressure and slope at a volume: what a step needs, without logarithms for a gas of constant temperature.
+    pub(super) fn pressure_at(&self, volume: f64, amount: f64) -> (f64, bool) {
+        if self.process == Process::Isothermal {
+            let mut least = self.smallest_volume * self.rest_volume;
+            if let Some(cap) = self.largest_pressure {
+                least = least.larger(amount / cap);
+            }
+            let limited = volume < least;
+            return (amount / if limited { least } else { volume }, limited);
+        }
+        let state = self.at(volume, amount);
+        (state.pressure, state.limited)
+    }
+    /// The volume at which a pressure is reached [m³].
+    fn volume_at(&self, pressure: f64, amount: f64) -> f64 {
+        match self.process {
+            Process::Isothermal => amount / pressure,
+            Process::Adiabatic { gamma } => {
+                let ratio = amount / self.rest_volume / pressure;
+                if ratio > 0.0 { self.rest_volume * Lane::exp(Lane::ln(ratio) / gamma) } else { 0.0 }
+            }
+        }
+    }
+}

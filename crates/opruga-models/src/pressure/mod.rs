@@ -1,0 +1,297 @@
+//! # Pressure of an ideal gas
+//!
+//! The model that the thesis implements (3.3; Matyka and Ollila 2003), as a potential of the enclosed volume V:
+//!
+//! isothermal U = −nRT ln(V/V₀) + P_a V,  adiabatic U = P₀ V₀^γ V^{1−γ}/(γ − 1) + P_a V,
+//!
+//! f_i = (P − P_a) ∂V/∂x_i,  ∇²U = (γP/V) ∇V ∇Vᵀ − (P − P_a) ∇²V.
+//!
+//! The first part of the Hessian has rank one and is delivered as such. Net force and net torque of a closed boundary
+//! are zero. What happens at and below zero volume is said at `Gas::at`; the clamped Hessian keeps the first part only.
+//!
+//! How this differs from the published program (errors E1 to E11) is told in the documentation of `as_published`.
+
+mod chamber;
+mod gas;
+mod spec;
+
+use chamber::{Boundary, NodeRings};
+use gas::Gas;
+pub use spec::SPEC;
+
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::pair::PairTable;
+use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::spec::Spec;
+use opruga_core::state::{Layout, View};
+use opruga_core::tile::Tile;
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+
+/// The kind `pressure`.
+#[derive(Debug)]
+pub struct PressureModel;
+
+/// The gas of one body or of eight alike ones.
+#[derive(Debug)]
+pub struct Pressure {
+    layout: Layout,
+    /// Depth in the plane, 1 in space [m].
+    depth: f64,
+    chambers: Vec<Chamber>,
+    scratch_len: usize,
+}
+
+#[derive(Debug)]
+struct Chamber {
+    boundary: Boundary,
+    /// One gas per body.
+    gases: Vec<Gas>,
+    /// Where its numbers lie in the scratch: volume, force per ∂V/∂x, nRT of each body, then area vectors.
+    scratch: usize,
+    area_len: usize,
+}
+
+/// Numbers of a chamber in the scratch, before its area vectors.
+const NUMBERS: usize = 3 * WIDTH;
+
+/// Memory of a chamber: the fraction of gas that has not leaked, and how often the pressure was limited, per body.
+const MEMORY: usize = 2 * WIDTH;
+
+impl<const D: usize> Model<D> for PressureModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let mesh = ingredients.mesh;
+        for values in ingredients.values {
+            if values.number("nRT").is_some() == values.number("pressure").is_some() {
+                return Err(BuildError::new("pressure", "model.one_of", "exactly one of `nRT` and `pressure` must be given"));
+            }
+        }
+        if mesh.facets.is_empty() {
+            let message = "the body has no closed boundary to hold a gas";
+            return Err(BuildError::new("pressure", "model.open_surface", message));
+        }
+        let parts = mesh.chambers().map_err(|e| BuildError::new("pressure", "model.open_surface", e.to_string()))?;
+        let depth = if D == 2 { ingredients.thickness } else { 1.0 };
+        let nodes = mesh.positions.len();
+        let mut scratch = 0;
+        let mut chambers = Vec::new();
+        for (number, part) in parts.iter().enumerate() {
+            let facets: Vec<[u32; D]> = part.iter().map(|&f| mesh.facets[f as usize]).collect();
+            let rest_volume = opruga_mesh::signed_volume(&facets, &mesh.positions) * depth;
+            if rest_volume.is_nan() || rest_volume <= 0.0 {
+                let message = format!("chamber {number} encloses {rest_volume} m³; allowed: > 0 (is it inside out?)");
+                return Err(BuildError::new("pressure", "model.volume", message));
+            }
+            let boundary = if D == 2 {
+                let edges: Vec<[u32; 2]> = facets.iter().map(|f| [f[0], f[1]]).collect();
+                Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
+            } else {
+                let triangles: Vec<[u32; 3]> = facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
+                let rings = opruga_mesh::node_rings(&triangles, nodes)
+                    .map_err(|e| BuildError::new("pressure", "model.not_manifold", e.to_string()))?;
+                Boundary::Space(NodeRings::new(&rings, triangles))
+            };
+            let area_len = boundary.area_len::<D>(ingredients.layout, nodes);
+            let gases = ingredients.values.iter().map(|v| Gas::new(v, rest_volume)).collect();
+            chambers.push(Chamber { boundary, gases, scratch, area_len });
+            scratch += NUMBERS + area_len;
+        }
+        Ok(Box::new(Pressure { layout: ingredients.layout, depth, chambers, scratch_len: scratch }))
+    }
+}
+
+impl Chamber {
+    fn gas(&self, body: usize) -> &Gas {
+        &self.gases[body.min(self.gases.len() - 1)]
+    }
+    /// What `prepare` left behind: volume (area), gauge pressure times depth, nRT of each body; and area vectors.
+    fn known<'a>(&self, scratch: &'a [f64]) -> Known<'a> {
+        let (numbers, area) = scratch[self.scratch..self.scratch + NUMBERS + self.area_len].split_at(NUMBERS);
+        let (volume, rest) = numbers.split_at(WIDTH);
+        let (gauge, amount) = rest.split_at(WIDTH);
+        Known { volume, gauge, amount, area }
+    }
+}
+
+struct Known<'a> {
+    volume: &'a [f64],
+    gauge: &'a [f64],
+    amount: &'a [f64],
+    area: &'a [f64],
+}
+
+impl Pressure {
+    /// How many different bodies the numbers of a pack belong to.
+    fn bodies(&self) -> usize {
+        self.layout.stride()
+    }
+}
+
+impl<const D: usize> Potential<D> for Pressure {
+    fn name(&self) -> &'static str {
+        "pressure"
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: false }
+    }
+    fn account(&self) -> Account {
+        Account::Gas
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        for chamber in &self.chambers {
+            chamber.boundary.spans(visit);
+        }
+    }
+    fn initial_memory(&self) -> Vec<f64> {
+        let mut memory = Vec::new();
+        for _ in &self.chambers {
+            memory.extend([1.0; WIDTH]);
+            memory.extend([0.0; WIDTH]);
+        }
+        memory
+    }
+    fn scratch_len(&self) -> usize {
+        self.scratch_len
+    }
+    fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
+        simd.run(Volumes { model: self, view, scratch });
+        for (number, chamber) in self.chambers.iter().enumerate() {
+            let scratch = &mut scratch[chamber.scratch..chamber.scratch + NUMBERS];
+            for body in 0..self.bodies() {
+                let gas = chamber.gas(body);
+                let amount = if gas.changes { gas.amount_at(view.time, memory[number * MEMORY + body]) } else { gas.amount };
+                let (pressure, _) = gas.pressure_at(scratch[body] * self.depth, amount);
+                scratch[WIDTH + body] = (pressure - gas.ambient) * self.depth;
+                scratch[2 * WIDTH + body] = amount;
+            }
+            if self.layout == Layout::Single {
+                let (gauge, amount) = (scratch[WIDTH], scratch[2 * WIDTH]);
+                scratch[WIDTH..2 * WIDTH].fill(gauge);
+                scratch[2 * WIDTH..].fill(amount);
+            }
+        }
+        Ok(())
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        simd.run(Force { model: self, view, scratch, tile });
+    }
+    fn remember(&self, simd: Simd, view: &View<D>, h: f64, scratch: &[f64], memory: &mut [f64]) -> [f64; WIDTH] {
+        let mut given = [0.0; WIDTH];
+        let changing = self.chambers.iter().any(|c| c.gases.iter().any(|g| g.changes));
+        let mut now = Vec::new();
+        if changing {
+            now.resize(self.scratch_len, 0.0);
+            simd.run(Volumes { model: self, view, scratch: &mut now });
+        }
+        for (number, chamber) in self.chambers.iter().enumerate() {
+            let known = chamber.known(scratch);
+            let memory = &mut memory[number * MEMORY..(number + 1) * MEMORY];
+            for body in 0..self.bodies() {
+                let gas = chamber.gas(body);
+                if gas.pressure_at(known.volume[body] * self.depth, known.amount[body]).1 {
+                    memory[WIDTH + body] += 1.0;
+                }
+                if !gas.changes {
+                    continue;
+                }
+                let volume = now[chamber.scratch + body] * self.depth;
+                let before = gas.amount_at(view.time - h, memory[body]);
+                if gas.leak > 0.0 && before > 0.0 {
+                    // d ln(nRT)/dt = −λ (P − P_a) V / nRT, over one step with its pressure held.
+                    let pressure = gas.at(volume, before).pressure;
+                    let exponent = -gas.leak * h * (pressure - gas.ambient) * volume / before;
+                    memory[body] *= Lane::exp(exponent);
+                }
+                let after = gas.amount_at(view.time, memory[body]);
+                given[body] += gas.at(volume, after).energy - gas.at(volume, before).energy;
+            }
+        }
+        given
+    }
+    fn energy(&self, _simd: Simd, _view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        let mut out = [0.0; WIDTH];
+        for chamber in &self.chambers {
+            let known = chamber.known(scratch);
+            for body in 0..self.bodies() {
+                out[body] += chamber.gas(body).at(known.volume[body] * self.depth, known.amount[body]).energy;
+            }
+        }
+        out
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        for chamber in &self.chambers {
+            let known = chamber.known(scratch);
+            for body in 0..self.bodies() {
+                let state = chamber.gas(body).at(known.volume[body] * self.depth, known.amount[body]);
+                let slope = chamber.boundary.slope(view, body);
+                let u: Vec<(usize, [f64; D])> = slope.into_iter().map(|(p, g)| (p, g.map(|c| c * self.depth))).collect();
+                sink.low_rank(state.curvature, &u);
+                if keep == Definiteness::Exact {
+                    chamber.boundary.second_derivatives(view, body, -known.gauge[body], sink);
+                }
+            }
+        }
+    }
+    fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<(&'static str, f64)> {
+        let mut volume = 0.0;
+        let mut amount = 0.0;
+        let mut pressure = 0.0;
+        for chamber in &self.chambers {
+            let known = chamber.known(scratch);
+            let v = known.volume[body] * self.depth;
+            volume += v;
+            amount += known.amount[body];
+            // Chambers count by their volume.
+            pressure += chamber.gas(body).at(v, known.amount[body]).pressure * v;
+        }
+        vec![("volume", volume), ("pressure", if volume == 0.0 { 0.0 } else { pressure / volume }), ("nRT", amount)]
+    }
+    fn counts(&self, memory: &[f64]) -> Vec<(&'static str, u64)> {
+        let mut limited = 0.0;
+        for number in 0..self.chambers.len() {
+            for body in 0..self.bodies() {
+                limited += memory[number * MEMORY + WIDTH + body];
+            }
+        }
+        vec![("pressure.limited", limited as u64)]
+    }
+    fn heap_bytes(&self) -> usize {
+        self.chambers.iter().map(|c| c.boundary.heap_bytes() + c.gases.capacity() * size_of::<Gas>()).sum()
+    }
+}
+
+struct Volumes<'a, const D: usize> {
+    model: &'a Pressure,
+    view: &'a View<'a, D>,
+    scratch: &'a mut [f64],
+}
+impl<const D: usize> Work for Volumes<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for chamber in &self.model.chambers {
+            let scratch = &mut self.scratch[chamber.scratch..chamber.scratch + NUMBERS + chamber.area_len];
+            let (numbers, area) = scratch.split_at_mut(NUMBERS);
+            chamber.boundary.volume::<P, D>(self.view, area).store(numbers);
+        }
+    }
+}
+
+struct Force<'a, 'b, 'c, const D: usize> {
+    model: &'a Pressure,
+    view: &'a View<'a, D>,
+    scratch: &'a [f64],
+    tile: &'b mut Tile<'c, D>,
+}
+impl<const D: usize> Work for Force<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for chamber in &self.model.chambers {
+            let known = chamber.known(self.scratch);
+            chamber.boundary.add_force::<P, D>(self.view, P::load(known.gauge), known.area, self.tile);
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! A scene after it was read and checked, before it is built: plain data, no file format, no engine.
+
+use opruga_core::spec::Values;
+use opruga_mesh::Mesh;
+use std::sync::Arc;
+
+/// A checked scene in the plane or in space.
+#[derive(Clone, Debug)]
+pub enum AnyBlueprint {
+    /// `dimension = 2`.
+    Plane(Blueprint<2>),
+    /// `dimension = 3`.
+    Space(Blueprint<3>),
+}
+
+/// A checked scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blueprint<const D: usize> {
+    /// The name of the scene: that of its file, without the ending.
+    pub name: String,
+    /// A sentence for lists and pictures.
+    pub title: String,
+    /// The seed of everything random.
+    pub seed: u64,
+    /// How time passes.
+    pub time: Time,
+    /// What acts everywhere.
+    pub surroundings: Surroundings<D>,
+    /// The integrator and its parameters (`kind`, and the fields of its specification).
+    pub integrator: Values,
+    /// The bodies, copies already written out.
+    pub bodies: Vec<BodyBlueprint<D>>,
+    /// Rigid obstacles.
+    pub colliders: Vec<ColliderBlueprint>,
+    /// Forces from outside.
+    pub loads: Vec<LoadBlueprint<D>>,
+    /// What is done to the bodies while they move.
+    pub commands: Vec<CommandBlueprint<D>>,
+    /// What is written down frame by frame.
+    pub probes: Vec<ProbeBlueprint<D>>,
+}
+
+/// How time passes: a frame is divided into substeps of h = frame / substeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time {
+    /// How long the scene lasts [s].
+    pub seconds: f64,
+    /// The length of a frame [s].
+    pub frame: f64,
+    /// The number of substeps of a frame.
+    pub substeps: u32,
+}
+
+/// What acts everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings<const D: usize> {
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; D],
+    /// Drag per unit of mass [1/s]: a = −drag·v. It brakes rigid motion too.
+    pub drag: f64,
+    /// The largest force on a node [N]; counted every time it acts. None: no limit.
+    pub largest_force: Option<f64>,
+    /// The largest speed of a node [m/s]; counted every time it acts. None: no limit.
+    pub largest_velocity: Option<f64>,
+}
+
+/// One body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyBlueprint<const D: usize> {
+    /// Its name, unique in the scene; copies are `name[0]`, `name[1]`, …
+    pub name: String,
+    /// Its rest shape; copies share it.
+    pub mesh: Arc<Mesh<D>>,
+    /// Where its rest shape lies at the start [m].
+    pub translation: [f64; D],
+    /// Velocity at the start [m/s].
+    pub velocity: [f64; D],
+    /// Angular velocity at the start about the centre of mass [rad/s]: one number in 2D, three in 3D.
+    pub angular_velocity: Vec<f64>,
+    /// How much it weighs.
+    pub mass: Mass,
+    /// Thickness out of the plane in 2D, of a sheet in 3D [m].
+    pub thickness: f64,
+    /// Its models and their parameters.
+    pub models: Vec<Values>,
+    /// Its pins.
+    pub pins: Vec<PinBlueprint<D>>,
+}
+
+/// How much a body weighs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mass {
+    /// Mass of the whole body [kg].
+    Total(f64),
+    /// Mass per volume [kg/m³].
+    Density(f64),
+    /// Mass of every node [kg].
+    Node(f64),
+}
+
+/// A set of nodes of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Selector<const D: usize> {
+    /// Nodes whose position at the start lies in a box between two corners [m].
+    Box([f64; D], [f64; D]),
+    /// Nodes at most a radius from a centre [m].
+    Ball {
+        /// The centre [m].
+        center: [f64; D],
+        /// The radius [m].
+        radius: f64,
+    },
+    /// Nodes on the side of a plane to which its normal points, or on it.
+    HalfSpace {
+        /// A point of the plane [m].
+        point: [f64; D],
+        /// The normal.
+        normal: [f64; D],
+    },
+    /// Nodes on one side of the body's bounding box: `left`, `right`, `bottom`, `top`, `back`, `front`.
+    Side(String),
+    /// Nodes by number.
+    Nodes(Vec<u32>),
+    /// A named group of the mesh.
+    Group(String),
+    /// Nodes of the boundary.
+    Boundary,
+    /// Every node.
+    All,
+    /// Nodes in every one of the sets.
+    And(Vec<Selector<D>>),
+    /// Nodes in any one of the sets.
+    Or(Vec<Selector<D>>),
+    /// Nodes that are not in the set.
+    Not(std::boxed::Box<Selector<D>>),
+}
+
+/// Nodes held at their place, or moved in a prescribed way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PinBlueprint<const D: usize> {
+    /// Which nodes.
+    pub select: Selector<D>,
+    /// Which axes are held.
+    pub axes: [bool; D],
+    /// Displacement from the start over time, rows `[t, dx, dy(, dz)]`; empty: at rest.
+    pub motion: Vec<Vec<f64>>,
+}
+
+/// A rigid obstacle: its shape, surface and motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColliderBlueprint {
+    /// `kind` and the fields of its specification, among them `restitution` and `friction`.
+    pub values: Values,
+}
+
+/// A force from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadBlueprint<const D: usize> {
+    /// The body, by its place in the list.
+    pub body: usize,
+    /// Which nodes.
+    pub select: Selector<D>,
+    /// What acts.
+    pub kind: LoadKind<D>,
+    /// A factor over time, rows `[t, factor]`; empty: always 1.
+    pub curve: Vec<Vec<f64>>,
+}
+
+/// What a load does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadKind<const D: usize> {
+    /// The same force on every selected node [N].
+    Force([f64; D]),
+    /// A force per area, spread over the selected part of the boundary (rest area) [Pa].
+    Traction([f64; D]),
+    /// A pressure on the selected part of the boundary, along its present inner normal [Pa].
+    Pressure(f64),
+}
+
+/// Something done to a body from time `at` to time `until`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommandBlueprint<const D: usize> {
+    /// When it begins [s].
+    pub at: f64,
+    /// When it ends [s]; for what is done at once, the same as `at`.
+    pub until: f64,
+    /// What is done.
+    pub action: Action<D>,
+}
+
+/// What a command does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action<const D: usize> {
+    /// Pull a node toward a moving pointer by a critically damped spring.
+    Drag {
+        /// The body, by its place in the list.
+        body: usize,
+        /// The node; none: the one nearest to the pointer at the beginning.
+        node: Option<u32>,
+        /// Whether the nearest point of a facet is held rather than a node.
+        facet: bool,
+        /// Stiffness of the spring [N/m].
+        stiffness: Option<f64>,
+        /// The path of the pointer, rows `[t, x, y(, z)]`.
+        path: Vec<Vec<f64>>,
+        /// The largest force [N]; counted every time it acts.
+        largest_force: Option<f64>,
+    },
+    /// A force on nodes [N].
+    Push {
+        /// The body.
+        body: usize,
+        /// Which nodes.
+        select: Selector<D>,
+        /// The force on every one of them [N].
+        force: [f64; D],
+    },
+    /// Hold nodes where they are at the beginning.
+    Pin {
+        /// The body.
+        body: usize,
+        /// Which nodes.
+        select: Selector<D>,
+        /// Which axes.
+        axes: [bool; D],
+    },
+    /// Change a parameter: its path and its new value.
+    Set {
+        /// The path, as on the command line.
+        path: String,
+        /// The new value.
+        value: opruga_core::spec::Value,
+    },
+    /// Add a body.
+    Add(std::boxed::Box<BodyBlueprint<D>>),
+    /// Take a body away.
+    Remove {
+        /// The name of the body.
+        name: String,
+    },
+}
+
+/// Columns of `diagnostics.csv` that follow nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeBlueprint<const D: usize> {
+    /// Its name, the first part of the columns' names.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Which nodes; their mean is written (of reactions the sum).
+    pub select: Selector<D>,
+    /// What is written: `position`, `velocity`, `reaction`.
+    pub record: Vec<Recorded>,
+}
+
+/// What a probe writes down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recorded {
+    /// Mean position [m].
+    Position,
+    /// Mean velocity [m/s].
+    Velocity,
+    /// Sum of the forces that the pins exert [N].
+    Reaction,
+}

@@ -1,0 +1,333 @@
+//! From a blueprint to systems: which bodies lie side by side, masses, columns, models, pins and loads.
+
+use crate::blueprint::{Blueprint, BodyBlueprint, LoadKind, Mass};
+use crate::error::WorldError;
+use crate::island::Island;
+use crate::loads::{FollowerPressure, NodeForces};
+use crate::registry::Registry;
+use opruga_core::error::BuildError;
+use opruga_core::potential::Ingredients;
+use opruga_core::spec::{Value, Values};
+use opruga_core::state::{Columns, Layout, Parameter};
+use opruga_core::system::{Pin, Stabilisers, System};
+use opruga_math::{Simd, WIDTH};
+use opruga_mesh::signed_volume;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Bodies with more nodes than this fill the vector lanes by themselves.
+const LARGEST_IN_BATCH: usize = 1024;
+/// Fewer alike bodies than this are cheaper one by one.
+const SMALLEST_BATCH: usize = 3;
+
+/// What is carried over when islands are built anew.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BodyState<const D: usize> {
+    pub(crate) x: Vec<[f64; D]>,
+    pub(crate) v: Vec<[f64; D]>,
+    /// Memory of each model of the blueprint: every eighth number belongs to this body.
+    pub(crate) memory: Vec<Vec<f64>>,
+}
+
+/// The masses of the nodes of a body [kg].
+pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
+    let nodes = body.mesh.positions.len();
+    match body.mass {
+        Mass::Node(mass) => vec![mass; nodes],
+        Mass::Total(mass) => {
+            let shares = body.mesh.lumped_shares();
+            let total: f64 = shares.iter().sum();
+            let first = shares.first().copied().unwrap_or(0.0);
+            // Shares that agree to rounding are equal: a regular ring has equal masses to the bit.
+            let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
+            if alike || total <= 0.0 {
+                return vec![mass / nodes as f64; nodes];
+            }
+            shares.iter().map(|s| mass * s / total).collect()
+        }
+        Mass::Density(density) => {
+            let dimension = body.mesh.measure_dimension();
+            // What the mesh lacks in dimensions is thickness: a sheet's, twice a wire's.
+            let mut depth = density;
+            for _ in dimension..3 {
+                depth *= body.thickness;
+            }
+            let shares = body.mesh.lumped_shares();
+            let first = shares.first().copied().unwrap_or(0.0);
+            let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
+            shares.iter().map(|s| if alike { first * depth } else { s * depth }).collect()
+        }
+    }
+}
+
+/// The state of a body at the start.
+pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyState<D> {
+    let x: Vec<[f64; D]> =
+        body.mesh.positions.iter().map(|p| core::array::from_fn(|d| p[d] + body.translation[d])).collect();
+    let masses = node_masses(body);
+    let total: f64 = masses.iter().sum();
+    let mut center = [0.0; D];
+    for (p, m) in x.iter().zip(&masses) {
+        for d in 0..D {
+            center[d] += p[d] * m / if total > 0.0 { total } else { 1.0 };
+        }
+    }
+    let spin = &body.angular_velocity;
+    let v = x
+        .iter()
+        .map(|p| {
+            let mut v = body.velocity;
+            let r: [f64; D] = core::array::from_fn(|d| p[d] - center[d]);
+            if D == 2 && spin.len() == 1 {
+                v[0] -= spin[0] * r[1];
+                v[1] += spin[0] * r[0];
+            } else if D == 3 && spin.len() == 3 {
+                for d in 0..3 {
+                    let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                    v[d] += spin[e] * r[f] - spin[f] * r[e];
+                }
+            }
+            v
+        })
+        .collect();
+    BodyState { x, v, memory: Vec::new() }
+}
+
+/// Which bodies may lie side by side: the same rest shape and models that differ in numbers only.
+fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
+    Arc::ptr_eq(&a.mesh, &b.mesh)
+        && a.thickness == b.thickness
+        && core::mem::discriminant(&a.mass) == core::mem::discriminant(&b.mass)
+        && a.models.len() == b.models.len()
+        && a.models.iter().zip(&b.models).all(|(a, b)| alike_values(a, b))
+}
+
+fn alike_values(a: &Values, b: &Values) -> bool {
+    let count = |v: &Values| v.iter().count();
+    a.kind() == b.kind()
+        && count(a) == count(b)
+        && a.iter().zip(b.iter()).all(|((n, x), (m, y))| {
+            n == m && (matches!((x, y), (Value::Number(_), Value::Number(_))) || x == y)
+        })
+}
+
+/// Groups of bodies that are stepped together, in the order of their first body.
+pub(crate) fn group<const D: usize>(bodies: &[Option<&BodyBlueprint<D>>], batches: bool) -> Vec<Vec<usize>> {
+    let mut kinds: Vec<(usize, Vec<usize>)> = Vec::new();
+    let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (number, body) in bodies.iter().enumerate() {
+        let Some(body) = body else { continue };
+        let key = Arc::as_ptr(&body.mesh) as usize;
+        let candidates = by_mesh.entry(key).or_default();
+        let found = candidates.iter().copied().find(|k: &usize| bodies[kinds[*k].0].is_some_and(|first| alike(first, body)));
+        match found {
+            Some(kind) => kinds[kind].1.push(number),
+            None => {
+                candidates.push(kinds.len());
+                kinds.push((number, vec![number]));
+            }
+        }
+    }
+    let mut groups = Vec::new();
+    for (first, members) in kinds {
+        let small = bodies[first].is_some_and(|b| b.mesh.positions.len() <= LARGEST_IN_BATCH);
+        for chunk in members.chunks(WIDTH) {
+            if batches && small && chunk.len() >= SMALLEST_BATCH {
+                groups.push(chunk.to_vec());
+            } else {
+                groups.extend(chunk.iter().map(|b| vec![*b]));
+            }
+        }
+    }
+    groups.sort_by_key(|g| g[0]);
+    groups
+}
+
+/// What building an island needs.
+pub(crate) struct Builder<'a, const D: usize> {
+    pub(crate) blueprint: &'a Blueprint<D>,
+    pub(crate) registry: &'a Registry<D>,
+    pub(crate) simd: Simd,
+    pub(crate) work_columns: usize,
+}
+
+impl<const D: usize> Builder<'_, D> {
+    /// Builds the island of some bodies with their states.
+    pub(crate) fn island(&self, bodies: &[usize], states: &[&BodyState<D>], time: f64) -> Result<Island<D>, WorldError> {
+        let layout = if bodies.len() > 1 { Layout::Batch } else { Layout::Single };
+        let blueprints: Vec<&BodyBlueprint<D>> = bodies.iter().map(|b| &self.blueprint.bodies[*b]).collect();
+        let first = blueprints[0];
+        let nodes = first.mesh.positions.len();
+        let places = layout.places(nodes);
+        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
+        let masses: Vec<Vec<f64>> = blueprints.iter().map(|b| node_masses(b)).collect();
+        // Unused lanes repeat the first body.
+        let lane = |l: usize| if l < bodies.len() { l } else { 0 };
+        for node in 0..nodes {
+            for l in 0..layout.stride() {
+                x.set(layout.place(node, l), states[lane(l)].x[node]);
+                v.set(layout.place(node, l), states[lane(l)].v[node]);
+            }
+        }
+        for place in nodes * layout.stride()..places {
+            x.set(place, states[0].x[nodes - 1]);
+        }
+        let mass = Parameter::from_items(layout, nodes, |node, l| masses[lane(l)][node]);
+        let mut system = System::new(self.simd, layout, nodes, bodies.len(), x, v, mass.clone());
+        system.time = time;
+        system.gravity = self.blueprint.surroundings.gravity;
+        system.stabilisers = Stabilisers {
+            largest_force: self.blueprint.surroundings.largest_force,
+            largest_velocity: self.blueprint.surroundings.largest_velocity,
+        };
+        for (number, values) in first.models.iter().enumerate() {
+            let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+            let Some(model) = self.registry.model(values.kind()) else {
+                return Err(refuse(BuildError::new(values.kind(), "scene.unknown_name", "there is no such model")));
+            };
+            let all: Vec<&Values> = (0..layout.stride()).map(|l| &blueprints[lane(l)].models[number]).collect();
+            let potential = model
+                .build(&Ingredients {
+                    mesh: &first.mesh,
+                    layout,
+                    values: &all,
+                    mass: &mass,
+                    thickness: first.thickness,
+                    gravity: self.blueprint.surroundings.gravity,
+                })
+                .map_err(refuse)?;
+            system.add(potential);
+            if let Some(member) = system.members.last_mut() {
+                for l in 0..layout.stride() {
+                    if let Some(kept) = states[lane(l)].memory.get(number)
+                        && kept.len() * WIDTH == member.memory.len()
+                    {
+                        for (k, value) in kept.iter().enumerate() {
+                            member.memory[k * WIDTH + l] = *value;
+                        }
+                    }
+                }
+            }
+        }
+        if self.blueprint.surroundings.drag > 0.0 {
+            self.add_drag(&mut system, first, layout, &mass)?;
+        }
+        for (l, body) in blueprints.iter().enumerate() {
+            self.add_pins(&mut system, body, l, layout);
+            self.add_loads(&mut system, bodies[l], body, l, layout)?;
+        }
+        system.plan(self.work_columns);
+        Ok(Island::new(system, bodies.to_vec()))
+    }
+
+    fn add_drag(&self, system: &mut System<D>, body: &BodyBlueprint<D>, layout: Layout, mass: &Parameter) -> Result<(), WorldError> {
+        let refuse = |source| WorldError::Build { place: "world".into(), source };
+        let Some(model) = self.registry.model("drag") else { return Ok(()) };
+        let mut values = Values::defaults(model.spec(), D);
+        let rate = Value::Number(self.blueprint.surroundings.drag);
+        values.set(model.spec(), "rate", rate, D).map_err(|e| refuse(BuildError::new("drag", "scene.range", e.to_string())))?;
+        let all = vec![&values; layout.stride()];
+        let ingredients = Ingredients {
+            mesh: &*body.mesh,
+            layout,
+            values: &all,
+            mass,
+            thickness: body.thickness,
+            gravity: self.blueprint.surroundings.gravity,
+        };
+        system.add(model.build(&ingredients).map_err(refuse)?);
+        Ok(())
+    }
+
+    fn add_pins(&self, system: &mut System<D>, body: &BodyBlueprint<D>, lane: usize, layout: Layout) {
+        for pin in &body.pins {
+            let motion = Arc::new(pin.motion.clone());
+            for node in pin.select.resolve(&body.mesh, &body.translation) {
+                let rest = body.mesh.positions[node as usize];
+                system.pins.push(Pin {
+                    place: layout.place(node as usize, lane),
+                    axes: pin.axes,
+                    anchor: core::array::from_fn(|d| rest[d] + body.translation[d]),
+                    motion: Arc::clone(&motion),
+                });
+            }
+        }
+    }
+
+    fn add_loads(&self, system: &mut System<D>, number: usize, body: &BodyBlueprint<D>, lane: usize, layout: Layout) -> Result<(), WorldError> {
+        for load in self.blueprint.loads.iter().filter(|l| l.body == number) {
+            let nodes = load.select.resolve(&body.mesh, &body.translation);
+            let depth = if D == 2 { body.thickness } else { 1.0 };
+            let whole = |facet: &&[u32; D]| facet.iter().all(|n| nodes.contains(n));
+            let mut entries: BTreeMap<usize, [f64; D]> = BTreeMap::new();
+            match load.kind {
+                LoadKind::Force(force) => {
+                    for node in &nodes {
+                        entries.insert(layout.place(*node as usize, lane), force);
+                    }
+                }
+                LoadKind::Traction(traction) => {
+                    for facet in body.mesh.facets.iter().filter(whole) {
+                        let share = facet_measure(facet, &body.mesh.positions) * depth / D as f64;
+                        for node in facet {
+                            let entry = entries.entry(layout.place(*node as usize, lane)).or_insert([0.0; D]);
+                            for d in 0..D {
+                                entry[d] += traction[d] * share;
+                            }
+                        }
+                    }
+                }
+                LoadKind::Pressure(pressure) => {
+                    let facets: Vec<[usize; D]> = body
+                        .mesh
+                        .facets
+                        .iter()
+                        .filter(whole)
+                        .map(|f| core::array::from_fn(|k| layout.place(f[k] as usize, lane)))
+                        .collect();
+                    if facets.is_empty() {
+                        return Err(no_facets(body));
+                    }
+                    system.add(Box::new(FollowerPressure {
+                        facets,
+                        pressure: pressure * depth,
+                        curve: load.curve.clone(),
+                        stride: layout.stride(),
+                    }));
+                    continue;
+                }
+            }
+            if entries.is_empty() {
+                return Err(no_facets(body));
+            }
+            system.add(Box::new(NodeForces { entries: entries.into_iter().collect(), curve: load.curve.clone() }));
+        }
+        Ok(())
+    }
+}
+
+fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
+    WorldError::Path {
+        path: format!("load on `{}`", body.name),
+        message: "the selected nodes hold no whole facet of the boundary".into(),
+    }
+}
+
+/// Length of an edge or area of a triangle at rest.
+fn facet_measure<const D: usize>(facet: &[u32; D], positions: &[[f64; D]]) -> f64 {
+    let at = |k: usize| positions[facet[k] as usize];
+    let edge = |a: [f64; D], b: [f64; D]| -> [f64; D] { core::array::from_fn(|d| b[d] - a[d]) };
+    let square = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>();
+    let u = edge(at(0), at(1));
+    if D == 2 {
+        return square(u).sqrt();
+    }
+    let w = edge(at(0), at(D - 1));
+    let dot: f64 = u.iter().zip(&w).map(|(a, b)| a * b).sum();
+    0.5 * (square(u) * square(w) - dot * dot).sqrt()
+}
+
+/// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
+pub(crate) fn rest_volume<const D: usize>(body: &BodyBlueprint<D>) -> f64 {
+    signed_volume(&body.mesh.facets, &body.mesh.positions) * if D == 2 { body.thickness } else { 1.0 }
+}

@@ -1,0 +1,388 @@
+//! What is done to bodies while they move: drag, push, pin, set, add, remove.
+
+use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
+use crate::error::WorldError;
+use crate::loads::{NodeForces, Pull};
+use crate::world::World;
+use opruga_core::spec::{Value, nearest};
+use opruga_core::state::View;
+use opruga_core::system::Pin;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+/// How far a command has come.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Progress<const D: usize> {
+    /// Its time has not come.
+    Waiting,
+    /// It acts; a drag holds these nodes with these shares, a pin holds nodes at these places.
+    Acting {
+        held: Vec<(u32, f64)>,
+        anchors: Vec<[f64; D]>,
+    },
+    /// It is over.
+    Done,
+}
+
+/// A command and how far it has come.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Running<const D: usize> {
+    pub(crate) command: CommandBlueprint<D>,
+    pub(crate) progress: Progress<D>,
+}
+
+impl<const D: usize> World<D> {
+    /// Gives a command; it begins at its time, at the beginning of a frame.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if it names a body that is not there.
+    pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
+        let body = match &command.action {
+            Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } => Some(*body),
+            _ => None,
+        };
+        if let Some(body) = body
+            && !self.alive.get(body).copied().unwrap_or(false)
+        {
+            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+        }
+        self.running.push(Running { command, progress: Progress::Waiting });
+        Ok(())
+    }
+
+    /// Begins and ends commands at the start of a frame.
+    pub(crate) fn run_commands(&mut self) -> Result<(), WorldError> {
+        let now = self.time();
+        // A frame begins at a multiple of its length; times given in decimals may differ from it by rounding.
+        let soon = now + 1e-9 * self.blueprint.time.frame;
+        let mut rebuild = false;
+        for number in 0..self.running.len() {
+            let running = &self.running[number];
+            let over = soon >= running.command.until && running.command.until > running.command.at;
+            match running.progress {
+                Progress::Waiting if over => self.running[number].progress = Progress::Done,
+                Progress::Waiting if soon >= running.command.at => {
+                    rebuild |= self.begin(number)?;
+                }
+                Progress::Acting { .. } if over => {
+                    self.running[number].progress = Progress::Done;
+                    rebuild = true;
+                }
+                _ => {}
+            }
+        }
+        if rebuild { self.rebuild() } else { Ok(()) }
+    }
+
+    /// Begins a command; whether islands must be built anew.
+    fn begin(&mut self, number: usize) -> Result<bool, WorldError> {
+        let command = self.running[number].command.clone();
+        let acting = match &command.action {
+            Action::Drag { body, node, facet, path, .. } => {
+                let pointer = opruga_core::system::along_path::<D>(path, self.time()).0;
+                let held = match node {
+                    Some(node) => vec![(*node, 1.0)],
+                    None => self.nearest(*body, pointer, *facet),
+                };
+                Progress::Acting { held, anchors: Vec::new() }
+            }
+            Action::Push { body, select, .. } => {
+                let held = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
+                Progress::Acting { held, anchors: Vec::new() }
+            }
+            Action::Pin { body, select, .. } => {
+                let held: Vec<(u32, f64)> = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
+                let anchors = held.iter().map(|(n, _)| self.position(*body, *n)).collect();
+                Progress::Acting { held, anchors }
+            }
+            Action::Set { path, value } => {
+                self.running[number].progress = Progress::Done;
+                self.set(path, value.clone())?;
+                return Ok(false);
+            }
+            Action::Add(body) => {
+                self.running[number].progress = Progress::Done;
+                self.add_body((**body).clone())?;
+                return Ok(false);
+            }
+            Action::Remove { name } => {
+                self.running[number].progress = Progress::Done;
+                self.remove_body(name)?;
+                return Ok(false);
+            }
+        };
+        self.running[number].progress = acting;
+        Ok(true)
+    }
+
+    /// The nodes of a selector on a body, by its shape at rest.
+    pub(crate) fn selected(&self, body: usize, select: &Selector<D>) -> Vec<u32> {
+        let blueprint = &self.blueprint.bodies[body];
+        select.resolve(&blueprint.mesh, &blueprint.translation)
+    }
+
+    /// The node nearest to a point, or the corners of the nearest facet with the shares of its nearest point.
+    fn nearest(&self, body: usize, point: [f64; D], facet: bool) -> Vec<(u32, f64)> {
+        let distance = |x: [f64; D]| (0..D).map(|d| (x[d] - point[d]) * (x[d] - point[d])).sum::<f64>();
+        let mesh = Arc::clone(&self.blueprint.bodies[body].mesh);
+        if facet && !mesh.facets.is_empty() {
+            let mut best: Option<(f64, Vec<(u32, f64)>)> = None;
+            for corners in &mesh.facets {
+                let corners: Vec<u32> = corners.to_vec();
+                let places: Vec<[f64; D]> = corners.iter().map(|n| self.position(body, *n)).collect();
+                let shares = nearest_shares(&places, &point);
+                let mut x = [0.0; D];
+                for (place, share) in places.iter().zip(&shares) {
+                    for d in 0..D {
+                        x[d] += share * place[d];
+                    }
+                }
+                let far = distance(x);
+                if best.as_ref().is_none_or(|(least, _)| far < *least) {
+                    best = Some((far, corners.into_iter().zip(shares).filter(|(_, s)| *s > 0.0).collect()));
+                }
+            }
+            return best.map(|(_, held)| held).unwrap_or_default();
+        }
+        let mut best = (f64::INFINITY, 0);
+        for node in 0..mesh.positions.len() as u32 {
+            let far = distance(self.position(body, node));
+            if far < best.0 {
+                best = (far, node);
+            }
+        }
+        vec![(best.1, 1.0)]
+    }
+
+    /// Adds what commands do at present to the systems of an island that was just built.
+    pub(crate) fn apply_running(&mut self, island: usize) {
+        let bodies = self.islands[island].bodies.clone();
+        for number in 0..self.running.len() {
+            let Progress::Acting { held, anchors } = &self.running[number].progress else { continue };
+            let action = &self.running[number].command.action;
+            let (Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. }) = action else { continue };
+            let Some(lane) = bodies.iter().position(|b| b == body) else { continue };
+            let system = &mut self.islands[island].system;
+            let layout = system.layout;
+            let place = |node: u32| layout.place(node as usize, lane);
+            match action {
+                Action::Drag { stiffness, path, largest_force, .. } => {
+                    let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (place(*n), *s)).collect();
+                    let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
+                    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
+                    // Left to itself, the spring would swing the whole body twice a second.
+                    let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
+                    system.add(Box::new(Pull::<D> {
+                        held,
+                        path: Arc::new(path.clone()),
+                        stiffness,
+                        damping: 2.0 * (stiffness * mass).sqrt(),
+                        largest_force: largest_force.unwrap_or(f64::INFINITY),
+                        limited: Arc::clone(&self.limited_pulls),
+                    }));
+                }
+                Action::Push { force, .. } => {
+                    let mut entries: Vec<(usize, [f64; D])> = held.iter().map(|(n, _)| (place(*n), *force)).collect();
+                    entries.sort_by_key(|e| e.0);
+                    system.add(Box::new(NodeForces { entries, curve: Vec::new() }));
+                }
+                Action::Pin { axes, .. } => {
+                    for ((node, _), anchor) in held.iter().zip(anchors) {
+                        system.pins.push(Pin {
+                            place: place(*node),
+                            axes: *axes,
+                            anchor: *anchor,
+                            motion: Arc::new(Vec::new()),
+                        });
+                    }
+                }
+                _ => {}
+            }
+            let columns = self.integrator.work_columns();
+            system.plan(columns);
+        }
+        for (body, law) in &self.user_forces {
+            if let Some(lane) = bodies.iter().position(|b| b == body) {
+                let system = &mut self.islands[island].system;
+                let layout = system.layout;
+                system.add(Box::new(crate::loads::UserForce { law: Arc::clone(law), layout, body: lane }));
+                let columns = self.integrator.work_columns();
+                system.plan(columns);
+            }
+        }
+    }
+
+    /// Pulls that act at present: held point, pointer, force [N].
+    pub fn pulls(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
+        let mut out = Vec::new();
+        for running in &self.running {
+            let Progress::Acting { held, .. } = &running.progress else { continue };
+            let Action::Drag { body, stiffness, path, largest_force, .. } = &running.command.action else { continue };
+            let (island, lane) = self.place[*body];
+            let system = &self.islands[island].system;
+            let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (system.layout.place(*n as usize, lane), *s)).collect();
+            let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
+            let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.place(n, lane))).sum();
+            let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
+            let pull = Pull::<D> {
+                held,
+                path: Arc::new(path.clone()),
+                stiffness,
+                damping: 2.0 * (stiffness * mass).sqrt(),
+                largest_force: largest_force.unwrap_or(f64::INFINITY),
+                limited: Arc::new(AtomicU64::new(0)),
+            };
+            let view = View {
+                x: system.state.x.slices(),
+                v: system.state.v.slices(),
+                nodes: system.nodes,
+                layout: system.layout,
+                time: self.time(),
+            };
+            let (x, pointer, force, _) = pull.force(&view);
+            out.push((x, pointer, force));
+        }
+        out
+    }
+
+    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `integrator.FIELD`, `world.gravity`, `time.substeps`.
+    ///
+    /// # Errors
+    /// [`WorldError`] says what is wrong; the world stays as it was. The stable step is estimated anew.
+    pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
+        let refuse = |message: String| WorldError::Path { path: path.to_string(), message };
+        let parts: Vec<&str> = path.split('.').collect();
+        let before = self.blueprint.clone();
+        match parts.as_slice() {
+            ["body", name, "models", kind, field] => {
+                let known = self.blueprint.bodies.iter().map(|b| b.name.as_str());
+                let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
+                let body = self.body(name).ok_or_else(|| refuse(format!("there is no body `{name}`{hint}")))?;
+                let spec = self.registry.model(kind).map(|m| m.spec());
+                let kinds: Vec<String> = self.blueprint.bodies[body].models.iter().map(|m| m.kind().to_string()).collect();
+                let values = self.blueprint.bodies[body].models.iter_mut().find(|m| m.kind() == *kind);
+                let (Some(spec), Some(values)) = (spec, values) else {
+                    return Err(refuse(format!("body `{name}` has no model `{kind}`; it has {}", kinds.join(", "))));
+                };
+                values.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+            }
+            ["integrator", field] => {
+                let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
+                let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
+                self.blueprint.integrator.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+            }
+            ["world", "gravity"] => match &value {
+                Value::Numbers(g) if g.len() == D && g.iter().all(|x| x.is_finite()) => {
+                    self.blueprint.surroundings.gravity = core::array::from_fn(|d| g[d]);
+                }
+                other => return Err(refuse(format!("is {other}; allowed: {D} finite numbers"))),
+            },
+            ["world", "drag"] => match &value {
+                Value::Number(rate) if rate.is_finite() && *rate >= 0.0 => self.blueprint.surroundings.drag = *rate,
+                other => return Err(refuse(format!("is {other}; allowed: a number >= 0"))),
+            },
+            ["time", "substeps"] => match value {
+                Value::Integer(n) if (1..=1_000_000).contains(&n) => self.blueprint.time.substeps = n as u32,
+                other => return Err(refuse(format!("is {other}; allowed: a whole number from 1 to 1000000"))),
+            },
+            _ => {
+                return Err(refuse(
+                    "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD, world.gravity, world.drag, time.substeps".into(),
+                ));
+            }
+        }
+        if let Err(error) = self.rebuild().and_then(|()| self.check_stability()) {
+            self.blueprint = before;
+            self.rebuild()?;
+            return Err(error);
+        }
+        Ok(())
+    }
+
+    /// Adds a body; returns its number.
+    ///
+    /// # Errors
+    /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
+    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
+        if self.body(&body.name).is_some() {
+            return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
+        }
+        let number = self.blueprint.bodies.len();
+        self.save_states();
+        self.states.push(Some(crate::build::initial_state(&body)));
+        self.blueprint.bodies.push(body);
+        self.alive.push(true);
+        self.generation.push(0);
+        let outcome = self.rebuild_from_states().and_then(|()| self.check_stability());
+        if let Err(error) = outcome {
+            self.blueprint.bodies.pop();
+            self.alive.pop();
+            self.generation.pop();
+            self.states.pop();
+            self.rebuild_from_states()?;
+            return Err(error);
+        }
+        Ok(number)
+    }
+
+    /// Takes a body away.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no body of that name.
+    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
+        let Some(body) = self.body(name) else {
+            return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
+        };
+        self.save_states();
+        self.alive[body] = false;
+        self.generation[body] += 1;
+        for running in &mut self.running {
+            if let Action::Drag { body: b, .. } | Action::Push { body: b, .. } | Action::Pin { body: b, .. } = &running.command.action
+                && *b == body
+            {
+                running.progress = Progress::Done;
+            }
+        }
+        self.rebuild_from_states()
+    }
+}
+
+/// Shares of the corners in the point of a segment or triangle that is nearest to a point.
+fn nearest_shares<const D: usize>(corners: &[[f64; D]], point: &[f64; D]) -> Vec<f64> {
+    let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|d| a[d] * b[d]).sum::<f64>();
+    let minus = |a: &[f64; D], b: &[f64; D]| -> [f64; D] { core::array::from_fn(|d| a[d] - b[d]) };
+    let on_segment = |a: &[f64; D], b: &[f64; D]| {
+        let edge = minus(b, a);
+        let square = dot(&edge, &edge);
+        let s = if square > 0.0 { dot(&minus(point, a), &edge) / square } else { 0.0 };
+        if s < 0.0 { 0.0 } else if s > 1.0 { 1.0 } else { s }
+    };
+    if corners.len() == 2 {
+        let s = on_segment(&corners[0], &corners[1]);
+        return vec![1.0 - s, s];
+    }
+    // Barycentric coordinates of the foot of the perpendicular; outside of the triangle the best edge.
+    let (u, w, r) = (minus(&corners[1], &corners[0]), minus(&corners[2], &corners[0]), minus(point, &corners[0]));
+    let (uu, uw, ww, ru, rw) = (dot(&u, &u), dot(&u, &w), dot(&w, &w), dot(&r, &u), dot(&r, &w));
+    let determinant = uu * ww - uw * uw;
+    if determinant > 0.0 {
+        let (s, t) = ((ww * ru - uw * rw) / determinant, (uu * rw - uw * ru) / determinant);
+        if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
+            return vec![1.0 - s - t, s, t];
+        }
+    }
+    let mut best = (f64::INFINITY, vec![1.0, 0.0, 0.0]);
+    for [a, b] in [[0, 1], [1, 2], [2, 0]] {
+        let s = on_segment(&corners[a], &corners[b]);
+        let foot: [f64; D] = core::array::from_fn(|d| corners[a][d] + s * (corners[b][d] - corners[a][d]));
+        let far = minus(&foot, point);
+        let square = dot(&far, &far);
+        if square < best.0 {
+            let mut shares = vec![0.0; 3];
+            shares[a] = 1.0 - s;
+            shares[b] = s;
+            best = (square, shares);
+        }
+    }
+    best.1
+}

@@ -1,0 +1,82 @@
+//! What can go wrong in a world.
+
+use opruga_core::error::BuildError;
+
+/// Why a world could not be built, changed or stepped. The world is as it was before the call.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// A model, integrator or collider refuses.
+    #[error("{place}: {source}")]
+    Build {
+        /// The body or section.
+        place: String,
+        /// Why.
+        source: BuildError,
+    },
+    /// The substep is longer than the integrator allows.
+    #[error(
+        "the step h = {h:.6e} s of `{integrator}` is unstable for body `{body}`: the largest stable step is {limit:.6e} s \
+         (stiffness ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s); allowed: h <= {limit:.6e}; hint: substeps >= {substeps}"
+    )]
+    UnstableStep {
+        /// The integrator.
+        integrator: &'static str,
+        /// The body that limits it.
+        body: String,
+        /// The substep [s].
+        h: f64,
+        /// The largest stable substep [s].
+        limit: f64,
+        /// The largest frequency [rad/s].
+        omega: f64,
+        /// The largest damping rate [1/s].
+        damping: f64,
+        /// The least number of substeps of a frame that is stable.
+        substeps: u32,
+    },
+    /// The motion left the finite numbers.
+    #[error("body `{body}` diverged: node {node} in the substep from t = {time} s; the world is at its last good frame, t = {last} s")]
+    Diverged {
+        /// The body.
+        body: String,
+        /// The node.
+        node: u32,
+        /// The time at the start of the substep [s].
+        time: f64,
+        /// The time of the last good frame [s].
+        last: f64,
+    },
+    /// A model has no meaning in the state reached.
+    #[error("body `{body}`: {message}; the world is at its last good frame")]
+    Step {
+        /// The body.
+        body: String,
+        /// What the model says.
+        message: String,
+    },
+    /// A name, path or value does not fit.
+    #[error("`{path}`: {message}")]
+    Path {
+        /// What was given.
+        path: String,
+        /// What is wrong, and what is allowed.
+        message: String,
+    },
+    /// A snapshot does not belong to this world or is damaged.
+    #[error("the snapshot cannot be restored: {0}")]
+    Snapshot(String),
+}
+
+impl WorldError {
+    /// The stable code of the error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            WorldError::Build { source, .. } => source.code,
+            WorldError::UnstableStep { .. } => "step.unstable",
+            WorldError::Diverged { .. } => "run.diverged",
+            WorldError::Step { .. } => "run.model",
+            WorldError::Path { .. } => "path.unknown",
+            WorldError::Snapshot(_) => "snapshot.damaged",
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Bodies that are stepped together, and the frame that they step through on their own.
+
+use crate::ledger::{Account1, take_stock};
+use opruga_collide::Colliders;
+use opruga_core::error::StepError;
+use opruga_core::integrator::Integrator;
+use opruga_core::state::Columns;
+use opruga_core::system::{System, Work8};
+use opruga_math::Lane;
+use std::sync::Arc;
+
+/// One body, or up to eight alike ones side by side.
+#[derive(Debug)]
+pub(crate) struct Island<const D: usize> {
+    pub(crate) system: System<D>,
+    /// The bodies, by their place in the world.
+    pub(crate) bodies: Vec<usize>,
+    pub(crate) stock: Account1<D>,
+    pub(crate) work: Work8,
+    last: Option<Saved<D>>,
+}
+
+/// The state at the last good frame.
+#[derive(Debug)]
+struct Saved<const D: usize> {
+    x: Columns<D>,
+    v: Columns<D>,
+    memory: Vec<Vec<f64>>,
+    time: f64,
+}
+
+/// What a frame needs to know.
+pub(crate) struct FramePlan<'a, const D: usize> {
+    pub(crate) integrator: &'a dyn Integrator<D>,
+    pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,
+    pub(crate) start: f64,
+    pub(crate) substeps: u32,
+    pub(crate) h: f64,
+}
+
+impl<const D: usize> Island<D> {
+    pub(crate) fn new(system: System<D>, bodies: Vec<usize>) -> Self {
+        let mut island = Island { system, bodies, stock: Account1::default(), work: Work8::default(), last: None };
+        island.stock = take_stock(&mut island.system);
+        island
+    }
+
+    /// Steps through a frame; on failure the island is at its last good frame and the reason names substep and node.
+    pub(crate) fn frame(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
+        self.save(plan.start);
+        let near = self.reaches(plan);
+        let mut outcome = self.attempt(plan, near);
+        // A body that left the region swept by its velocities might have met an obstacle: once more, looking at all.
+        if outcome.is_ok() && !near && plan.colliders.is_some() && self.left_swept_region(plan) {
+            self.restore();
+            outcome = self.attempt(plan, true);
+        }
+        match outcome {
+            Ok(()) => {
+                self.system.time = plan.start + f64::from(plan.substeps) * plan.h;
+                self.work = std::mem::take(&mut self.system.work);
+                self.stock = take_stock(&mut self.system);
+                Ok(())
+            }
+            Err(error) => {
+                self.restore();
+                let named = self.name_culprit(plan).unwrap_or(error);
+                self.restore();
+                self.system.work = Work8::default();
+                Err(named)
+            }
+        }
+    }
+
+    fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<(), StepError> {
+        self.system.work = Work8::default();
+        self.system.contacts = None;
+        if let (true, Some(colliders)) = (near, plan.colliders) {
+            self.system.contacts = Some(Arc::clone(colliders) as Arc<dyn opruga_core::contacts::Contacts<D>>);
+        }
+        for substep in 0..plan.substeps {
+            self.system.time = plan.start + f64::from(substep) * plan.h;
+            plan.integrator.step(&mut self.system, plan.h)?;
+        }
+        self.check_finite(plan.start)
+    }
+
+    /// Repeats the frame, looking at every substep.
+    fn name_culprit(&mut self, plan: &FramePlan<D>) -> Option<StepError> {
+        self.system.contacts = plan.colliders.map(|c| Arc::clone(c) as Arc<dyn opruga_core::contacts::Contacts<D>>);
+        for substep in 0..plan.substeps {
+            let time = plan.start + f64::from(substep) * plan.h;
+            self.system.time = time;
+            if let Err(error) = plan.integrator.step(&mut self.system, plan.h) {
+                return Some(error);
+            }
+            if let Err(error) = self.check_finite(time) {
+                return Some(error);
+            }
+        }
+        None
+    }
+
+    fn check_finite(&self, time: f64) -> Result<(), StepError> {
+        let system = &self.system;
+        let end = system.nodes * system.layout.stride();
+        // 0·x is zero for finite x and not a number for all others; eight partial sums let it run at full speed.
+        let mut sums = [0.0; 8];
+        for column in system.state.x.0.iter().chain(&system.state.v.0) {
+            for chunk in column[..end.next_multiple_of(8)].chunks_exact(8) {
+                for l in 0..8 {
+                    sums[l] += chunk[l] * 0.0;
+                }
+            }
+        }
+        if sums.iter().all(|s| *s == 0.0) {
+            return Ok(());
+        }
+        for node in 0..system.nodes {
+            for body in 0..system.bodies {
+                let place = system.layout.place(node, body);
+                let (x, v) = (system.state.x.at(place), system.state.v.at(place));
+                if x.iter().chain(&v).any(|c| !c.is_finite()) {
+                    return Err(StepError::Diverged { body, node: node as u32, time });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn save(&mut self, time: f64) {
+        let system = &self.system;
+        match &mut self.last {
+            Some(saved) => {
+                for d in 0..D {
+                    saved.x.0[d].copy_from_slice(&system.state.x.0[d]);
+                    saved.v.0[d].copy_from_slice(&system.state.v.0[d]);
+                }
+                saved.time = time;
+                saved.memory.resize(system.members.len(), Vec::new());
+                for (kept, member) in saved.memory.iter_mut().zip(&system.members) {
+                    kept.clone_from(&member.memory);
+                }
+            }
+            None => {
+                self.last = Some(Saved {
+                    x: system.state.x.clone(),
+                    v: system.state.v.clone(),
+                    memory: system.members.iter().map(|m| m.memory.clone()).collect(),
+                    time,
+                });
+            }
+        }
+    }
+
+    /// Goes back to the last good frame.
+    pub(crate) fn restore(&mut self) {
+        if let Some(saved) = &self.last {
+            for d in 0..D {
+                self.system.state.x.0[d].copy_from_slice(&saved.x.0[d]);
+                self.system.state.v.0[d].copy_from_slice(&saved.v.0[d]);
+            }
+            for (member, kept) in self.system.members.iter_mut().zip(&saved.memory) {
+                member.memory.clone_from(kept);
+            }
+            self.system.time = saved.time;
+        }
+    }
+
+    /// Whether the bodies may meet an obstacle within the frame: bounds swept by v·dt + ½g·dt² and a margin.
+    fn reaches(&self, plan: &FramePlan<D>) -> bool {
+        let Some(colliders) = plan.colliders else { return false };
+        let Some((low, high)) = self.swept(plan) else { return true };
+        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, low, high)
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let kept = 2 * D * self.last.as_ref().map_or(0, |s| s.x.0[0].capacity()) * 8;
+        self.system.heap_bytes() + kept
+    }
+
+    /// The bounds of positions.
+    pub(crate) fn bounds(columns: &Columns<D>, places: usize) -> ([f64; D], [f64; D]) {
+        let mut low = [f64::INFINITY; D];
+        let mut high = [f64::NEG_INFINITY; D];
+        for d in 0..D {
+            let (mut lows, mut highs) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+            let (packs, rest) = columns.0[d][..places].as_chunks::<8>();
+            for pack in packs {
+                for l in 0..8 {
+                    lows[l] = if pack[l] < lows[l] { pack[l] } else { lows[l] };
+                    highs[l] = if pack[l] > highs[l] { pack[l] } else { highs[l] };
+                }
+            }
+            for x in rest.iter().chain(&lows) {
+                low[d] = low[d].smaller(*x);
+            }
+            for x in rest.iter().chain(&highs) {
+                high[d] = high[d].larger(*x);
+            }
+        }
+        (low, high)
+    }
+
+    fn swept(&self, plan: &FramePlan<D>) -> Option<([f64; D], [f64; D])> {
+        let saved = self.last.as_ref()?;
+        let system = &self.system;
+        let places = system.nodes * system.layout.stride();
+        let (mut low, mut high) = Self::bounds(&saved.x, places);
+        let (slow, fast) = Self::bounds(&saved.v, places);
+        let dt = f64::from(plan.substeps) * plan.h;
+        for d in 0..D {
+            let fall = 0.5 * system.gravity[d] * dt * dt;
+            // A body may deform at its own speed; the margin is a tenth of its size.
+            let margin = 0.1 * (high[d] - low[d]) + fall.abs();
+            low[d] += (slow[d] * dt).smaller(0.0) - margin;
+            high[d] += (fast[d] * dt).larger(0.0) + margin;
+        }
+        Some((low, high))
+    }
+
+    fn left_swept_region(&self, plan: &FramePlan<D>) -> bool {
+        let Some((low, high)) = self.swept(plan) else { return true };
+        let system = &self.system;
+        let (least, most) = Self::bounds(&system.state.x, system.nodes * system.layout.stride());
+        (0..D).any(|d| least[d] < low[d] || most[d] > high[d])
+    }
+}

@@ -1,0 +1,21 @@
+//! Worlds of Opruga: bodies, obstacles, time, commands and what can be read of them.
+
+pub mod blueprint;
+mod build;
+mod commands;
+pub mod error;
+mod island;
+pub mod ledger;
+mod loads;
+pub mod registry;
+pub mod schema;
+pub mod selection;
+pub mod shapes;
+mod snapshot;
+mod world;
+
+pub use error::WorldError;
+pub use ledger::{Energy, Momentum};
+pub use loads::ForceLaw;
+pub use registry::Registry;
+pub use world::{BodyHandle, Options, Warning, World};

@@ -1,0 +1,54 @@
+//! Which models and integrators a world can name.
+
+use opruga_core::integrator::IntegratorKind;
+use opruga_core::potential::Model;
+use opruga_core::spec::Spec;
+
+/// Models and integrators by name. A user's crate adds its own.
+pub struct Registry<const D: usize> {
+    models: Vec<Box<dyn Model<D>>>,
+    integrators: Vec<Box<dyn IntegratorKind<D>>>,
+}
+
+impl<const D: usize> Default for Registry<D> {
+    fn default() -> Self {
+        Registry { models: opruga_models::all(), integrators: opruga_integrators::all() }
+    }
+}
+
+impl<const D: usize> core::fmt::Debug for Registry<D> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let names = |specs: Vec<&'static Spec>| specs.iter().map(|s| s.kind).collect::<Vec<_>>();
+        f.debug_struct("Registry")
+            .field("models", &names(self.models()))
+            .field("integrators", &names(self.integrators()))
+            .finish()
+    }
+}
+
+impl<const D: usize> Registry<D> {
+    /// Adds a model; it takes precedence over one of the same name.
+    pub fn add_model(&mut self, model: Box<dyn Model<D>>) {
+        self.models.insert(0, model);
+    }
+    /// Adds an integrator; it takes precedence over one of the same name.
+    pub fn add_integrator(&mut self, integrator: Box<dyn IntegratorKind<D>>) {
+        self.integrators.insert(0, integrator);
+    }
+    /// The model of a name.
+    pub fn model(&self, kind: &str) -> Option<&dyn Model<D>> {
+        self.models.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
+    }
+    /// The integrator of a name.
+    pub fn integrator(&self, kind: &str) -> Option<&dyn IntegratorKind<D>> {
+        self.integrators.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
+    }
+    /// The specifications of all models.
+    pub fn models(&self) -> Vec<&'static Spec> {
+        self.models.iter().map(|m| m.spec()).collect()
+    }
+    /// The specifications of all integrators.
+    pub fn integrators(&self) -> Vec<&'static Spec> {
+        self.integrators.iter().map(|m| m.spec()).collect()
+    }
+}

@@ -1,0 +1,352 @@
+//! The fixed sections of a scene, described once: the reader, the error messages, the reference page and the JSON
+//! Schema are all made from these constants.
+//!
+//! A [`Section`] is a [`Spec`] (plain fields) and its [`Child`]ren (what a plain field cannot hold: tables, lists of
+//! tables, selectors, references to bodies).
+
+use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+
+/// One table of a scene: its plain fields and its structured ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    /// The plain fields; `kind` is the word in the scene (a key, or the value of the tag).
+    pub spec: &'static Spec,
+    /// The structured fields.
+    pub children: &'static [Child],
+}
+
+/// A field that holds more than a plain value.
+#[derive(Clone, Copy, Debug)]
+pub struct Child {
+    /// The word in the scene file.
+    pub name: &'static str,
+    /// What it holds.
+    pub holds: Holds,
+    /// Whether the scene must say it.
+    pub required: bool,
+    /// One sentence in words of physics.
+    pub documentation: &'static str,
+}
+
+/// What a structured field holds.
+#[derive(Clone, Copy, Debug)]
+pub enum Holds {
+    /// A table.
+    Table(&'static Section),
+    /// A list of tables.
+    List(&'static Section),
+    /// A list of tables, each of the section whose `spec.kind` is the value of its key `tag`.
+    Tagged {
+        /// The key that names the section: `kind` or `do`.
+        tag: &'static str,
+        /// The sections.
+        sections: &'static [Section],
+    },
+    /// A table whose `kind` names a shape.
+    Shape,
+    /// A table whose `kind` names an integrator.
+    Integrator,
+    /// A list of tables whose `kind` names a model.
+    Models,
+    /// A list of tables whose `kind` names a collider.
+    Colliders,
+    /// A set of nodes.
+    Selector,
+    /// A rotation: one number in 2D, an axis times its angle in 3D.
+    Turn,
+    /// A body of the scene, by its name or its number.
+    BodyReference,
+    /// A node by number, `"nearest"` or `"nearest_facet"`.
+    Node,
+    /// A list of words out of these, each once.
+    Words(&'static [&'static str]),
+    /// As many whole numbers from 1 as the scene has dimensions (fewer: the rest is 1).
+    Counts,
+    /// A value of any type; what fits depends on the parameter that it is for.
+    AnyValue,
+}
+
+/// Both dimensions.
+pub const ANY_DIMENSION: &[usize] = &[2, 3];
+const POSITIVE_FINITE: Allowed = Allowed::POSITIVE;
+
+const fn section(kind: &'static str, summary: &'static str, documentation: &'static str, fields: &'static [Field]) -> Spec {
+    Spec { kind, summary, documentation, dimensions: ANY_DIMENSION, fields }
+}
+
+const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+    Field { name, range, unit, default, documentation }
+}
+
+const fn child(name: &'static str, holds: Holds, required: bool, documentation: &'static str) -> Child {
+    Child { name, holds, required, documentation }
+}
+
+/// The largest whole number that every reader of numbers keeps exactly: 2⁵³.
+pub const LARGEST_WHOLE: i64 = 1 << 53;
+
+/// The value of `format` that this version reads and writes.
+pub const FORMAT: &str = "opruga-1";
+
+/// The top of a scene.
+pub const SCENE: Section = Section {
+    spec: &section(
+        "scene",
+        "The top of the file",
+        "Every scene begins with its format and its number of dimensions.",
+        &[
+            field("format", Allowed::Text, "", Default::Required, "The version of the format: `opruga-1`."),
+            field("dimension", Allowed::Integer { least: 2, greatest: 3 }, "", Default::Required, "2 for the plane, 3 for space."),
+            field(
+                "seed",
+                Allowed::Integer { least: 0, greatest: LARGEST_WHOLE },
+                "",
+                Default::Integer(1),
+                "The seed of everything random: the same seed gives the same bits.",
+            ),
+            field("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
+        ],
+    ),
+    children: &[
+        child("time", Holds::Table(&TIME), true, "How time passes."),
+        child("world", Holds::Table(&WORLD), false, "What acts everywhere."),
+        child("integrator", Holds::Integrator, true, "How the equations of motion are stepped."),
+        child("body", Holds::List(&BODY), false, "The deformable bodies."),
+        child("collider", Holds::Colliders, false, "The rigid obstacles."),
+        child("load", Holds::Tagged { tag: "kind", sections: LOADS }, false, "Forces from outside."),
+        child("command", Holds::Tagged { tag: "do", sections: COMMANDS }, false, "What is done to the bodies while they move."),
+        child("probe", Holds::List(&PROBE), false, "Columns of `diagnostics.csv` that follow nodes."),
+    ],
+};
+
+/// `[time]`.
+pub const TIME: Section = Section {
+    spec: &section(
+        "time",
+        "How time passes",
+        "A frame is divided into substeps of h = frame / substeps.",
+        &[
+            field("seconds", Allowed::NOT_NEGATIVE, "s", Default::Required, "How long the scene lasts."),
+            field("frame", Allowed::POSITIVE, "s", Default::Number(1.0 / 60.0), "The time from one picture to the next."),
+            field(
+                "substeps",
+                Allowed::Integer { least: 1, greatest: 1_000_000 },
+                "",
+                Default::Integer(16),
+                "The number of steps of the integrator in a frame.",
+            ),
+        ],
+    ),
+    children: &[],
+};
+
+/// `[world]`.
+pub const WORLD: Section = Section {
+    spec: &section(
+        "world",
+        "What acts everywhere",
+        "Gravity and drag act on every node. The largest force and velocity are stabilisers: off unless given, and every time they act is counted.",
+        &[
+            field("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
+            field("drag", Allowed::NOT_NEGATIVE, "1/s", Default::Number(0.0), "Drag per unit of mass, a = −drag·v; it brakes rigid motion too."),
+            field("largest_force", POSITIVE_FINITE, "N", Default::Absent, "The largest force on a node."),
+            field("largest_velocity", POSITIVE_FINITE, "m/s", Default::Absent, "The largest speed of a node."),
+        ],
+    ),
+    children: &[],
+};
+
+/// `[[body]]`.
+pub const BODY: Section = Section {
+    spec: &section(
+        "body",
+        "A deformable body",
+        "Exactly one of `mass`, `density` and `node_mass` says how much it weighs. Its shape is scaled, then rotated about the origin of the shape's own coordinates, then moved to `position`.",
+        &[
+            field("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
+            field("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
+            field("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
+            field("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
+            field("fixed", Allowed::Boolean, "", Default::Boolean(false), "All nodes are pinned; then no mass need be given."),
+            field("thickness", Allowed::POSITIVE, "m", Default::Number(1.0), "Thickness out of the plane in 2D, of a sheet in 3D."),
+            field("position", Allowed::Vector, "m", Default::Origin, "Where the origin of its shape lies at the start."),
+            field("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
+            field("velocity", Allowed::Vector, "m/s", Default::Origin, "Velocity at the start."),
+        ],
+    ),
+    children: &[
+        child("shape", Holds::Shape, true, "Its shape at rest."),
+        child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad]."),
+        child("angular_velocity", Holds::Turn, false, "Angular velocity at the start about the centre of mass [rad/s]."),
+        child("models", Holds::Models, false, "What its material does."),
+        child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
+        child("copies", Holds::Table(&COPIES), false, "Rows, columns and layers of the same body, called `name[0]`, `name[1]`, …"),
+    ],
+};
+
+/// An entry of `pin` in a body.
+pub const PIN: Section = Section {
+    spec: &section(
+        "pin",
+        "Nodes held at their place, or moved in a prescribed way",
+        "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant.",
+        &[
+            field("axes", Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]), "", Default::Absent, "The axes that are held; all where the scene is silent."),
+            field("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
+        ],
+    ),
+    children: &[child("select", Holds::Selector, true, "Which nodes.")],
+};
+
+/// `copies` in a body.
+pub const COPIES: Section = Section {
+    spec: &section(
+        "copies",
+        "Rows, columns and layers of the same body",
+        "Copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. Copies share one mesh.",
+        &[
+            field("spacing", Allowed::Vector, "m", Default::Required, "The distance from copy to copy along every axis."),
+            field("first", Allowed::Vector, "m", Default::Origin, "An offset of all copies."),
+            field("jitter", Allowed::NOT_NEGATIVE, "m", Default::Number(0.0), "Each coordinate is moved at random, evenly in ±jitter, by the seed of the scene."),
+        ],
+    ),
+    children: &[child("count", Holds::Counts, true, "How many along every axis.")],
+};
+
+const CURVE: Field = field("curve", Allowed::Curve, "s, 1", Default::Absent, "A factor over time, linear between its rows; 1 where the scene is silent.");
+const LOAD_CHILDREN: &[Child] = &[
+    child("body", Holds::BodyReference, true, "The body."),
+    child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+];
+
+/// `[[load]]`, by `kind`.
+pub const LOADS: &[Section] = &[
+    Section {
+        spec: &section("force", "The same force on every selected node", "", &[field("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE]),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "traction",
+            "A force per area of the boundary at rest",
+            "It is spread over the facets of the boundary all of whose nodes are selected.",
+            &[field("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "pressure",
+            "A pressure on the boundary, along its present inner normal",
+            "It acts on the facets of the boundary all of whose nodes are selected.",
+            &[field("value", Allowed::ANY, "Pa", Default::Required, "The pressure; positive presses inwards."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
+];
+
+const AT: Field = field("at", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it begins.");
+const UNTIL: Field = field("until", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it ends.");
+
+/// `[[command]]`, by `do`.
+pub const COMMANDS: &[Section] = &[
+    Section {
+        spec: &section(
+            "drag",
+            "Pull a node toward a moving pointer by a critically damped spring",
+            "",
+            &[
+                AT,
+                field("until", Allowed::NOT_NEGATIVE, "s", Default::Absent, "When it ends; the end of the path where the scene is silent."),
+                field("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
+                field("stiffness", Allowed::POSITIVE, "N/m", Default::Absent, "Stiffness of the spring; chosen from the body where the scene is silent."),
+                field("largest_force", Allowed::POSITIVE, "N", Default::Absent, "The largest force; every time it acts is counted."),
+            ],
+        ),
+        children: &[
+            child("body", Holds::BodyReference, true, "The body."),
+            child("node", Holds::Node, false, "What is held: a node, the node nearest to the pointer at the beginning (so too where the scene is silent), or the nearest point of a facet."),
+        ],
+    },
+    Section {
+        spec: &section("push", "A force on nodes", "", &[AT, UNTIL, field("force", Allowed::Vector, "N", Default::Required, "The force on every node.")]),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "pin",
+            "Hold nodes where they are at the beginning",
+            "",
+            &[AT, UNTIL, field("axes", Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]), "", Default::Absent, "The axes that are held; all where the scene is silent.")],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section("set", "Change a parameter", "", &[AT, field("path", Allowed::Text, "", Default::Required, "The parameter: `body.NAME.models.KIND.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.")]),
+        children: &[child("value", Holds::AnyValue, true, "Its new value.")],
+    },
+    Section {
+        spec: &section("add", "Add a body", "", &[AT]),
+        children: &[child("body", Holds::Table(&BODY), true, "The body, as in `[[body]]`, without copies.")],
+    },
+    Section {
+        spec: &section("remove", "Take a body away", "", &[AT, field("body", Allowed::Text, "", Default::Required, "The name of the body, of the scene or added before.")]),
+        children: &[],
+    },
+];
+
+/// `[[probe]]`.
+pub const PROBE: Section = Section {
+    spec: &section(
+        "probe",
+        "Columns of diagnostics.csv that follow nodes",
+        "Of positions and velocities the mean over the nodes is written, of reactions the sum.",
+        &[field("name", Allowed::Text, "", Default::Required, "The first part of the names of its columns, unique in the scene.")],
+    ),
+    children: &[
+        child("body", Holds::BodyReference, true, "The body."),
+        child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+        child("record", Holds::Words(&["position", "velocity", "reaction"]), true, "What is written down."),
+    ],
+};
+
+/// The selectors, by their key.
+pub const SELECTORS: &[Spec] = &[
+    section("box", "Nodes in a box between two corners", "`{ box = [[x, y], [x, y]] }` [m]: at the start, the surface of the box included.", &[]),
+    section(
+        "ball",
+        "Nodes at most a radius from a centre",
+        "`{ ball = { center = [x, y], radius = r } }`",
+        &[
+            field("center", Allowed::Vector, "m", Default::Required, "The centre."),
+            field("radius", Allowed::NOT_NEGATIVE, "m", Default::Required, "The radius."),
+        ],
+    ),
+    section(
+        "half_space",
+        "Nodes on the side of a plane to which its normal points, or on it",
+        "`{ half_space = { point = [x, y], normal = [x, y] } }`",
+        &[
+            field("point", Allowed::Vector, "m", Default::Required, "A point of the plane."),
+            field("normal", Allowed::Vector, "", Default::Required, "The normal, of any length but zero."),
+        ],
+    ),
+    section("side", "Nodes on one side of the body's bounding box", "`{ side = \"left\" }`: left, right (x), bottom, top (y), back, front (z).", &[]),
+    section("node", "One node by number", "`{ node = 0 }`", &[]),
+    section("nodes", "Nodes by number", "`{ nodes = [0, 1, 2] }`", &[]),
+    section("group", "A named group of the mesh", "`{ group = \"clamped\" }`", &[]),
+    section("boundary", "Nodes of the boundary", "`{ boundary = true }`", &[]),
+    section("all", "Every node", "`{ all = true }`", &[]),
+    section("and", "Nodes in every one of the sets", "`{ and = [ { … }, { … } ] }`", &[]),
+    section("or", "Nodes in any one of the sets", "`{ or = [ { … }, { … } ] }`", &[]),
+    section("not", "Nodes that are not in the set", "`{ not = { … } }`", &[]),
+];
+
+/// The number of a positive bound, where a field has one: for editors and panels.
+pub fn least_of(allowed: &Allowed) -> Option<f64> {
+    match allowed {
+        Allowed::Number { least: Bound::Closed(x) | Bound::Open(x), .. } => Some(*x),
+        Allowed::Integer { least, .. } => Some(*least as f64),
+        _ => None,
+    }
+}

@@ -1,0 +1,203 @@
+//! The whole state of a world in bytes, and back.
+
+use crate::build::BodyState;
+use crate::commands::Progress;
+use crate::error::WorldError;
+use crate::ledger::Flows;
+use crate::world::World;
+use std::sync::atomic::Ordering;
+
+/// Little-endian numbers, one after the other.
+#[derive(Default)]
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn count(&mut self, n: u64) {
+        self.0.extend(n.to_le_bytes());
+    }
+    fn number(&mut self, x: f64) {
+        self.0.extend(x.to_le_bytes());
+    }
+    fn vectors<const D: usize>(&mut self, vectors: &[[f64; D]]) {
+        self.count(vectors.len() as u64);
+        for x in vectors.iter().flatten() {
+            self.number(*x);
+        }
+    }
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn eight(&mut self) -> Result<[u8; 8], WorldError> {
+        let (head, tail) = self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
+        self.0 = tail;
+        Ok(*head)
+    }
+    fn count(&mut self) -> Result<u64, WorldError> {
+        Ok(u64::from_le_bytes(self.eight()?))
+    }
+    /// A count of things that each take at least eight bytes: never more than there are bytes.
+    fn length(&mut self) -> Result<usize, WorldError> {
+        let n = self.count()?;
+        if n > self.0.len() as u64 / 8 {
+            return Err(WorldError::Snapshot(format!("it promises {n} numbers, more than it holds")));
+        }
+        Ok(n as usize)
+    }
+    fn number(&mut self) -> Result<f64, WorldError> {
+        Ok(f64::from_le_bytes(self.eight()?))
+    }
+    fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
+        let n = self.length()?;
+        let mut out = Vec::with_capacity(n);
+        for _ in 0..n {
+            let mut vector = [0.0; D];
+            for x in &mut vector {
+                *x = self.number()?;
+            }
+            out.push(vector);
+        }
+        Ok(out)
+    }
+}
+
+const VERSION: u64 = 1;
+
+impl<const D: usize> World<D> {
+    /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
+    ///
+    /// A world built from the same blueprint that restores it goes on bit for bit, on any number of threads.
+    pub fn snapshot(&mut self) -> Vec<u8> {
+        self.save_states();
+        let mut out = Writer::default();
+        out.count(VERSION);
+        out.count(D as u64);
+        out.count(self.frames);
+        out.count(self.states.len() as u64);
+        for (state, alive) in self.states.iter().zip(&self.alive) {
+            out.count(u64::from(*alive));
+            let Some(state) = state else { continue };
+            out.vectors(&state.x);
+            out.vectors(&state.v);
+            out.count(state.memory.len() as u64);
+            for memory in &state.memory {
+                out.count(memory.len() as u64);
+                memory.iter().for_each(|m| out.number(*m));
+            }
+        }
+        out.count(self.running.len() as u64);
+        for running in &self.running {
+            match &running.progress {
+                Progress::Waiting => out.count(0),
+                Progress::Done => out.count(1),
+                Progress::Acting { held, anchors } => {
+                    out.count(2);
+                    out.count(held.len() as u64);
+                    for (node, share) in held {
+                        out.count(u64::from(*node));
+                        out.number(*share);
+                    }
+                    out.vectors(anchors);
+                }
+            }
+        }
+        let f = &self.flows;
+        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.start, f.largest] {
+            out.number(x);
+        }
+        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls] {
+            out.count(n);
+        }
+        out.0
+    }
+
+    /// Goes to the state of a snapshot of a world with the same blueprint.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
+        let mut reader = Reader(bytes);
+        if reader.count()? != VERSION {
+            return refuse("its version is not 1");
+        }
+        if reader.count()? != D as u64 {
+            return refuse("it has another dimension");
+        }
+        let frames = reader.count()?;
+        if reader.count()? != self.states.len() as u64 {
+            return refuse("it has another number of bodies");
+        }
+        let mut states = Vec::new();
+        let mut alive = Vec::new();
+        for body in &self.blueprint.bodies {
+            alive.push(reader.count()? == 1);
+            let x = reader.vectors::<D>()?;
+            let v = reader.vectors::<D>()?;
+            let models = reader.length()?;
+            let mut memory = Vec::new();
+            for _ in 0..models {
+                let n = reader.length()?;
+                memory.push((0..n).map(|_| reader.number()).collect::<Result<Vec<f64>, _>>()?);
+            }
+            if x.len() != body.mesh.positions.len() || v.len() != x.len() || models != body.models.len() {
+                return refuse(&format!("body `{}` has another shape", body.name));
+            }
+            if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
+                return refuse(&format!("body `{}` has a number that is not finite", body.name));
+            }
+            states.push(Some(BodyState { x, v, memory }));
+        }
+        if reader.count()? != self.running.len() as u64 {
+            return refuse("it has another number of commands");
+        }
+        let mut progress = Vec::new();
+        for _ in 0..self.running.len() {
+            progress.push(match reader.count()? {
+                0 => Progress::Waiting,
+                1 => Progress::Done,
+                2 => {
+                    let n = reader.length()?;
+                    let held = (0..n)
+                        .map(|_| Ok((reader.count()? as u32, reader.number()?)))
+                        .collect::<Result<Vec<_>, WorldError>>()?;
+                    Progress::Acting { held, anchors: reader.vectors::<D>()? }
+                }
+                _ => return refuse("a command is in an unknown state"),
+            });
+        }
+        let mut numbers = [0.0; 7];
+        for x in &mut numbers {
+            *x = reader.number()?;
+        }
+        let counts = [reader.count()?, reader.count()?, reader.count()?];
+        if !reader.0.is_empty() {
+            return refuse("it goes on after its end");
+        }
+        self.states = states;
+        self.alive = alive;
+        self.frames = frames;
+        for (running, progress) in self.running.iter_mut().zip(progress) {
+            running.progress = progress;
+        }
+        self.rebuild_from_states()?;
+        let [user, gas, damping, friction, contact, start, largest] = numbers;
+        let [limited_forces, limited_velocities, limited_pulls] = counts;
+        self.limited_pulls.store(limited_pulls, Ordering::Relaxed);
+        self.flows = Flows {
+            user,
+            gas,
+            damping,
+            friction,
+            contact,
+            start,
+            largest,
+            limited_forces,
+            limited_velocities,
+            limited_pulls,
+        };
+        self.refresh_ledger();
+        Ok(())
+    }
+}
