@@ -10,6 +10,8 @@ use opruga_math::{Simd, WIDTH};
 pub struct Moved<'a, const D: usize> {
     /// The places of the tile.
     pub range: Range<usize>,
+    /// Places below this one belong to nodes; those from here to the end of the last pack are padding.
+    pub places_used: usize,
     /// Positions before the step: `before[d][p - range.start]` [m].
     pub before: [&'a [f64]; D],
     /// Positions after it [m]; indexed by place.

@@ -44,6 +44,8 @@ pub trait IntegratorKind<const D: usize>: Send + Sync {
 pub fn spectral_radius(m: [[f64; 2]; 2]) -> f64 {
     let half_trace = 0.5 * (m[0][0] + m[1][1]);
     let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    let discriminant = half_trace * half_trace - determinant;
+    // Written so that nothing cancels for a matrix close to the unit matrix.
+    let half_difference = 0.5 * (m[0][0] - m[1][1]);
+    let discriminant = half_difference * half_difference + m[0][1] * m[1][0];
     if discriminant < 0.0 { determinant.sqrt() } else { half_trace.abs() + discriminant.sqrt() }
 }

@@ -1,11 +1,13 @@
 //! The language of Opruga: what models, integrators and obstacles are to one another.
 
+pub mod accumulator;
 pub mod contacts;
 pub mod error;
 pub mod integrator;
 pub mod pair;
 pub mod potential;
 pub mod spec;
+pub mod stability;
 pub mod state;
 pub mod system;
 pub mod tile;

@@ -10,7 +10,7 @@
 //! ```
 
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
-use crate::tile::Tile;
+use crate::tile::{Tile, Weight};
 use core::ops::Range;
 use opruga_math::{Pack, Strip, StripMut, WIDTH, lanes};
 
@@ -160,12 +160,18 @@ impl PairTable {
                 continue;
             }
             if run.b == run.a + 1 && length > WIDTH {
-                match self.layout {
-                    Layout::Single => self.chain::<P, L, false, D>(law, view, [a, first, length], tile, &mut power),
-                    Layout::Batch => self.chain::<P, L, true, D>(law, view, [a, first, length], tile, &mut power),
+                let whole = a <= start && end <= a + length + stride;
+                let weight = if whole { tile.weight.take() } else { None };
+                tile.settle::<P>();
+                match (self.layout, weight) {
+                    (Layout::Single, Some(w)) => self.chain::<P, L, false, true, D>(law, view, [a, first, length], w, tile, &mut power),
+                    (Layout::Batch, Some(w)) => self.chain::<P, L, true, true, D>(law, view, [a, first, length], w, tile, &mut power),
+                    (Layout::Single, None) => self.chain::<P, L, false, false, D>(law, view, [a, first, length], Weight { mass: &Parameter::NONE, gravity: [0.0; D] }, tile, &mut power),
+                    (Layout::Batch, None) => self.chain::<P, L, true, false, D>(law, view, [a, first, length], Weight { mass: &Parameter::NONE, gravity: [0.0; D] }, tile, &mut power),
                 }
                 continue;
             }
+            tile.settle::<P>();
             if length <= WIDTH {
                 self.short::<P, L, D>(law, view, [a, b, first, length], own, other, tile, &mut power);
                 continue;
@@ -178,6 +184,7 @@ impl PairTable {
                 self.run::<P, L, D>(law, view, [a, b, first], other.clone(), 0..0, other, tile, &mut power);
             }
         }
+        tile.settle::<P>();
         if let Some(pull) = &self.pull {
             self.pull::<P, L, D>(pull, law, view, tile, &mut power);
         }
@@ -189,11 +196,12 @@ impl PairTable {
     /// Evaluates a run whose second nodes are the next ones: an outline, a row. Node p receives the force of its own pair
     /// and that of the pair before it, which is the pack of forces moved up by one node.
     #[inline(always)]
-    fn chain<P: Pack, L: PairLaw<P, D>, const BATCH: bool, const D: usize>(
+    fn chain<P: Pack, L: PairLaw<P, D>, const BATCH: bool, const FRESH: bool, const D: usize>(
         &self,
         law: L,
         view: &View<D>,
         [a, first, length]: [usize; 3],
+        weight: Weight<D>,
         tile: &mut Tile<D>,
         power: &mut P,
     ) {
@@ -209,6 +217,7 @@ impl PairTable {
         let until = lead + packed;
         let (p0, p1, p2) = (p0.strip(from, until), p1.strip(from, until), p2.strip(from, until));
         let mut force = StripMut::<D>::new(tile.force.each_mut().map(|f| &mut **f), start - tile.range.start, packed);
+        let mass = weight.mass.strip(start, packed);
         let mut previous = [P::zero(); D];
         if lead > 0 {
             let d = lanes!(P, i => x.load::<P>(i, 0) - x.load::<P>(i, next));
@@ -237,9 +246,11 @@ impl PairTable {
                 }
                 dissipated = P::select(real, dissipated, P::zero());
             }
+            let heavy: P = if FRESH { mass.load(k) } else { P::zero() };
             for i in 0..D {
                 let arriving = if BATCH { previous[i] } else { f[i].after(previous[i]) };
-                let sum = force.load::<P>(i, k) + f[i];
+                let old = if FRESH { heavy * P::splat(weight.gravity[i]) } else { force.load::<P>(i, k) };
+                let sum = old + f[i];
                 let sum = if L::SECOND < 0.0 { sum - arriving } else { sum + arriving };
                 force.store(i, k, sum);
                 previous[i] = f[i];

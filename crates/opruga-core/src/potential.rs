@@ -85,6 +85,10 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn prepare(&self, _simd: Simd, _view: &View<D>, _memory: &[f64], _scratch: &mut [f64]) -> Result<(), StepError> {
         Ok(())
     }
+    /// Whether `add_force` itself begins the forces of a tile with the weight where `tile.weight` says so, which saves a pass.
+    fn begins_tiles(&self) -> bool {
+        false
+    }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], on every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
     /// Moves the memory on by one substep; returns the energy put into each body by that [J].

@@ -4,9 +4,9 @@ use crate::contacts::{Contacts, Moved};
 use crate::error::StepError;
 use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
-use crate::tile::{TILE, Tile, TilePlan};
+use crate::tile::{TILE, Tile, TilePlan, Weight};
 use core::ops::Range;
-use opruga_math::{Lane, Pack, Simd, WIDTH, Work, lanes};
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 
 /// Which columns hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,11 +267,26 @@ impl<const D: usize> System<D> {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
         let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
-        let weights = Weigh { range: range.clone(), mass: &self.mass, gravity: self.gravity, force: &mut force };
-        self.simd.run(weights);
+        let mut heaviness = Some(Weight { mass: &self.mass, gravity: self.gravity });
         let mut power = [0.0; WIDTH];
+        if !self.members.first().is_some_and(|m| m.potential.begins_tiles()) {
+            let mut tile = Tile {
+                range: range.clone(),
+                force: force.each_mut().map(|f| &mut **f),
+                power: &mut power,
+                weight: heaviness.take(),
+                slots: &mut self.slots,
+            };
+            self.simd.run(Settle { tile: &mut tile });
+        }
         for member in &self.members {
-            let mut tile = Tile { range: range.clone(), force: force.each_mut().map(|f| &mut **f), power: &mut power, slots: &mut self.slots };
+            let mut tile = Tile {
+                range: range.clone(),
+                force: force.each_mut().map(|f| &mut **f),
+                power: &mut power,
+                weight: heaviness.take(),
+                slots: &mut self.slots,
+            };
             member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
             let views = member.potential.views();
             if views.damping || member.potential.account() == Account::User {
@@ -317,6 +332,7 @@ impl<const D: usize> System<D> {
             self.simd,
             &mut Moved {
                 range,
+                places_used: self.nodes * self.layout.stride(),
                 before: self.before.each_ref().map(|b| b.as_slice()),
                 x: &mut self.state.x,
                 v: &mut self.state.v,
@@ -413,24 +429,15 @@ fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: S
     View { x: x.slices(), v: v.slices(), nodes, layout, time }
 }
 
-/// Starts the forces of a tile with the weight m g.
-struct Weigh<'a, 'b, const D: usize> {
-    range: Range<usize>,
-    mass: &'a Parameter,
-    gravity: [f64; D],
-    force: &'a mut [&'b mut [f64]; D],
+/// Begins the forces of a tile with the weight.
+struct Settle<'a, 'b, const D: usize> {
+    tile: &'a mut Tile<'b, D>,
 }
-impl<const D: usize> Work for Weigh<'_, '_, D> {
+impl<const D: usize> Work for Settle<'_, '_, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let gravity: [P; D] = lanes!(P, d => P::splat(self.gravity[d]));
-        for k in (0..self.range.len()).step_by(WIDTH) {
-            let mass: P = self.mass.load(self.range.start + k);
-            for d in 0..D {
-                (mass * gravity[d]).store(&mut self.force[d][k..]);
-            }
-        }
+        self.tile.settle::<P>();
     }
 }
 

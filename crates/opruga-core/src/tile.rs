@@ -1,7 +1,8 @@
 //! Tiles: the columns are walked in pieces that fit the first-level cache.
 
 use core::ops::Range;
-use opruga_math::WIDTH;
+use crate::state::Parameter;
+use opruga_math::{Pack, StripMut, WIDTH, lanes};
 
 /// Places of a tile.
 pub const TILE: usize = 512;
@@ -15,8 +16,38 @@ pub struct Tile<'a, const D: usize> {
     pub force: [&'a mut [f64]; D],
     /// Power that the model takes from (dissipation) or gives to (loads) the bodies [W], eight partial sums.
     pub power: &'a mut [f64; WIDTH],
+    /// The weight m g that the forces begin with, while nobody has written it: only the first model sees it, and only if it
+    /// says [`crate::potential::Potential::begins_tiles`]; then it owes [`Tile::settle`] or the same result.
+    pub weight: Option<Weight<'a, D>>,
     /// Room for the forces of stencils before they are added up at the nodes.
     pub slots: &'a mut Vec<f64>,
+}
+
+/// Mass of each node and the acceleration of gravity.
+#[derive(Clone, Copy, Debug)]
+pub struct Weight<'a, const D: usize> {
+    /// Mass [kg].
+    pub mass: &'a Parameter,
+    /// Acceleration [m/s²].
+    pub gravity: [f64; D],
+}
+
+impl<const D: usize> Tile<'_, D> {
+    /// Begins the forces with the weight, unless that is done.
+    #[inline(always)]
+    pub fn settle<P: Pack>(&mut self) {
+        let Some(weight) = self.weight.take() else { return };
+        let length = self.range.len();
+        let mass = weight.mass.strip(self.range.start, length);
+        let gravity: [P; D] = lanes!(P, d => P::splat(weight.gravity[d]));
+        let mut force = StripMut::<D>::new(self.force.each_mut().map(|f| &mut **f), 0, length);
+        for k in (0..length).step_by(WIDTH) {
+            let m: P = mass.load(k);
+            for d in 0..D {
+                force.store(d, k, m * gravity[d]);
+            }
+        }
+    }
 }
 
 /// In which order tiles are evaluated and moved.

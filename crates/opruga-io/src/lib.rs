@@ -4,7 +4,7 @@
 pub mod catalogue;
 pub mod checkpoint;
 mod document;
-mod overrides;
+pub mod overrides;
 pub mod problem;
 pub mod reference;
 pub mod safe_write;

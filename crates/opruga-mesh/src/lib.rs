@@ -1,2 +1,48 @@
-//! stopgap
-mod stopgap; pub use stopgap::*;
+//! Bodies at rest: positions and topology, one source for the plane and for space.
+//!
+//! A [`Mesh`] holds rest positions and what spans them: boundary facets, wires, sheets, filled cells, named node groups. It comes from a generator
+//! ([`Mesh::ring`], [`Mesh::polygon`], [`Mesh::grid`], [`Mesh::icosphere`], …) or is filled by hand or by an importer. Everything else here reads it:
+//!
+//! | question | answer |
+//! |---|---|
+//! | which edges carry springs, in an order that runs through memory | [`Mesh::edges`], [`edge_runs`], [`Mesh::edge_areas`] |
+//! | who are a node's neighbours | [`node_neighbours`], [`Mesh::node_rings`] |
+//! | which closed chambers hold gas | [`Mesh::chambers`], [`Mesh::components`], [`signed_volume`], [`Mesh::orient_outward`] |
+//! | where does it bend | [`Mesh::hinges`], [`Mesh::bends`] |
+//! | how much length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
+//! | is it sound | [`Mesh::check`], [`Mesh::validate`] |
+//! | what bounds the cells | [`Mesh::facets_from_cells`], [`Mesh::into_simplices`] |
+//!
+//! Orientation. A plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise seen from outside.
+//! Both make [`signed_volume`] positive. Holes run the other way.
+//!
+//! Results are the same bits on every platform: sines come from `libm`, and every order is a sorted one.
+
+mod adjacency;
+mod bending;
+mod boundary;
+mod chambers;
+mod check;
+mod edges;
+mod error;
+mod geometry;
+mod lattice;
+mod measure;
+mod mesh;
+mod plane;
+mod polygon;
+mod sphere;
+mod surface;
+mod transform;
+
+pub use adjacency::{Adjacency, node_neighbours};
+pub use bending::{bends, hinges};
+pub use chambers::Component;
+pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
+pub use edges::{EdgeRun, EdgeSet, bandwidth, edge_runs};
+pub use error::{Element, MeshError};
+pub use geometry::signed_volume;
+pub use measure::{Measure, Share};
+pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
+pub use polygon::Polygon;
+pub use sphere::MAXIMUM_SUBDIVISIONS;

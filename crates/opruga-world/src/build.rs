@@ -11,7 +11,7 @@ use opruga_core::spec::{Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::{Pin, Stabilisers, System};
 use opruga_math::{Simd, WIDTH};
-use opruga_mesh::signed_volume;
+use opruga_mesh::{Measure, Share, signed_volume};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -31,30 +31,26 @@ pub(crate) struct BodyState<const D: usize> {
 
 /// The masses of the nodes of a body [kg].
 pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
-    let nodes = body.mesh.positions.len();
+    let nodes = body.mesh.nodes();
+    // A mesh without elements, or with mixed ones, has no shares: its nodes weigh the same.
+    let shares = body.mesh.lumped_measures(Share::Proportional).unwrap_or_else(|_| vec![1.0; nodes]);
+    let first = shares.first().copied().unwrap_or(0.0);
+    // Shares that agree to rounding are equal: a regular ring has equal masses to the bit.
+    let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
     match body.mass {
         Mass::Node(mass) => vec![mass; nodes],
+        Mass::Total(mass) if alike => vec![mass / nodes as f64; nodes],
         Mass::Total(mass) => {
-            let shares = body.mesh.lumped_shares();
             let total: f64 = shares.iter().sum();
-            let first = shares.first().copied().unwrap_or(0.0);
-            // Shares that agree to rounding are equal: a regular ring has equal masses to the bit.
-            let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
-            if alike || total <= 0.0 {
-                return vec![mass / nodes as f64; nodes];
-            }
             shares.iter().map(|s| mass * s / total).collect()
         }
         Mass::Density(density) => {
-            let dimension = body.mesh.measure_dimension();
-            // What the mesh lacks in dimensions is thickness: a sheet's, twice a wire's.
-            let mut depth = density;
-            for _ in dimension..3 {
-                depth *= body.thickness;
-            }
-            let shares = body.mesh.lumped_shares();
-            let first = shares.first().copied().unwrap_or(0.0);
-            let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
+            // What the elements lack in dimensions is thickness: a sheet's, twice a wire's.
+            let depth = match body.mesh.measure() {
+                Ok(Measure::Length(_)) => density * body.thickness * body.thickness,
+                Ok(Measure::Area(_)) => density * body.thickness,
+                _ => density,
+            };
             shares.iter().map(|s| if alike { first * depth } else { s * depth }).collect()
         }
     }

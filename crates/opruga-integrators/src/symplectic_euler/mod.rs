@@ -4,6 +4,9 @@
 //! and with it the energy of an undamped system within O(h) for ever. Stable without damping for h ω < 2; with damping
 //! taken at the old velocity for h < (2/ω)(√(1 + ζ²) − ζ).
 
+#[cfg(test)]
+mod tests;
+
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};

@@ -66,7 +66,7 @@ impl<const D: usize> Model<D> for MassSpring {
                 _ => return refuse("model.one_of", "exactly one of `stiffness` and `modulus` must be given".into()),
             }
         }
-        let areas = mesh.edge_areas(&edges);
+        let areas = mesh.edge_areas(&edges).map_err(|e| BuildError::new("mass_spring", "model.mesh", e.to_string()))?;
         if ingredients.values[0].number("modulus").is_some() && areas.iter().all(|a| *a == 0.0) {
             return refuse("model.no_area", "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline".into());
         }
@@ -112,6 +112,9 @@ impl<const D: usize> Potential<D> for Springs {
     }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
         self.table.spans(visit);
+    }
+    fn begins_tiles(&self) -> bool {
+        true
     }
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         simd.run(Force { springs: self, view, tile });

@@ -4,6 +4,7 @@ use opruga_core::pair::{PairLaw, PairTable, PairTerm};
 use opruga_core::potential::Sink;
 use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
 use opruga_core::tile::Tile;
+use opruga_mesh::Adjacency;
 use opruga_math::{Pack, WIDTH, lanes};
 
 /// A closed boundary.
@@ -203,12 +204,13 @@ impl Boundary {
 
 impl NodeRings {
     /// Lays out the rings of neighbours; nodes that are not on the boundary have an empty one.
-    pub(super) fn new(rings: &[Vec<u32>], facets: Vec<[u32; 3]>) -> NodeRings {
-        let width = rings.iter().map(Vec::len).max().unwrap_or(0);
-        let packs = rings.len().div_ceil(WIDTH);
+    pub(super) fn new(rings: &Adjacency, facets: Vec<[u32; 3]>) -> NodeRings {
+        let nodes = rings.nodes();
+        let width = (0..nodes as u32).map(|n| rings.of(n).len()).max().unwrap_or(0);
+        let packs = nodes.div_ceil(WIDTH);
         let mut neighbour = vec![0; packs * width * WIDTH];
         for node in 0..packs * WIDTH {
-            let ring = rings.get(node).map_or(&[][..], Vec::as_slice);
+            let ring = if node < nodes { rings.of(node as u32) } else { &[] };
             for slot in 0..width {
                 let at = (node / WIDTH * width + slot) * WIDTH + node % WIDTH;
                 neighbour[at] = ring.get(slot).or(ring.first()).copied().unwrap_or(0);

@@ -25,6 +25,7 @@ use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potentia
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
+use opruga_mesh::Mesh;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 
 /// The kind `pressure`.
@@ -89,8 +90,14 @@ impl<const D: usize> Model<D> for PressureModel {
                 Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
             } else {
                 let triangles: Vec<[u32; 3]> = facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
-                let rings = opruga_mesh::node_rings(&triangles, nodes)
-                    .map_err(|e| BuildError::new("pressure", "model.not_manifold", e.to_string()))?;
+                // The surface of this chamber alone, so that nodes of others have an empty ring.
+                let skin = Mesh::<3> {
+                    positions: mesh.positions.iter().map(|p| [p[0], p[1], p[D - 1]]).collect(),
+                    facets: triangles.clone(),
+                    ..Mesh::default()
+                };
+                let rings =
+                    skin.node_rings().map_err(|e| BuildError::new("pressure", "model.not_manifold", e.to_string()))?;
                 Boundary::Space(NodeRings::new(&rings, triangles))
             };
             let area_len = boundary.area_len::<D>(ingredients.layout, nodes);

@@ -1,0 +1,194 @@
+//! `opruga bench vertices`: figure 4 of the thesis, the speed against the number of vertices.
+
+use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
+use opruga::core::spec::{Value, Values};
+use opruga::{Options, Simd, World, mesh};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// One row of the benchmark.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct Row {
+    bodies: usize,
+    vertices: usize,
+    threads: usize,
+    simd: &'static str,
+    integrator: String,
+    /// Median over the repetitions; processor time on one thread, wall time on several.
+    nanoseconds_per_vertex_step: f64,
+    steps_per_second: f64,
+    /// Frames of 16 steps, drawing included if it was asked for.
+    frames_per_second: f64,
+    /// Time of eight square roots and divisions in the same run: what this machine can do.
+    calibration_nanoseconds: f64,
+}
+
+/// Bodies and vertices of each row.
+pub(crate) const ROWS: [(usize, usize); 12] = [
+    (1, 8),
+    (1, 16),
+    (1, 36),
+    (1, 64),
+    (1, 256),
+    (1, 1_024),
+    (1, 16_384),
+    (1, 100_000),
+    (1, 1_048_576),
+    (100, 36),
+    (1_000, 36),
+    (27_778, 36),
+];
+
+fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> Values {
+    let mut values = Values::defaults(spec, 2);
+    for (name, value) in fields {
+        values.set(spec, name, value.clone(), 2).unwrap_or_else(|e| unreachable!("the benchmark's own scene: {e}"));
+    }
+    values
+}
+
+/// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge
+/// with 160 N at rest, a floor below. They start 60 m above it and are in flight while they are timed.
+pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<Blueprint<2>, String> {
+    let registry = opruga::Registry::<2>::default();
+    let spec = |found: Option<&'static opruga::core::spec::Spec>| found.ok_or("the registry lacks a part of the benchmark");
+    let springs = spec(registry.model("mass_spring").map(|m| m.spec()))?;
+    let gas = spec(registry.model("pressure").map(|m| m.spec()))?;
+    let rule = spec(registry.integrator(integrator).map(|i| i.spec()))?;
+    let floor = spec(opruga::collide::all(2).into_iter().find(|s| s.kind == "half_space"))?;
+    let radius = vertices as f64 * 0.1 / (2.0 * std::f64::consts::PI);
+    let ring = Arc::new(mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?);
+    let models = vec![
+        values(springs, &[("stiffness", Value::Number(1600.0)), ("damping", Value::Number(40.0))]),
+        values(gas, &[("nRT", Value::Number(160.0 / radius * std::f64::consts::PI * radius * radius))]),
+    ];
+    let body = |number: usize| BodyBlueprint {
+        name: format!("ring[{number}]"),
+        mesh: Arc::clone(&ring),
+        translation: [number as f64 * 3.0 * radius, radius + 60.0],
+        velocity: [0.0, 0.0],
+        angular_velocity: Vec::new(),
+        mass: Mass::Node(1.0),
+        thickness: 1.0,
+        models: models.clone(),
+        pins: Vec::new(),
+    };
+    Ok(Blueprint {
+        name: format!("{bodies} x {vertices}"),
+        title: String::new(),
+        seed: 0,
+        time: Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 },
+        surroundings: Surroundings { gravity: [0.0, -9.8], drag: 0.0, largest_force: None, largest_velocity: None },
+        integrator: Values::defaults(rule, 2),
+        bodies: (0..bodies).map(body).collect(),
+        colliders: vec![ColliderBlueprint {
+            values: values(
+                floor,
+                &[
+                    ("point", Value::Numbers(vec![0.0, 0.0])),
+                    ("normal", Value::Numbers(vec![0.0, 1.0])),
+                    ("restitution", Value::Number(0.1)),
+                ],
+            ),
+        }],
+        loads: Vec::new(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+    })
+}
+
+/// Times one row; `draw` is called once a frame.
+pub(crate) fn time(
+    bodies: usize,
+    vertices: usize,
+    integrator: &str,
+    options: &Options,
+    seconds: f64,
+    mut draw: Option<&mut dyn FnMut(&mut World<2>)>,
+) -> Result<Row, String> {
+    let blueprint = rings(bodies, vertices, integrator)?;
+    let mut world = World::new(blueprint, options.clone()).map_err(|e| e.to_string())?;
+    let total = bodies * vertices;
+    let one_frame = |world: &mut World<2>| world.frame().map_err(|e| e.to_string());
+    for _ in 0..2 {
+        one_frame(&mut world)?;
+    }
+    let mut repetitions: Vec<f64> = Vec::new();
+    let mut drawn = 0.0;
+    let mut frames = 1;
+    for repetition in 0..6 {
+        let (wall, processor) = (Instant::now(), processor_time());
+        for _ in 0..frames {
+            one_frame(&mut world)?;
+        }
+        let elapsed = if options.threads == 1 { processor_time() - processor } else { wall.elapsed().as_secs_f64() };
+        if repetition == 0 {
+            // The first one tells how many frames fill the time.
+            frames = ((seconds / 5.0 / elapsed) as usize).clamp(1, 20_000);
+            continue;
+        }
+        repetitions.push(elapsed * 1e9 / (frames * 16 * total) as f64);
+    }
+    if let Some(draw) = draw.as_mut() {
+        let start = Instant::now();
+        for _ in 0..3 {
+            draw(&mut world);
+        }
+        drawn = start.elapsed().as_secs_f64() / 3.0;
+    }
+    repetitions.sort_by(f64::total_cmp);
+    let nanoseconds = repetitions[repetitions.len() / 2];
+    let step = nanoseconds * 1e-9 * total as f64;
+    Ok(Row {
+        bodies,
+        vertices,
+        threads: options.threads,
+        simd: world.simd().name(),
+        integrator: integrator.to_string(),
+        nanoseconds_per_vertex_step: nanoseconds,
+        steps_per_second: 1.0 / step,
+        frames_per_second: 1.0 / (16.0 * step + drawn),
+        calibration_nanoseconds: calibration(world.simd()),
+    })
+}
+
+/// Processor time of this thread [s]; wall time where the system has no such clock.
+fn processor_time() -> f64 {
+    #[cfg(unix)]
+    {
+        let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
+    }
+    #[cfg(not(unix))]
+    {
+        use std::sync::OnceLock;
+        static START: OnceLock<Instant> = OnceLock::new();
+        START.get_or_init(Instant::now).elapsed().as_secs_f64()
+    }
+}
+
+/// Time of a pack of square roots and divisions [ns].
+fn calibration(simd: Simd) -> f64 {
+    use opruga::math::{Lane, Pack, WIDTH, Work};
+    struct Roots<'a>(&'a mut [f64]);
+    impl Work for Roots<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<P: Pack>(self) {
+            for k in (0..self.0.len()).step_by(WIDTH) {
+                let x = P::load(&self.0[k..]);
+                (P::one() / x.sqrt()).store(&mut self.0[k..]);
+            }
+        }
+    }
+    let mut numbers = vec![1.5; 1024];
+    let mut best = f64::INFINITY;
+    for _ in 0..20 {
+        let start = processor_time();
+        for _ in 0..20 {
+            simd.run(Roots(&mut numbers));
+        }
+        best = best.min((processor_time() - start) * 1e9 / (20.0 * 128.0));
+    }
+    best
+}

@@ -1,0 +1,130 @@
+//! How a collider moves: displaced along a path, turning about a pivot at a constant rate.
+
+use crate::vector::{add, identity, product, rotation, subtract, turned, turned_back};
+use opruga_core::system::along_path;
+use opruga_math::{Lane, lanes};
+
+/// A prescribed rigid motion.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion<const D: usize> {
+    /// Displacement over time, rows `[t, dx, dy(, dz)]`.
+    pub(crate) path: Vec<Vec<f64>>,
+    /// The matrix Ω of the angular velocity [rad/s].
+    pub(crate) omega: [[f64; D]; D],
+    /// Whether it turns at all.
+    pub(crate) turns: bool,
+    /// The point about which it turns [m].
+    pub(crate) pivot: [f64; D],
+}
+
+/// Where a collider is at a time: x = R (X − pivot) + centre.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose<const D: usize> {
+    /// The rotation R, by its rows.
+    pub(crate) turn: [[f64; D]; D],
+    /// Whether R is the unit matrix.
+    pub(crate) upright: bool,
+    /// Where the pivot lies at rest [m].
+    pub(crate) pivot: [f64; D],
+    /// Where the pivot is [m].
+    pub(crate) center: [f64; D],
+    /// Displacement of the pivot [m].
+    pub(crate) shift: [f64; D],
+    /// Velocity of the pivot [m/s].
+    pub(crate) velocity: [f64; D],
+    /// The matrix Ω of the angular velocity [rad/s].
+    pub(crate) omega: [[f64; D]; D],
+}
+
+/// How a point that is fixed to a collider moves during a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carry<const D: usize> {
+    turn: [[f64; D]; D],
+    turns: bool,
+    from: [f64; D],
+    to: [f64; D],
+}
+
+impl<const D: usize> Motion<D> {
+    /// Where the collider is at a time.
+    pub(crate) fn pose(&self, time: f64) -> Pose<D> {
+        let (shift, velocity) = along_path::<D>(&self.path, time);
+        Pose {
+            turn: if self.turns { rotation(&self.omega, time) } else { identity() },
+            upright: !self.turns,
+            pivot: self.pivot,
+            center: add(&self.pivot, &shift),
+            shift,
+            velocity,
+            omega: self.omega,
+        }
+    }
+    /// The least and greatest displacement along each axis within an interval of time.
+    pub(crate) fn shifts(&self, from: f64, to: f64) -> [[f64; D]; 2] {
+        let (first, _) = along_path::<D>(&self.path, from);
+        let mut range = [first, first];
+        let mut include = |shift: &[f64]| {
+            for d in 0..D {
+                range[0][d] = shift[d].smaller(range[0][d]);
+                range[1][d] = shift[d].larger(range[1][d]);
+            }
+        };
+        include(&along_path::<D>(&self.path, to).0);
+        for row in self.path.iter().filter(|row| row[0] > from && row[0] < to) {
+            include(&row[1..]);
+        }
+        range
+    }
+}
+
+impl<const D: usize> Pose<D> {
+    /// A point of the shape at rest, where it is now.
+    pub(crate) fn place(&self, x: &[f64; D]) -> [f64; D] {
+        if self.upright { add(x, &self.shift) } else { add(&turned(&self.turn, &subtract(x, &self.pivot)), &self.center) }
+    }
+    /// A direction of the shape at rest, as it is now.
+    pub(crate) fn direct(&self, n: &[f64; D]) -> [f64; D] {
+        if self.upright { *n } else { turned(&self.turn, n) }
+    }
+    /// The inverse of [`Pose::place`].
+    pub(crate) fn unplace(&self, x: &[f64; D]) -> [f64; D] {
+        if self.upright {
+            subtract(x, &self.shift)
+        } else {
+            add(&turned_back(&self.turn, &subtract(x, &self.center)), &self.pivot)
+        }
+    }
+    /// The collider's velocity at a point [m/s].
+    #[inline(always)]
+    pub(crate) fn velocity_at<S: Lane>(&self, x: &[S; D]) -> [S; D] {
+        if self.upright {
+            return lanes!(S, d => S::splat(self.velocity[d]));
+        }
+        let arm = lanes!(S, d => x[d] - S::splat(self.center[d]));
+        let swirl = turned(&self.omega, &arm);
+        lanes!(S, d => S::splat(self.velocity[d]) + swirl[d])
+    }
+    /// The way from one pose to a later one.
+    pub(crate) fn carry_to(&self, later: &Pose<D>) -> Carry<D> {
+        let mut back = self.turn;
+        for i in 0..D {
+            for j in 0..D {
+                back[i][j] = self.turn[j][i];
+            }
+        }
+        Carry { turn: product(&later.turn, &back), turns: !self.upright, from: self.center, to: later.center }
+    }
+}
+
+impl<const D: usize> Carry<D> {
+    /// Where a point gets.
+    #[inline(always)]
+    pub(crate) fn along<S: Lane>(&self, x: &[S; D]) -> [S; D] {
+        if self.turns {
+            let arm = turned(&self.turn, &lanes!(S, d => x[d] - S::splat(self.from[d])));
+            lanes!(S, d => arm[d] + S::splat(self.to[d]))
+        } else {
+            lanes!(S, d => x[d] + S::splat(self.to[d] - self.from[d]))
+        }
+    }
+}

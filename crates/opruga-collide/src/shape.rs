@@ -1,0 +1,250 @@
+//! Shapes whose signed distance is a formula: one source for a number and for eight of them.
+
+use crate::motion::Pose;
+use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
+use opruga_math::{Lane, lanes};
+
+/// A solid with a signed distance, negative inside.
+pub(crate) trait Shape<const D: usize> {
+    /// Half of the smallest width [m], above which a node in one step could come out on the far side.
+    fn half_width(&self) -> f64;
+    /// The signed distance [m].
+    fn gap<S: Lane>(&self, x: &[S; D]) -> S;
+    /// The signed distance [m] and its gradient, the unit normal.
+    fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]);
+}
+
+/// Solid where x·n < offset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HalfSpace<const D: usize> {
+    pub(crate) normal: [f64; D],
+    pub(crate) offset: f64,
+}
+
+/// Solid inside of a sphere (`sign` 1) or outside (−1).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball<const D: usize> {
+    pub(crate) center: [f64; D],
+    pub(crate) radius: f64,
+    pub(crate) sign: f64,
+}
+
+/// Solid nearer to the segment from `start` along `along` than `radius`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Capsule<const D: usize> {
+    pub(crate) start: [f64; D],
+    pub(crate) along: [f64; D],
+    pub(crate) inverse_square: f64,
+    pub(crate) radius: f64,
+    /// A unit vector at a right angle to the segment: the normal on the segment itself.
+    pub(crate) aside: [f64; D],
+}
+
+/// A solid box with unit vectors `axes` along its sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cuboid<const D: usize> {
+    pub(crate) center: [f64; D],
+    pub(crate) axes: [[f64; D]; D],
+    pub(crate) half: [f64; D],
+}
+
+/// The length of a vector and its direction; `fallback` where it is too short to have one.
+#[inline(always)]
+fn direction<S: Lane, const D: usize>(a: &[S; D], fallback: &[f64; D]) -> (S, [S; D]) {
+    let r = length(a);
+    let unit = scaled(a, S::one() / r);
+    // Below this the square underflows and the quotient is no unit vector any more.
+    (r, choose(r.less(S::splat(1e-150)), &splat(fallback), &unit))
+}
+
+/// The unit vector along y.
+fn upward<const D: usize>() -> [f64; D] {
+    let mut out = [0.0; D];
+    out[1] = 1.0;
+    out
+}
+
+impl<const D: usize> HalfSpace<D> {
+    pub(crate) fn through(point: &[f64; D], normal: [f64; D]) -> Self {
+        HalfSpace { normal, offset: dot(point, &normal) }
+    }
+    pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
+        if pose.upright {
+            return HalfSpace { normal: self.normal, offset: self.offset + dot(&pose.shift, &self.normal) };
+        }
+        HalfSpace::through(&pose.place(&scaled(&self.normal, self.offset)), pose.direct(&self.normal))
+    }
+    /// The least signed distance within a box of space.
+    pub(crate) fn least_gap(&self, low: &[f64; D], high: &[f64; D]) -> f64 {
+        let mut gap = -self.offset;
+        for d in 0..D {
+            gap += (low[d] * self.normal[d]).smaller(high[d] * self.normal[d]);
+        }
+        gap
+    }
+}
+
+impl<const D: usize> Shape<D> for HalfSpace<D> {
+    fn half_width(&self) -> f64 {
+        f64::INFINITY
+    }
+    #[inline(always)]
+    fn gap<S: Lane>(&self, x: &[S; D]) -> S {
+        dot(x, &splat(&self.normal)) - S::splat(self.offset)
+    }
+    #[inline(always)]
+    fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]) {
+        (self.gap(x), splat(&self.normal))
+    }
+}
+
+impl<const D: usize> Ball<D> {
+    pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
+        Ball { center: pose.place(&self.center), ..*self }
+    }
+}
+
+impl<const D: usize> Shape<D> for Ball<D> {
+    fn half_width(&self) -> f64 {
+        if self.sign > 0.0 { self.radius } else { f64::INFINITY }
+    }
+    #[inline(always)]
+    fn gap<S: Lane>(&self, x: &[S; D]) -> S {
+        S::splat(self.sign) * (length(&subtract(x, &splat(&self.center))) - S::splat(self.radius))
+    }
+    #[inline(always)]
+    fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]) {
+        let (r, outward) = direction(&subtract(x, &splat(&self.center)), &upward());
+        let sign = S::splat(self.sign);
+        (sign * (r - S::splat(self.radius)), scaled(&outward, sign))
+    }
+}
+
+impl<const D: usize> Capsule<D> {
+    pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
+        Capsule { start: pose.place(&self.start), along: pose.direct(&self.along), aside: pose.direct(&self.aside), ..*self }
+    }
+    /// From the nearest point of the segment to `x`.
+    #[inline(always)]
+    fn away<S: Lane>(&self, x: &[S; D]) -> [S; D] {
+        let (arm, along) = (subtract(x, &splat(&self.start)), splat::<S, D>(&self.along));
+        let t = (dot(&arm, &along) * S::splat(self.inverse_square)).larger(S::zero()).smaller(S::one());
+        lanes!(S, d => arm[d] - t * along[d])
+    }
+}
+
+impl<const D: usize> Shape<D> for Capsule<D> {
+    fn half_width(&self) -> f64 {
+        self.radius
+    }
+    #[inline(always)]
+    fn gap<S: Lane>(&self, x: &[S; D]) -> S {
+        length(&self.away(x)) - S::splat(self.radius)
+    }
+    #[inline(always)]
+    fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]) {
+        let (r, outward) = direction(&self.away(x), &self.aside);
+        (r - S::splat(self.radius), outward)
+    }
+}
+
+impl<const D: usize> Cuboid<D> {
+    pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
+        let mut axes = self.axes;
+        for axis in &mut axes {
+            *axis = pose.direct(axis);
+        }
+        Cuboid { center: pose.place(&self.center), axes, half: self.half }
+    }
+    /// The corner with the sides to which the bits of a number point.
+    pub(crate) fn corner(&self, bits: usize) -> [f64; D] {
+        let mut out = self.center;
+        for d in 0..D {
+            let side = if bits >> d & 1 == 1 { self.half[d] } else { -self.half[d] };
+            out = add(&out, &scaled(&self.axes[d], side));
+        }
+        out
+    }
+}
+
+impl<const D: usize> Shape<D> for Cuboid<D> {
+    fn half_width(&self) -> f64 {
+        let mut least = f64::INFINITY;
+        for d in 0..D {
+            least = self.half[d].smaller(least);
+        }
+        least
+    }
+    #[inline(always)]
+    fn gap<S: Lane>(&self, x: &[S; D]) -> S {
+        let local = turned(&self.axes, &subtract(x, &splat(&self.center)));
+        let over = lanes!(S, d => local[d].abs() - S::splat(self.half[d]));
+        let mut deepest = over[0];
+        let mut outside = [S::zero(); D];
+        for d in 0..D {
+            deepest = over[d].larger(deepest);
+            outside[d] = over[d].larger(S::zero());
+        }
+        S::select(S::zero().less(deepest), length(&outside), deepest)
+    }
+    #[inline(always)]
+    fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]) {
+        let local = turned(&self.axes, &subtract(x, &splat(&self.center)));
+        let over = lanes!(S, d => local[d].abs() - S::splat(self.half[d]));
+        // Inside: the nearest face, the first one of several. Outside: the nearest point of the surface.
+        let (mut deepest, mut inside) = (over[0], [S::zero(); D]);
+        inside[0] = S::one();
+        let mut outside = lanes!(S, d => over[d].larger(S::zero()));
+        for d in 1..D {
+            let nearer = deepest.less(over[d]);
+            deepest = S::select(nearer, over[d], deepest);
+            for i in 0..D {
+                inside[i] = S::select(nearer, S::splat(if i == d { 1.0 } else { 0.0 }), inside[i]);
+            }
+        }
+        let distance = length(&outside);
+        outside = scaled(&outside, S::one() / distance);
+        // A distance too short for a direction is one of the face.
+        let is_outside = S::splat(1e-150).less(distance);
+        let mut normal = [S::zero(); D];
+        for d in 0..D {
+            let size = S::select(is_outside, outside[d], inside[d]);
+            let signed = S::select(local[d].less(S::zero()), -size, size);
+            for i in 0..D {
+                normal[i] += signed * S::splat(self.axes[d][i]);
+            }
+        }
+        (S::select(is_outside, distance, deepest), normal)
+    }
+}
+
+/// Where a node that moved from `a` to `b` entered a convex solid: the distance of `b` behind the tangent plane there
+/// (negative) and the normal. None if it did not come in from outside.
+///
+/// Sphere tracing: the signed distance says how far one may go along the segment without meeting the surface.
+#[inline(never)]
+pub(crate) fn entry<T: Shape<D>, const D: usize>(shape: &T, margin: f64, a: &[f64; D], b: &[f64; D]) -> Option<(f64, [f64; D])> {
+    let way = subtract(b, a);
+    let far = length(&way);
+    let close = 1e-9 * (shape.half_width() + margin);
+    let mut gone = 0.0;
+    if shape.gap(a) - margin < -close {
+        return None;
+    }
+    for _ in 0..64 {
+        let s = gone / far;
+        let x: [f64; D] = lanes!(f64, d => a[d] + s * way[d]);
+        let gap = shape.gap(&x) - margin;
+        if gap <= close {
+            let (gap, normal) = shape.gap_and_normal(&x);
+            let left: [f64; D] = subtract(b, &x);
+            let behind = dot(&left, &normal) + (gap - margin);
+            return (dot(&way, &normal) < 0.0 && behind < 0.0).then_some((behind, normal));
+        }
+        gone += gap;
+        if !(gone <= far) {
+            return None;
+        }
+    }
+    None
+}

@@ -1,0 +1,139 @@
+//! Real time: how many frames of the simulation are due when a display shows its next picture.
+//!
+//! The simulation always advances by whole frames of one length, whatever the rate of the display. So the same amount
+//! of real time gives the same number of substeps, and with them the same bits, at 30, 60, 144 or 1000 pictures a
+//! second. Time that is left over waits for the next picture; nothing is rounded away.
+
+/// Attoseconds in a second. A number of seconds below 1000 that an `f64` holds is hardly rounded by them.
+const ATTOSECONDS: f64 = 1e18;
+
+/// The longest time taken at once [s]: longer pauses count as this long.
+const LONGEST: f64 = 1e6;
+
+/// Collects real time and hands it out in frames.
+///
+/// The thousandth part of a frame may be handed out early: displays whose period is not a multiple of any unit of time
+/// (1/60 s) would else be one frame behind now and then. What was early is missing later, so there is no drift.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Accumulator {
+    /// Length of a frame [as].
+    frame: i128,
+    /// The most frames that one call hands out.
+    cap: u32,
+    /// Time that waits [as]; from −1/1000 of a frame to less than a frame.
+    waiting: i128,
+    /// Time that was not simulated [as].
+    dropped: i128,
+}
+
+/// What is due after some real time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Due {
+    /// Frames to simulate now.
+    pub frames: u32,
+    /// Time beyond the cap that will not be simulated [s]: the simulation falls behind the clock by this.
+    pub dropped: f64,
+}
+
+impl Accumulator {
+    /// An accumulator for frames of this length [s] that hands out at most `cap_frames` at once.
+    ///
+    /// The cap keeps a simulation that is slower than real time from falling behind ever further. `None` where the
+    /// length is not a number between a nanosecond and 1e6 seconds.
+    pub fn new(frame: f64, cap_frames: u32) -> Option<Accumulator> {
+        let length = (1e-9..=LONGEST).contains(&frame).then(|| attoseconds(frame))?;
+        Some(Accumulator { frame: length, cap: cap_frames, waiting: 0, dropped: 0 })
+    }
+
+    /// Adds real time that has passed [s] and says how many frames are due. What is no positive number counts as zero.
+    pub fn advance(&mut self, elapsed: f64) -> Due {
+        self.waiting += if elapsed > 0.0 { attoseconds(elapsed) } else { 0 };
+        let due = ((self.waiting + self.frame / 1000) / self.frame).max(0);
+        self.waiting -= due * self.frame;
+        // Whole frames beyond the cap are dropped, the rest of a frame stays.
+        let frames = due.min(i128::from(self.cap));
+        let dropped = (due - frames) * self.frame;
+        self.dropped += dropped;
+        Due { frames: frames as u32, dropped: dropped as f64 / ATTOSECONDS }
+    }
+
+    /// How far the clock is into the next frame, 0 to 1: for a display that draws between two frames.
+    pub fn fraction(&self) -> f64 {
+        (self.waiting.max(0) as f64) / (self.frame as f64)
+    }
+
+    /// All time that was dropped so far [s].
+    pub fn dropped(&self) -> f64 {
+        self.dropped as f64 / ATTOSECONDS
+    }
+
+    /// Forgets time that waits, after a pause.
+    pub fn reset(&mut self) {
+        self.waiting = 0;
+    }
+}
+
+/// Seconds in whole attoseconds.
+fn attoseconds(seconds: f64) -> i128 {
+    let seconds = if seconds < LONGEST { seconds } else { LONGEST };
+    (seconds * ATTOSECONDS).round() as i128
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frames of 1/60 s that are due after so many pictures at a rate.
+    fn frames(rate: u32, pictures: u32) -> u32 {
+        let mut accumulator = Accumulator::new(1.0 / 60.0, 100).unwrap();
+        (0..pictures).map(|_| accumulator.advance(1.0 / f64::from(rate)).frames).sum()
+    }
+
+    #[test]
+    fn every_display_rate_gives_the_same_frames() {
+        for rate in [1, 24, 30, 50, 59, 60, 72, 75, 90, 120, 144, 165, 240, 1000, 7919] {
+            assert_eq!(frames(rate, rate * 10), 600, "{rate} Hz, 10 s");
+        }
+        for rate in [30, 60, 144, 1000] {
+            assert_eq!(frames(rate, rate * 3600), 216_000, "{rate} Hz, 1 h");
+        }
+    }
+
+    #[test]
+    fn uneven_pictures_neither_lose_nor_gain_time() {
+        let mut accumulator = Accumulator::new(0.01, 1000).unwrap();
+        let (mut total, mut frames, mut random) = (0.0, 0, 1u64);
+        for _ in 0..100_000 {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let elapsed = (random >> 40) as f64 * 1e-9;
+            total += elapsed;
+            frames += accumulator.advance(elapsed).frames;
+        }
+        let left = total - f64::from(frames) * 0.01;
+        assert!((left - accumulator.fraction() * 0.01).abs() < 1e-8, "{left}");
+    }
+
+    #[test]
+    fn a_cap_drops_whole_frames_and_says_so() {
+        let mut accumulator = Accumulator::new(0.25, 3).unwrap();
+        assert_eq!(accumulator.advance(0.3), Due { frames: 1, dropped: 0.0 });
+        assert_eq!(accumulator.fraction(), 0.2);
+        // 2.05 s wait: eight frames, of which five are dropped.
+        assert_eq!(accumulator.advance(2.0), Due { frames: 3, dropped: 1.25 });
+        assert_eq!(accumulator.dropped(), 1.25);
+        assert_eq!(accumulator.advance(0.2), Due { frames: 1, dropped: 0.0 });
+    }
+
+    #[test]
+    fn odd_times_are_harmless() {
+        let mut accumulator = Accumulator::new(0.25, 2).unwrap();
+        for elapsed in [f64::NAN, f64::NEG_INFINITY, -1.0, 0.0, -0.0, 1e-300] {
+            assert_eq!(accumulator.advance(elapsed), Due { frames: 0, dropped: 0.0 });
+        }
+        let due = accumulator.advance(f64::INFINITY);
+        assert_eq!((due.frames, due.dropped), (2, 999_999.5));
+        for frame in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-12] {
+            assert!(Accumulator::new(frame, 1).is_none(), "{frame}");
+        }
+    }
+}

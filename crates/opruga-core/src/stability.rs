@@ -1,0 +1,436 @@
+//! How large a step may be: the spectra of stiffness and damping, and what an integrator makes of them.
+//!
+//! Near any state a system moves like M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K), its strongest
+//! damping c = λ(M⁻¹C). Both are found before a run from the forces themselves:
+//!
+//! K d ≈ (F(x − εd) − F(x + εd)) / 2ε,  C d = F(x, 0) − F(x, d),
+//!
+//! so every model takes part, the gas as a whole included, also one that has no Hessian, and by the fast code that the
+//! step uses. Obstacles add nothing: explicit integrators meet them by impulses, which have no stiffness.
+//!
+//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products
+//! as a power iteration from the same start vector, but the best combination of all of them; a power iteration still
+//! misses 2 % after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz
+//! value plus its residual is taken, and 2 % more. Negative eigenvalues (a body about to buckle) are no matter of the step.
+//!
+//! **Which mode.** The eigenvectors of K and C are not compared. Every mode lies in the rectangle [0, ω] × [c₀, c] (c₀ is the
+//! smallest eigenvalue of damping, mostly zero), and since a step scales with it, its outer edges are enough: ω with any
+//! damping from c₀ to c, and c with any frequency up to ω. A step that is stable there is stable for every mode. The price:
+//! an integrator that is unstable without damping has a stable step only if *all* modes are damped (`c₀ > 0`).
+
+use crate::error::StepError;
+use crate::integrator::{Integrator, spectral_radius};
+use crate::state::{Columns, Layout, View};
+use crate::system::System;
+use crate::tile::Tile;
+use opruga_math::{Lane, WIDTH};
+
+/// Estimates are raised by this factor, for residuals and for small changes of the state.
+const SAFETY: f64 = 1.02;
+
+/// The most products with K or C.
+const MOST_PRODUCTS: usize = 300;
+
+/// A Ritz value counts as found when its residual is at most this part of the largest one.
+const TOLERANCE: f64 = 2e-3;
+
+/// Displacements for the differences of forces, in extents of the system.
+const DISPLACEMENT: f64 = 1e-7;
+
+/// What the spectra of a system say about the step of an integrator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stability {
+    /// The fastest oscillation, √ of the largest eigenvalue of M⁻¹K, raised by 2 % [rad/s].
+    pub omega: f64,
+    /// The strongest damping, the largest eigenvalue of M⁻¹C, raised by 2 % [1/s].
+    pub damping: f64,
+    /// The weakest damping of any motion, the smallest eigenvalue of M⁻¹C [1/s]; zero below 1 % of the strongest.
+    pub least_damping: f64,
+    /// The largest step for which no mode grows [s]; infinite for a free body, `None` where every step lets one grow.
+    pub largest_stable_step: Option<f64>,
+}
+
+impl Stability {
+    /// How fast the amplitude of the worst mode grows in steps of h [1/s]: ln ρ / h; zero where h is stable.
+    pub fn growth_per_second<const D: usize>(&self, integrator: &dyn Integrator<D>, h: f64) -> f64 {
+        let radius = worst(integrator, &edges(self.omega, [self.least_damping, self.damping]), h);
+        if radius <= 1.0 + ROUNDING { 0.0 } else { radius.ln() / h }
+    }
+}
+
+/// Estimates the spectra of a system in its present state, and the largest stable step of an integrator.
+///
+/// About 30 evaluations of all forces; the system is left as it is. Held nodes and axes do not move and do not count.
+///
+/// # Errors
+/// [`StepError`] where a model refuses the state or its forces are not finite.
+pub fn estimate<const D: usize>(system: &System<D>, integrator: &dyn Integrator<D>) -> Result<Stability, StepError> {
+    let mut probe = Probe::new(system);
+    let [_, stiffness] = spectrum(&probe.weights.clone(), false, |d, out| probe.stiffness(d, out))?;
+    let mut weakest = 0.0;
+    let mut strongest = 0.0;
+    if system.members.iter().any(|m| m.potential.views().damping) {
+        probe.start_damping()?;
+        [weakest, strongest] = spectrum(&probe.weights.clone(), true, |d, out| probe.damping(d, out))?;
+    }
+    let omega = SAFETY * stiffness.larger(0.0).sqrt();
+    let damping = SAFETY * strongest.larger(0.0);
+    let least_damping = if weakest > 0.01 * damping { weakest } else { 0.0 };
+    let largest_stable_step = largest_stable_step(integrator, omega, [least_damping, damping]);
+    Ok(Stability { omega, damping, least_damping, largest_stable_step })
+}
+
+/// The largest step of an integrator that is stable for all frequencies up to ω [rad/s] and all damping in a range [1/s].
+///
+/// Infinite for ω = c = 0; `None` where every step lets a mode grow.
+pub fn largest_stable_step<const D: usize>(integrator: &dyn Integrator<D>, omega: f64, damping: [f64; 2]) -> Option<f64> {
+    let edges = edges(omega, damping);
+    let fastest = omega.larger(damping[1]);
+    if fastest == 0.0 {
+        return Some(f64::INFINITY);
+    }
+    let stable = |h: f64| worst(integrator, &edges, h) <= 1.0 + 1e-9;
+    // A stable step below an unstable one.
+    let mut low = 1.0 / fastest;
+    let mut high = 2.0 * low;
+    if stable(low) {
+        while stable(high) && high * fastest < 1e9 {
+            low = high;
+            high *= 2.0;
+        }
+    } else {
+        while !stable(low) {
+            high = low;
+            low *= 0.5;
+            if low * fastest < 1e-9 {
+                return None;
+            }
+        }
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if stable(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    // Growth too slow to be seen at the limit shows in rounding-free digits of a smaller step.
+    (worst(integrator, &edges, 0.5 * low) <= 1.0 + ROUNDING).then_some(low)
+}
+
+/// How far rounding lifts the spectral radius of a stable step above 1.
+const ROUNDING: f64 = 4e-15;
+
+/// Points on the outer edges of the rectangle of frequencies and damping.
+fn edges(omega: f64, [least, most]: [f64; 2]) -> Vec<(f64, f64)> {
+    const POINTS: usize = 32;
+    let part = |k: usize| k as f64 / POINTS as f64;
+    let mut out: Vec<_> = (0..=POINTS).map(|k| (omega, least + (most - least) * part(k))).collect();
+    if most > 0.0 {
+        out.extend((0..POINTS).map(|k| (omega * part(k), most)));
+    }
+    out
+}
+
+/// The largest spectral radius at some points; what is not finite counts as infinite.
+fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], h: f64) -> f64 {
+    let mut worst = 0.0;
+    for &(omega, c) in points {
+        let radius = spectral_radius(integrator.amplification(omega, c, h));
+        worst = if radius.is_finite() { radius.larger(worst) } else { f64::INFINITY };
+    }
+    worst
+}
+
+/// Evaluates forces in states near that of a system.
+struct Probe<'a, const D: usize> {
+    system: &'a System<D>,
+    /// M^-½ for every coordinate that can move, else zero.
+    weights: Columns<D>,
+    /// The state to be evaluated.
+    x: Columns<D>,
+    v: Columns<D>,
+    /// What `prepare` leaves behind there.
+    scratch: Vec<Vec<f64>>,
+    slots: Vec<f64>,
+    force: Columns<D>,
+    /// Forces of damped models at rest.
+    at_rest: Columns<D>,
+    /// The length of displacements [m].
+    small: f64,
+}
+
+impl<'a, const D: usize> Probe<'a, D> {
+    fn new(system: &'a System<D>) -> Self {
+        let places = system.places();
+        let mut weights = Columns::zeros(places);
+        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for node in 0..system.nodes {
+            for body in 0..if system.layout == Layout::Batch { system.bodies } else { 1 } {
+                let place = system.layout.place(node, body);
+                let inverse = system.inverse_mass.at(place);
+                weights.set(place, [if inverse > 0.0 { inverse.sqrt() } else { 0.0 }; D]);
+                let x = system.state.x.at(place);
+                for d in 0..D {
+                    low[d] = low[d].smaller(x[d]);
+                    high[d] = high[d].larger(x[d]);
+                }
+            }
+        }
+        for pin in &system.pins {
+            for d in 0..D {
+                if pin.axes[d] {
+                    weights.0[d][pin.place] = 0.0;
+                }
+            }
+        }
+        let mut extent = 0.0;
+        for d in 0..D {
+            extent = (high[d] - low[d]).larger(extent);
+        }
+        Probe {
+            x: system.state.x.clone(),
+            v: Columns::zeros(places),
+            scratch: system.members.iter().map(|m| vec![0.0; m.potential.scratch_len()]).collect(),
+            slots: Vec::new(),
+            force: Columns::zeros(places),
+            at_rest: Columns::zeros(places),
+            small: DISPLACEMENT * if extent > 0.0 && extent.is_finite() { extent } else { 1.0 },
+            weights,
+            system,
+        }
+    }
+
+    /// The forces of all models, or of the damped ones, in the state to be evaluated.
+    fn evaluate(&mut self, damped_only: bool) -> Result<(), StepError> {
+        let system = self.system;
+        let places = system.places();
+        let view =
+            View { x: self.x.slices(), v: self.v.slices(), nodes: system.nodes, layout: system.layout, time: system.time };
+        for column in &mut self.force.0 {
+            column.fill(0.0);
+        }
+        let mut power = [0.0; WIDTH];
+        for (member, scratch) in system.members.iter().zip(&mut self.scratch) {
+            if damped_only && !member.potential.views().damping {
+                continue;
+            }
+            member.potential.prepare(system.simd, &view, &member.memory, scratch)?;
+            let force = self.force.0.each_mut().map(Vec::as_mut_slice);
+            let mut tile = Tile { range: 0..places, force, power: &mut power, weight: None, slots: &mut self.slots };
+            member.potential.add_force(system.simd, &view, scratch, &mut tile);
+        }
+        Ok(())
+    }
+
+    /// K d from central differences of forces, without velocities.
+    fn stiffness(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
+        let step = self.small / largest(d);
+        for sign in [-1.0, 1.0] {
+            for i in 0..D {
+                for p in 0..d.0[i].len() {
+                    self.x.0[i][p] = self.system.state.x.0[i][p] + sign * step * d.0[i][p];
+                }
+            }
+            self.evaluate(false)?;
+            let factor = -sign / (2.0 * step);
+            for i in 0..D {
+                for p in 0..d.0[i].len() {
+                    out.0[i][p] += factor * self.force.0[i][p];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Remembers the forces without velocities.
+    fn start_damping(&mut self) -> Result<(), StepError> {
+        self.x = self.system.state.x.clone();
+        self.evaluate(true)?;
+        self.at_rest = self.force.clone();
+        Ok(())
+    }
+
+    /// C d from the difference that a velocity d makes (at most 1 m/s: damping is linear, rounding is not).
+    fn damping(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
+        let step = 1.0 / largest(d);
+        for i in 0..D {
+            for p in 0..d.0[i].len() {
+                self.v.0[i][p] = step * d.0[i][p];
+            }
+        }
+        self.evaluate(true)?;
+        for i in 0..D {
+            for p in 0..d.0[i].len() {
+                out.0[i][p] = (self.at_rest.0[i][p] - self.force.0[i][p]) / step;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The largest entry, by absolute value.
+fn largest<const D: usize>(columns: &Columns<D>) -> f64 {
+    let mut most = f64::MIN_POSITIVE;
+    for column in &columns.0 {
+        for value in column {
+            most = value.abs().larger(most);
+        }
+    }
+    most
+}
+
+/// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
+///
+/// Lanczos' recurrence q ← (W A W − α) q − β q′ from a fixed start; both ends, or only the upper one, are followed until
+/// their residuals are small.
+fn spectrum<const D: usize>(
+    weights: &Columns<D>,
+    both: bool,
+    mut product: impl FnMut(&Columns<D>, &mut Columns<D>) -> Result<(), StepError>,
+) -> Result<[f64; 2], StepError> {
+    let mut q = start(weights);
+    let freedom = weights.0.iter().flatten().filter(|w| **w > 0.0).count();
+    let places = weights.0[0].len() - WIDTH;
+    let mut before: Columns<D> = Columns::zeros(places);
+    let (mut d, mut r): (Columns<D>, Columns<D>) = (Columns::zeros(places), Columns::zeros(places));
+    let mut matrix = Tridiagonal::default();
+    let mut found = [None, None];
+    for iteration in 1..=MOST_PRODUCTS.min(freedom) {
+        for i in 0..D {
+            for p in 0..d.0[i].len() {
+                d.0[i][p] = weights.0[i][p] * q.0[i][p];
+                r.0[i][p] = 0.0;
+            }
+        }
+        product(&d, &mut r)?;
+        // What the product has in the direction of the last two vectors is the new row of the tridiagonal matrix.
+        let mut alpha = 0.0;
+        let beta = matrix.beta.last().copied().unwrap_or(0.0);
+        for i in 0..D {
+            for p in 0..r.0[i].len() {
+                r.0[i][p] = weights.0[i][p] * r.0[i][p] - beta * before.0[i][p];
+                alpha += r.0[i][p] * q.0[i][p];
+            }
+        }
+        let mut square = 0.0;
+        for i in 0..D {
+            for p in 0..r.0[i].len() {
+                r.0[i][p] -= alpha * q.0[i][p];
+                square += r.0[i][p] * r.0[i][p];
+            }
+        }
+        let beta = square.sqrt();
+        if !(alpha.is_finite() && beta.is_finite()) {
+            let message = "the forces around the state are not finite, so no stable step can be given".into();
+            return Err(StepError::Model { model: "stability", message });
+        }
+        matrix.alpha.push(alpha);
+        matrix.beta.push(beta);
+
+        let [low, high] = matrix.extremes();
+        let scale = low.abs().larger(high.abs());
+        let last = beta <= 1e-12 * scale || iteration == MOST_PRODUCTS.min(freedom);
+        for (end, value) in [low, high].into_iter().enumerate() {
+            let residual = matrix.residual(value);
+            if found[end].is_none() && (last || residual <= TOLERANCE * scale) {
+                // Where everything is exhausted the values are exact.
+                let rest = if beta <= 1e-12 * scale || iteration == freedom { 0.0 } else { residual };
+                found[end] = Some(if end == 0 { value - rest } else { value + rest });
+            }
+        }
+        if found[1].is_some() && (!both || found[0].is_some()) {
+            break;
+        }
+        for i in 0..D {
+            for p in 0..r.0[i].len() {
+                before.0[i][p] = q.0[i][p];
+                q.0[i][p] = r.0[i][p] / beta;
+            }
+        }
+    }
+    Ok([found[0].unwrap_or(0.0), found[1].unwrap_or(0.0)])
+}
+
+/// A unit vector with pseudo-random entries where the weights are not zero; always the same.
+fn start<const D: usize>(weights: &Columns<D>) -> Columns<D> {
+    let mut out = weights.clone();
+    let mut square = 0.0;
+    for (d, column) in out.0.iter_mut().enumerate() {
+        for (p, value) in column.iter_mut().enumerate() {
+            if *value > 0.0 {
+                // SplitMix64 of the number of the coordinate (Steele, Lea, Flood 2014).
+                let mut z = ((p * D + d + 1) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+                z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+                *value = ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+                square += *value * *value;
+            }
+        }
+    }
+    let factor = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
+    out.0.iter_mut().flatten().for_each(|v| *v *= factor);
+    out
+}
+
+/// A symmetric tridiagonal matrix: its diagonal, and what lies beside it (one entry more: the next one).
+#[derive(Default)]
+struct Tridiagonal {
+    alpha: Vec<f64>,
+    beta: Vec<f64>,
+}
+
+impl Tridiagonal {
+    /// The smallest and the largest eigenvalue.
+    fn extremes(&self) -> [f64; 2] {
+        let n = self.alpha.len();
+        // Gershgorin's circles.
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for i in 0..n {
+            let radius = if i > 0 { self.beta[i - 1] } else { 0.0 } + if i + 1 < n { self.beta[i] } else { 0.0 };
+            low = (self.alpha[i] - radius).smaller(low);
+            high = (self.alpha[i] + radius).larger(high);
+        }
+        [self.bisect(low, high, 1), self.bisect(low, high, n)]
+    }
+    /// The value below which `count` eigenvalues begin to lie.
+    fn bisect(&self, mut low: f64, mut high: f64, count: usize) -> f64 {
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.below(middle) >= count {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+    /// How many eigenvalues lie below a value (Sturm's sequence).
+    fn below(&self, value: f64) -> usize {
+        let mut count = 0;
+        let mut pivot = 1.0;
+        for i in 0..self.alpha.len() {
+            let beta = if i > 0 { self.beta[i - 1] } else { 0.0 };
+            let safe = if pivot == 0.0 { f64::MIN_POSITIVE } else { pivot };
+            pivot = self.alpha[i] - value - beta * beta / safe;
+            count += usize::from(pivot < 0.0);
+        }
+        count
+    }
+    /// How far the eigenvalue is from one of the whole matrix, at most: next β times the last entry of its unit vector.
+    fn residual(&self, value: f64) -> f64 {
+        let n = self.alpha.len();
+        let (mut before, mut entry, mut square) = (0.0, 1.0, 1.0);
+        for i in 0..n - 1 {
+            let left = if i > 0 { self.beta[i - 1] * before } else { 0.0 };
+            let next = ((value - self.alpha[i]) * entry - left) / self.beta[i];
+            (before, entry) = (entry, next);
+            square += entry * entry;
+        }
+        self.beta[n - 1] * entry.abs() / square.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,153 @@
+//! The recurrence against known spectra; how steps of real integrators compare with their true limits is tested beside
+//! the integrators.
+
+use super::*;
+use crate::potential::{Potential, Views};
+use crate::state::Parameter;
+use crate::system::Pin;
+use opruga_math::Simd;
+
+/// Every coordinate on its own spring and damper to the origin: a diagonal K and C.
+#[derive(Debug)]
+struct Anchors {
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+}
+
+impl<const D: usize> Potential<D> for Anchors {
+    fn name(&self) -> &'static str {
+        "anchors"
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: false, damping: self.damping.iter().any(|c| *c > 0.0) }
+    }
+    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        for p in tile.range.clone().take(self.stiffness.len()) {
+            for d in 0..D {
+                tile.force[d][p - tile.range.start] -= self.stiffness[p] * view.x[d][p] + self.damping[p] * view.v[d][p];
+            }
+        }
+    }
+}
+
+/// The amplification of symplectic Euler, or of explicit Euler.
+#[derive(Debug)]
+struct Rule {
+    symplectic: bool,
+}
+
+impl Integrator<2> for Rule {
+    fn name(&self) -> &'static str {
+        "rule"
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+        let (k, d) = (-omega * omega * h, 1.0 - c * h);
+        if self.symplectic { [[1.0 + h * k, h * d], [k, d]] } else { [[1.0, h], [k, d]] }
+    }
+    fn step(&self, _system: &mut System<2>, _h: f64) -> Result<(), StepError> {
+        Ok(())
+    }
+}
+
+const SYMPLECTIC: Rule = Rule { symplectic: true };
+const EXPLICIT: Rule = Rule { symplectic: false };
+
+fn anchored(layout: Layout, nodes: usize, bodies: usize, mass: f64, stiffness: Vec<f64>, damping: Vec<f64>) -> System<2> {
+    let places = layout.places(nodes);
+    let (mut x, v) = (Columns::zeros(places), Columns::zeros(places));
+    for p in 0..nodes * layout.stride() {
+        x.set(p, [0.1 * p as f64, 1.0 / (1.0 + p as f64)]);
+    }
+    let mut system = System::new(Simd::best(), layout, nodes, bodies, x, v, Parameter::uniform(mass));
+    system.add(Box::new(Anchors { stiffness, damping }));
+    system.plan(0);
+    system
+}
+
+fn close(computed: f64, exact: f64) {
+    // Not below the truth, and not much above the safety of 2 %.
+    assert!(computed >= exact && computed <= 1.03 * exact, "{computed} {exact}");
+}
+
+#[test]
+fn the_largest_eigenvalues_are_found() {
+    let stiffness: Vec<f64> = (0..500).map(|k| 1.0 + k as f64).collect();
+    let damping: Vec<f64> = (0..500).map(|k| 3.0 + 0.01 * k as f64).collect();
+    let system = anchored(Layout::Single, 500, 1, 2.0, stiffness, damping);
+    let stability = estimate(&system, &SYMPLECTIC).unwrap();
+    close(stability.omega, (500.0f64 / 2.0).sqrt());
+    close(stability.damping, 7.99 / 2.0);
+    assert!(stability.least_damping <= 1.5 && stability.least_damping > 1.48, "{stability:?}");
+}
+
+#[test]
+fn held_nodes_and_axes_and_unused_bodies_do_not_count() {
+    let mut stiffness = vec![4.0; 20];
+    (stiffness[3], stiffness[7]) = (400.0, 900.0);
+    let mut system = anchored(Layout::Single, 20, 1, 1.0, stiffness, vec![0.0; 20]);
+    let pin = |place, axes| Pin { place, axes, anchor: [0.0; 2], motion: Default::default() };
+    close(estimate(&system, &SYMPLECTIC).unwrap().omega, 30.0);
+    system.pins.push(pin(7, [true, false]));
+    close(estimate(&system, &SYMPLECTIC).unwrap().omega, 30.0);
+    system.pins.push(pin(7, [false, true]));
+    close(estimate(&system, &SYMPLECTIC).unwrap().omega, 20.0);
+    system.pins.push(pin(3, [true, true]));
+    close(estimate(&system, &SYMPLECTIC).unwrap().omega, 2.0);
+
+    // Eight lanes, of which three are bodies; the stiffest spring is in lane 5, the next one in lane 2.
+    let mut stiffness = vec![1.0; 80];
+    (stiffness[8 * 4 + 5], stiffness[8 * 6 + 2]) = (400.0, 100.0);
+    let system = anchored(Layout::Batch, 10, 3, 1.0, stiffness, vec![0.0; 80]);
+    close(estimate(&system, &SYMPLECTIC).unwrap().omega, 10.0);
+}
+
+#[test]
+fn nothing_to_move_is_stable() {
+    let system = anchored(Layout::Single, 9, 1, 1.0, vec![0.0; 9], vec![0.0; 9]);
+    let stability = estimate(&system, &EXPLICIT).unwrap();
+    assert_eq!((stability.omega, stability.damping), (0.0, 0.0));
+    assert_eq!(stability.largest_stable_step, Some(f64::INFINITY));
+    let held = anchored(Layout::Single, 9, 1, 0.0, vec![5.0; 9], vec![0.0; 9]);
+    assert_eq!(estimate(&held, &SYMPLECTIC).unwrap().largest_stable_step, Some(f64::INFINITY));
+}
+
+#[test]
+fn states_without_finite_forces_are_refused() {
+    let mut system = anchored(Layout::Single, 9, 1, 1.0, vec![5.0; 9], vec![0.0; 9]);
+    system.state.x.0[1][4] = f64::NAN;
+    assert!(estimate(&system, &SYMPLECTIC).is_err());
+}
+
+#[test]
+fn limits_of_symplectic_euler() {
+    // Undamped 2/ω; damped (2/ω)(√(1 + ζ²) − ζ): the thesis's springs ω = 80, c = 160: 0.01036 s, not 0.025 s.
+    let limit = |omega, c| largest_stable_step(&SYMPLECTIC, omega, [0.0, c]).unwrap();
+    assert!((limit(80.0, 0.0) - 0.025).abs() < 1e-9);
+    assert!((limit(80.0, 160.0) - 0.025 * (2.0f64.sqrt() - 1.0)).abs() < 1e-9);
+    assert!((limit(0.0, 10.0) - 0.2).abs() < 1e-9);
+    assert!((limit(1e-6, 10.0) - 0.2).abs() < 1e-6);
+    assert!((limit(10.0, 1e-7) - 0.2).abs() < 1e-6);
+}
+
+#[test]
+fn limits_of_explicit_euler() {
+    let limit = |omega, least, most| largest_stable_step(&EXPLICIT, omega, [least, most]);
+    assert_eq!(limit(80.0, 0.0, 0.0), None);
+    // Where one mode may be undamped there is no stable step, however strong the damping of others.
+    assert_eq!(limit(80.0, 0.0, 160.0), None);
+    // All damped alike: h = c/ω².
+    let h = limit(80.0, 1.0, 1.0).unwrap();
+    assert!((h * 6400.0 - 1.0).abs() < 1e-4, "{h}");
+    assert!((limit(0.0, 4.0, 4.0).unwrap() - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn growth_is_that_of_the_worst_mode() {
+    let stability = Stability { omega: 80.0, damping: 0.0, least_damping: 0.0, largest_stable_step: None };
+    // ½ ln(1 + h²ω²)/h.
+    let h = 1e-3;
+    let expected = 0.5 * (1.0f64 + 0.0064).ln() / h;
+    assert!((stability.growth_per_second(&EXPLICIT, h) - expected).abs() < 1e-9 * expected);
+    assert_eq!(stability.growth_per_second(&SYMPLECTIC, h), 0.0);
+}

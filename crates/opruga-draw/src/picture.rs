@@ -1,0 +1,222 @@
+//! The plain description of one moment, which is all that a renderer needs to know.
+
+use crate::colour::ColourMap;
+use crate::error::DrawError;
+
+/// Everything that is seen at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// The number of dimensions: 2 (seen along z) or 3 (seen by a camera, with y upwards).
+    pub dimension: u8,
+    /// The time [s].
+    pub time: f64,
+    /// The title, which may be empty.
+    pub title: String,
+    /// The deformable bodies.
+    pub bodies: Vec<BodyPicture>,
+    /// The fixed or moving obstacles.
+    pub colliders: Vec<ColliderPicture>,
+    /// The arrows of forces and other vectors.
+    pub arrows: Vec<ArrowPicture>,
+    /// The rubber lines of pointers which pull a node.
+    pub pulls: Vec<PullPicture>,
+    /// What the scalars of the bodies mean.
+    pub legend: Option<Legend>,
+}
+
+impl Default for Picture {
+    fn default() -> Picture {
+        Picture {
+            dimension: 2,
+            time: 0.0,
+            title: String::new(),
+            bodies: Vec::new(),
+            colliders: Vec::new(),
+            arrows: Vec::new(),
+            pulls: Vec::new(),
+            legend: None,
+        }
+    }
+}
+
+/// The meaning of the scalars of the bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// The name of the quantity, such as "stress".
+    pub label: String,
+    /// The unit of the quantity, such as "kPa"; empty where there is none.
+    pub unit: String,
+    /// The values at the ends of the colour map; the view measures them where this is absent.
+    pub range: Option<[f64; 2]>,
+    /// The colour map.
+    pub map: ColourMap,
+}
+
+/// The surface of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Facets {
+    /// The edges of closed outlines in two dimensions, in any order; a loop within a loop is a hole.
+    Edges(Vec<[u32; 2]>),
+    /// The triangles of a surface in three dimensions.
+    Triangles(Vec<[u32; 3]>),
+}
+
+/// One deformable body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyPicture {
+    /// The positions of the nodes [m], with z = 0 in two dimensions.
+    pub positions: Vec<[f64; 3]>,
+    /// The surface.
+    pub facets: Facets,
+    /// The triangles within a flat body, filled with the colours of their nodes; may be empty.
+    pub cells: Vec<[u32; 3]>,
+    /// The springs, drawn as lines.
+    pub segments: Vec<[u32; 2]>,
+    /// One scalar a node, which decides the colour; may be empty.
+    pub scalar: Vec<f64>,
+    /// The colour of a body without scalars; the palette gives one where this is absent.
+    pub colour: Option<[u8; 3]>,
+    /// Whether the nodes are drawn as dots.
+    pub nodes_drawn: bool,
+    /// The nodes which are held in place.
+    pub pinned: Vec<u32>,
+}
+
+impl Default for BodyPicture {
+    fn default() -> BodyPicture {
+        BodyPicture {
+            positions: Vec::new(),
+            facets: Facets::Edges(Vec::new()),
+            cells: Vec::new(),
+            segments: Vec::new(),
+            scalar: Vec::new(),
+            colour: None,
+            nodes_drawn: false,
+            pinned: Vec::new(),
+        }
+    }
+}
+
+/// One obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColliderPicture {
+    /// Everything behind a plane, such as a floor.
+    HalfSpace {
+        /// A point of the plane [m].
+        point: [f64; 3],
+        /// The direction out of the obstacle.
+        normal: [f64; 3],
+    },
+    /// A box along the axes.
+    Box {
+        /// The lowest corner [m].
+        min: [f64; 3],
+        /// The highest corner [m].
+        max: [f64; 3],
+        /// Whether the bodies are inside, as in a room.
+        inside: bool,
+    },
+    /// A disc or a ball.
+    Ball {
+        /// The centre [m].
+        center: [f64; 3],
+        /// The radius [m].
+        radius: f64,
+    },
+    /// All points near a segment.
+    Capsule {
+        /// One end of the segment [m].
+        a: [f64; 3],
+        /// The other end of the segment [m].
+        b: [f64; 3],
+        /// The radius [m].
+        radius: f64,
+    },
+    /// A filled polygon.
+    Polygon(Vec<[f64; 3]>),
+    /// An open line.
+    Polyline(Vec<[f64; 3]>),
+    /// A surface of triangles.
+    Mesh {
+        /// The positions of the corners [m].
+        positions: Vec<[f64; 3]>,
+        /// The triangles.
+        triangles: Vec<[u32; 3]>,
+    },
+}
+
+/// What an arrow stands for, which decides its colour and its scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ArrowKind {
+    /// The sum of all forces on a node.
+    Force,
+    /// The force of the gas within a body.
+    Pressure,
+    /// The force of a spring or of the material.
+    Elastic,
+    /// The weight.
+    Gravity,
+    /// The force of an obstacle or of another body.
+    Contact,
+    /// The force of a pointer.
+    Pull,
+    /// A velocity.
+    Velocity,
+}
+
+/// One arrow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArrowPicture {
+    /// What the arrow stands for.
+    pub kind: ArrowKind,
+    /// Where the arrow starts [m].
+    pub from: [f64; 3],
+    /// The vector, in the unit of its kind; the view chooses one scale for each kind.
+    pub vector: [f64; 3],
+}
+
+/// The rubber line between a node and the pointer which pulls it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PullPicture {
+    /// The position of the node [m].
+    pub node: [f64; 3],
+    /// The position of the pointer [m].
+    pub pointer: [f64; 3],
+}
+
+impl Picture {
+    /// Refuses a picture whose lists do not fit together.
+    pub fn check(&self) -> Result<(), DrawError> {
+        if self.dimension != 2 && self.dimension != 3 {
+            return Err(DrawError::Dimension(self.dimension));
+        }
+        self.bodies.iter().enumerate().try_for_each(|(index, body)| body.check(index))
+    }
+}
+
+impl BodyPicture {
+    /// Refuses a body whose lists do not fit together; `body` is its place in the picture.
+    fn check(&self, body: usize) -> Result<(), DrawError> {
+        let nodes = self.positions.len();
+        if !self.scalar.is_empty() && self.scalar.len() != nodes {
+            return Err(DrawError::Scalars { body, nodes, scalars: self.scalar.len() });
+        }
+        let wrong = |mut list: Box<dyn Iterator<Item = u32> + '_>| list.find(|&node| node as usize >= nodes);
+        let facets: Box<dyn Iterator<Item = u32> + '_> = match &self.facets {
+            Facets::Edges(edges) => Box::new(edges.iter().flatten().copied()),
+            Facets::Triangles(triangles) => Box::new(triangles.iter().flatten().copied()),
+        };
+        let parts: [(&'static str, Option<u32>); 4] = [
+            ("facets", wrong(facets)),
+            ("cells", wrong(Box::new(self.cells.iter().flatten().copied()))),
+            ("segments", wrong(Box::new(self.segments.iter().flatten().copied()))),
+            ("pinned nodes", wrong(Box::new(self.pinned.iter().copied()))),
+        ];
+        for (part, node) in parts {
+            if let Some(node) = node {
+                return Err(DrawError::Node { body, nodes, part, node });
+            }
+        }
+        Ok(())
+    }
+}

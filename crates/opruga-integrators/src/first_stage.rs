@@ -1,0 +1,40 @@
+//! The first stage of the Runge–Kutta rules.
+
+use opruga_core::state::Parameter;
+use opruga_core::system::{Stage, State, Update};
+use opruga_math::{Pack, Strip, WIDTH};
+use std::ops::Range;
+
+/// y₁ = y₀ + s k₀ with k₀ = (v₀, a₀): from the current state into the first work columns.
+pub(crate) struct FirstStage {
+    /// How far to go along the slope [s].
+    pub(crate) span: f64,
+}
+
+impl<const D: usize> Update<D> for FirstStage {
+    fn writes(&self) -> Stage {
+        Stage::Work(0)
+    }
+    fn time(&self) -> f64 {
+        self.span
+    }
+    #[inline(always)]
+    fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>) {
+        let span = P::splat(self.span);
+        let (start, length) = (range.start, range.len());
+        let force = Strip::<D>::new(force, 0, length);
+        let inverse_mass = inverse_mass.strip(start, length);
+        let x0 = Strip::<D>::new(&state.x.slices(), start, length);
+        let v0 = Strip::<D>::new(&state.v.slices(), start, length);
+        let [x1, v1] = &mut state.work[0];
+        let (mut x1, mut v1) = (x1.strip_mut(start, length), v1.strip_mut(start, length));
+        for k in (0..length).step_by(WIDTH) {
+            let kick = span * inverse_mass.load::<P>(k);
+            for d in 0..D {
+                let velocity = v0.load::<P>(d, k);
+                x1.store(d, k, x0.load::<P>(d, k) + velocity * span);
+                v1.store(d, k, velocity + force.load::<P>(d, k) * kick);
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! # Heun's rule (explicit trapezoid)
+//!
+//! With y = (x, v) and k(y) = (v, a(x, v)):
+//!
+//! k₀ = k(y₀),  y₁ = y₀ + h k₀,  y = y₀ + ½h (k₀ + k(y₁)).
+//!
+//! Second order (also with damping), two forces per step; Butcher table `0 | ; 1 | 1 ; ½ ½`. Written so that no slope
+//! is stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
+//!
+//! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without
+//! damping**, energy grows by ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). A mode that is damped so
+//! strongly that it does not oscillate is stable for h |μ| ≤ 2. Free fall is exact.
+//!
+//! Source: Heun 1900; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.1.
+
+#[cfg(test)]
+mod tests;
+
+use crate::first_stage::FirstStage;
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Integrator, IntegratorKind};
+use opruga_core::spec::{Spec, Values};
+use opruga_core::state::Parameter;
+use opruga_core::system::{Stage, State, System, Update};
+use opruga_math::{Pack, Strip, WIDTH};
+use std::ops::Range;
+
+/// The parameters: none.
+pub const SPEC: Spec = Spec {
+    kind: "heun",
+    summary: "second order, energy grows slowly: the explicit trapezoid",
+    documentation: "y₁ = y₀ + h k(y₀), y = y₀ + ½h (k(y₀) + k(y₁)) with k = (v, a). Two forces per step. No step is stable without \
+damping: the energy of a mode ω grows by ¼ω⁴h³ per second.",
+    dimensions: &[2, 3],
+    fields: &[],
+};
+
+/// The kind `heun`.
+#[derive(Debug)]
+pub struct HeunKind;
+
+/// The explicit trapezoidal rule.
+#[derive(Clone, Copy, Debug)]
+pub struct Heun;
+
+impl<const D: usize> IntegratorKind<D> for HeunKind {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, _values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
+        Ok(Box::new(Heun))
+    }
+}
+
+impl<const D: usize> Integrator<D> for Heun {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+        // 1 + A + ½A² with A = h [[0, 1], [−ω², −c]].
+        let (s, b) = (-h * omega * omega, -h * c);
+        [
+            [1.0 + 0.5 * h * s, h + 0.5 * h * b],
+            [s + 0.5 * b * s, 1.0 + b + 0.5 * (s * h + b * b)],
+        ]
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        system.advance(Stage::Current, 0.0, 0.5 * h, None, &FirstStage { span: h })?;
+        system.advance(Stage::Work(0), h, 0.5 * h, Some(h), &Trapezoid { h })?;
+        system.finish_step(h);
+        Ok(())
+    }
+}
+
+/// y = y₀ + ½h (k₀ + k₁), where h k₀ is found again in y₁ − y₀.
+struct Trapezoid {
+    h: f64,
+}
+impl<const D: usize> Update<D> for Trapezoid {
+    fn writes(&self) -> Stage {
+        Stage::Current
+    }
+    fn time(&self) -> f64 {
+        self.h
+    }
+    #[inline(always)]
+    fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>) {
+        let (h, half, half_step) = (P::splat(self.h), P::splat(0.5), P::splat(0.5 * self.h));
+        let (start, length) = (range.start, range.len());
+        let force = Strip::<D>::new(force, 0, length);
+        let inverse_mass = inverse_mass.strip(start, length);
+        let v1 = Strip::<D>::new(&state.work[0][1].slices(), start, length);
+        let mut x = state.x.strip_mut(start, length);
+        let mut v = state.v.strip_mut(start, length);
+        for k in (0..length).step_by(WIDTH) {
+            let kick = h * inverse_mass.load::<P>(k);
+            for d in 0..D {
+                let (first, last) = (v.load::<P>(d, k), v1.load::<P>(d, k));
+                x.store(d, k, x.load::<P>(d, k) + (first + last) * half_step);
+                v.store(d, k, first + ((last - first) + force.load::<P>(d, k) * kick) * half);
+            }
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Order 4, limit 2√2, exact free fall.
+
+use super::RungeKutta;
+use crate::testing;
+
+#[test]
+fn amplification_is_one_step() {
+    testing::check_amplification(&RungeKutta, &RungeKutta);
+}
+#[test]
+fn order_is_four() {
+    testing::check_order(&RungeKutta, &RungeKutta, 4.0);
+}
+#[test]
+fn free_fall_is_exact() {
+    testing::check_free_fall(&RungeKutta, |n| 0.5 * n * n);
+}
+#[test]
+fn limit_without_damping() {
+    testing::check_limit(&RungeKutta, 8.0f64.sqrt());
+}

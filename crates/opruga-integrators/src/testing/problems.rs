@@ -1,0 +1,126 @@
+//! Small models, written once more and plainly, since integrators cannot see the crate of models.
+
+use opruga_core::error::StepError;
+use opruga_core::potential::{Potential, Views};
+use opruga_core::state::{Columns, Layout, Parameter, View};
+use opruga_core::system::System;
+use opruga_core::tile::Tile;
+use opruga_math::Simd;
+
+/// Every node on a linear spring and damper to the origin.
+#[derive(Debug)]
+pub(crate) struct Anchors {
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+}
+
+impl<const D: usize> Potential<D> for Anchors {
+    fn name(&self) -> &'static str {
+        "anchors"
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: false, damping: self.damping > 0.0 }
+    }
+    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        for p in tile.range.clone() {
+            for d in 0..D {
+                tile.force[d][p - tile.range.start] -= self.stiffness * view.x[d][p] + self.damping * view.v[d][p];
+                tile.power[p % 8] += self.damping * view.v[d][p] * view.v[d][p];
+            }
+        }
+    }
+}
+
+/// One node on a spring and damper to the origin; coordinate d starts with d + 1 times the amplitude.
+pub(crate) fn oscillator<const D: usize>(mass: f64, stiffness: f64, damping: f64, x: f64, v: f64) -> System<D> {
+    let (mut columns, mut velocities) = (Columns::zeros(8), Columns::zeros(8));
+    columns.set(0, core::array::from_fn(|d| x * (d + 1) as f64));
+    velocities.set(0, core::array::from_fn(|d| v * (d + 1) as f64));
+    let mut system = System::new(Simd::best(), Layout::Single, 1, 1, columns, velocities, Parameter::uniform(mass));
+    system.add(Box::new(Anchors { stiffness, damping }));
+    system
+}
+
+/// Springs with damping along their axes, closed to a ring or not, and in the plane a gas inside: isothermal, p = nRT/A.
+#[derive(Debug)]
+pub(crate) struct Springs {
+    pub(crate) pairs: Vec<[usize; 2]>,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) rest_length: f64,
+    pub(crate) gas: f64,
+}
+
+impl Springs {
+    /// Area inside the ring (its first two coordinates) by Gauss's theorem.
+    fn area<const D: usize>(&self, view: &View<D>) -> f64 {
+        let twice = |&[a, b]: &[usize; 2]| view.x[0][a] * view.x[1][b] - view.x[0][b] * view.x[1][a];
+        0.5 * self.pairs.iter().map(twice).sum::<f64>()
+    }
+}
+
+impl<const D: usize> Potential<D> for Springs {
+    fn name(&self) -> &'static str {
+        "springs"
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: false, damping: self.damping > 0.0 }
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        self.pairs.iter().for_each(|&[a, b]| visit(a.min(b) as u32, a.max(b) as u32));
+    }
+    fn scratch_len(&self) -> usize {
+        1
+    }
+    fn prepare(&self, _simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
+        scratch[0] = if self.gas > 0.0 { self.gas / self.area(view) } else { 0.0 };
+        Ok(())
+    }
+    fn add_force(&self, _simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        for &[a, b] in &self.pairs {
+            let d: [f64; D] = core::array::from_fn(|i| view.x[i][a] - view.x[i][b]);
+            let rate: [f64; D] = core::array::from_fn(|i| view.v[i][a] - view.v[i][b]);
+            let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let speed = d.iter().zip(&rate).map(|(d, r)| d * r).sum::<f64>() / length;
+            let tension = self.stiffness * (length - self.rest_length) + self.damping * speed;
+            // Half the pressure on the edge goes to each end, along its outer normal (counter-clockwise rings).
+            let normal = [-d[1], d[0]];
+            for (end, sign) in [(a, -1.0), (b, 1.0)] {
+                if tile.range.contains(&end) {
+                    let k = end - tile.range.start;
+                    for i in 0..D {
+                        tile.force[i][k] += sign * tension * d[i] / length;
+                    }
+                    for i in 0..2 {
+                        tile.force[i][k] += 0.5 * scratch[0] * normal[i];
+                    }
+                }
+            }
+        }
+    }
+}
+
+const TWO_NODES: Springs = Springs { pairs: Vec::new(), stiffness: 30.0, damping: 0.0, rest_length: 1.0, gas: 0.0 };
+const TWO_MASSES: [f64; 2] = [0.5, 1.5];
+
+/// Two nodes of different mass on a stretched spring that spins, drifts and oscillates.
+pub(crate) fn two_nodes<const D: usize>(damping: f64) -> System<D> {
+    let (mut x, mut v) = (Columns::zeros(8), Columns::zeros(8));
+    x.set(1, core::array::from_fn(|d| [1.2, 0.3, -0.4][d]));
+    v.set(0, core::array::from_fn(|d| [0.5, -1.0, 0.7][d]));
+    v.set(1, core::array::from_fn(|d| [-0.3, 2.0, 0.2][d]));
+    let mass = Parameter::column(TWO_MASSES.to_vec());
+    let mut system = System::new(Simd::best(), Layout::Single, 2, 1, x, v, mass);
+    system.add(Box::new(Springs { pairs: vec![[0, 1]], damping, ..TWO_NODES }));
+    system
+}
+
+/// Kinetic and elastic energy of [`two_nodes`] [J].
+pub(crate) fn energy_of_two_nodes<const D: usize>(system: &System<D>) -> f64 {
+    let square = |a: [f64; D]| a.iter().map(|c| c * c).sum::<f64>();
+    let (a, b) = (system.state.x.at(0), system.state.x.at(1));
+    let stretch = square(core::array::from_fn(|i| a[i] - b[i])).sqrt() - TWO_NODES.rest_length;
+    let kinetic: f64 = (0..2).map(|p| 0.5 * TWO_MASSES[p] * square(system.state.v.at(p))).sum();
+    kinetic + 0.5 * TWO_NODES.stiffness * stretch * stretch
+}

@@ -1,0 +1,165 @@
+//! The container of a checkpoint: the scene itself and the state of the world, checked byte by byte.
+//!
+//! ```text
+//! 0   8  "OPRUGA\x1a\n"         magic: refuses texts and files that a transfer has changed
+//! 8   4  version                little-endian, as all numbers
+//! 12  8  bytes of the scene
+//! 20  8  bytes of the payload
+//! 28  4  CRC-32 of bytes 0 … 27
+//! 32     the scene, then CRC-32 of it
+//!        the payload in pieces of 1 MiB, each followed by its CRC-32
+//! ```
+//! The file ends there: anything more or less is refused.
+
+use std::io::{self, Write};
+
+/// The version that is written.
+pub const VERSION: u32 = 1;
+const MAGIC: &[u8; 8] = b"OPRUGA\x1a\n";
+const PIECE: usize = 1 << 20;
+const HEAD: usize = 32;
+
+/// The contents of a checkpoint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checkpoint {
+    /// The text of the scene, overrides included: the checkpoint needs no other file.
+    pub scene: String,
+    /// The state, in the form of the world that wrote it.
+    pub payload: Vec<u8>,
+}
+
+/// Why a checkpoint was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CheckpointError {
+    /// It does not begin as a checkpoint.
+    #[error("this is no checkpoint of Opruga")]
+    NotOne,
+    /// Another version of the program wrote it.
+    #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
+    Version {
+        /// The version that was found.
+        found: u32,
+    },
+    /// It is shorter than its head says.
+    #[error("the checkpoint is cut off: it has {found} bytes of {expected}")]
+    CutOff {
+        /// The bytes that it has.
+        found: u64,
+        /// The bytes that it should have.
+        expected: u64,
+    },
+    /// Something follows its end.
+    #[error("{extra} bytes follow the end of the checkpoint")]
+    TooLong {
+        /// The bytes too many.
+        extra: u64,
+    },
+    /// A checksum does not fit.
+    #[error("the checkpoint is damaged between bytes {from} and {to}")]
+    Damaged {
+        /// The first byte of the damaged part.
+        from: u64,
+        /// One past its last byte.
+        to: u64,
+    },
+}
+
+impl CheckpointError {
+    /// A stable word for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            CheckpointError::NotOne => "checkpoint.not_one",
+            CheckpointError::Version { .. } => "checkpoint.version",
+            CheckpointError::CutOff { .. } => "checkpoint.cut_off",
+            CheckpointError::TooLong { .. } => "checkpoint.too_long",
+            CheckpointError::Damaged { .. } => "checkpoint.damaged",
+        }
+    }
+    /// The error object of the command line.
+    pub fn to_json(&self, file: &str) -> serde_json::Value {
+        serde_json::json!({
+            "code": self.code(), "message": self.to_string(), "file": file, "line": null, "column": null,
+            "path": "", "value": null, "allowed": format!("a whole checkpoint of version {VERSION}"), "hint": "try an older checkpoint",
+        })
+    }
+}
+
+impl Checkpoint {
+    /// Writes the checkpoint; [`crate::safe_write::safe_write`] makes the file.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut head = Vec::with_capacity(HEAD);
+        head.extend_from_slice(MAGIC);
+        head.extend_from_slice(&VERSION.to_le_bytes());
+        head.extend_from_slice(&(self.scene.len() as u64).to_le_bytes());
+        head.extend_from_slice(&(self.payload.len() as u64).to_le_bytes());
+        let sum = crc32fast::hash(&head);
+        head.extend_from_slice(&sum.to_le_bytes());
+        out.write_all(&head)?;
+        out.write_all(self.scene.as_bytes())?;
+        out.write_all(&crc32fast::hash(self.scene.as_bytes()).to_le_bytes())?;
+        for piece in self.payload.chunks(PIECE) {
+            out.write_all(piece)?;
+            out.write_all(&crc32fast::hash(piece).to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Reads a checkpoint. Sizes are compared with the bytes at hand before anything is allocated.
+    ///
+    /// # Errors
+    /// Every flipped byte, every truncation, every addition and every other version is refused.
+    pub fn read(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
+        let found = bytes.len() as u64;
+        if !bytes.starts_with(&MAGIC[..bytes.len().min(8)]) {
+            return Err(CheckpointError::NotOne);
+        }
+        if bytes.len() < HEAD {
+            return Err(CheckpointError::CutOff { found, expected: HEAD as u64 });
+        }
+        let version = u32::from_le_bytes(array(&bytes[8..12]));
+        if version != VERSION {
+            return Err(CheckpointError::Version { found: version });
+        }
+        if crc32fast::hash(&bytes[..28]) != u32::from_le_bytes(array(&bytes[28..32])) {
+            return Err(CheckpointError::Damaged { from: 0, to: HEAD as u64 });
+        }
+        let scene_bytes = u64::from_le_bytes(array(&bytes[12..20]));
+        let payload_bytes = u64::from_le_bytes(array(&bytes[20..28]));
+        let sums = payload_bytes.div_ceil(PIECE as u64).saturating_mul(4).saturating_add(4);
+        let expected = (HEAD as u64).saturating_add(scene_bytes).saturating_add(payload_bytes).saturating_add(sums);
+        if found < expected {
+            return Err(CheckpointError::CutOff { found, expected });
+        }
+        if found > expected {
+            return Err(CheckpointError::TooLong { extra: found - expected });
+        }
+        let mut at = HEAD;
+        let scene = checked(bytes, &mut at, scene_bytes as usize)?.to_vec();
+        let mut payload = Vec::with_capacity(payload_bytes as usize);
+        while payload.len() < payload_bytes as usize {
+            let size = PIECE.min(payload_bytes as usize - payload.len());
+            payload.extend_from_slice(checked(bytes, &mut at, size)?);
+        }
+        let scene = String::from_utf8(scene).map_err(|_| CheckpointError::Damaged { from: HEAD as u64, to: HEAD as u64 + scene_bytes })?;
+        Ok(Checkpoint { scene, payload })
+    }
+}
+
+/// The next so many bytes, if the checksum after them fits.
+fn checked<'b>(bytes: &'b [u8], at: &mut usize, size: usize) -> Result<&'b [u8], CheckpointError> {
+    let from = *at;
+    let to = from + size;
+    *at = to + 4;
+    if crc32fast::hash(&bytes[from..to]) == u32::from_le_bytes(array(&bytes[to..to + 4])) {
+        Ok(&bytes[from..to])
+    } else {
+        Err(CheckpointError::Damaged { from: from as u64, to: to as u64 + 4 })
+    }
+}
+
+fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    core::array::from_fn(|k| bytes[k])
+}

@@ -1,0 +1,96 @@
+//! `--set PATH=VALUE`: changes of a scene before it is checked, by the paths of its parameters.
+//!
+//! A path is the way through the file: `time.substeps`, `world.gravity`, `integrator.kind`, `body.ball.mass`,
+//! `body.0.models.mass_spring.stiffness`, `seed`. In a list an entry is named by its number, its `name` or its `kind`.
+
+use crate::document::{self, Data, Entry, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::nearest;
+
+/// Splits `PATH=VALUE`.
+///
+/// # Errors
+/// `set.syntax` where there is no `=` or no path.
+pub fn split(argument: &str) -> Result<(String, String), SceneError> {
+    match argument.split_once('=') {
+        Some((path, value)) if !path.trim().is_empty() => Ok((path.trim().to_string(), value.trim().to_string())),
+        _ => Err(SceneError::new("set.syntax", format!("`{}` is no override", visible(argument)))
+            .value(visible(argument))
+            .allowed("PATH=VALUE")
+            .hint("for example --set body.ball.mass=2")),
+    }
+}
+
+/// Applies all overrides in their order.
+pub(crate) fn apply_all(root: &mut Node, overrides: &[(String, String)]) -> Result<(), Vec<SceneError>> {
+    let mut errors = Vec::new();
+    for (number, (path, value)) in overrides.iter().enumerate() {
+        if let Err(error) = apply(root, path, value, number) {
+            errors.push(SceneError { file: format!("--set {}={}", visible(path), visible(value)), ..error });
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), SceneError> {
+    let value = document::parse_value(value, number).map_err(|why| {
+        SceneError::new("set.value", format!("the value is no TOML: {why}")).path(path).value(visible(value)).hint("texts with spaces need quotes")
+    })?;
+    let parts: Vec<&str> = path.split('.').collect();
+    if parts.len() > 32 || parts.iter().any(|p| p.is_empty()) {
+        return Err(SceneError::new("set.path", format!("`{}` is no path", visible(path))).path(visible(path)).allowed("names separated by single dots"));
+    }
+    set(root, &parts, "", value, number)
+}
+
+/// Walks along the path; tables that are not there yet are made, entries of lists must be there.
+fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize) -> Result<(), SceneError> {
+    let Some((head, rest)) = parts.split_first() else {
+        *node = value;
+        return Ok(());
+    };
+    let here = if walked.is_empty() { (*head).to_string() } else { format!("{walked}.{head}") };
+    let shown = visible(&here);
+    match &mut node.data {
+        Data::Table(entries) => {
+            let place = Place::Override(number);
+            let k = entries.iter().position(|e| e.key == *head).unwrap_or_else(|| {
+                let empty = Node { place, data: Data::Table(Vec::new()) };
+                entries.push(Entry { key: (*head).to_string(), place, value: empty });
+                entries.len() - 1
+            });
+            set(&mut entries[k].value, rest, &here, value, number)
+        }
+        Data::Array(items) => {
+            let label = |item: &Node| item.get("name").or_else(|| item.get("kind")).or_else(|| item.get("do")).and_then(Node::text).map(str::to_string);
+            if let Ok(k) = head.parse::<usize>() {
+                let count = items.len();
+                return match items.get_mut(k) {
+                    Some(item) => set(item, rest, &here, value, number),
+                    None => Err(SceneError::new("set.path", format!("`{}` has no entry {k}", visible(walked)))
+                        .path(shown)
+                        .value(k.to_string())
+                        .allowed(if count == 0 { "it is empty".to_string() } else { format!("numbers from 0 to {}", count - 1) })),
+                };
+            }
+            let matching: Vec<usize> = (0..items.len()).filter(|k| label(&items[*k]).as_deref() == Some(*head)).collect();
+            match matching.as_slice() {
+                [k] => set(&mut items[*k], rest, &here, value, number),
+                [] => {
+                    let labels: Vec<String> = items.iter().filter_map(label).collect();
+                    let allowed = labels.iter().take(20).map(|l| visible(l)).collect::<Vec<_>>().join(", ");
+                    Err(SceneError::new("set.path", format!("`{}` has no entry `{}`", visible(walked), visible(head)))
+                        .path(shown)
+                        .value(visible(head))
+                        .allowed(if allowed.is_empty() { "it is empty".to_string() } else { allowed })
+                        .nearest(nearest(head, labels.iter().map(String::as_str))))
+                }
+                several => Err(SceneError::new("set.path", format!("`{}` has {} entries `{}`", visible(walked), several.len(), visible(head)))
+                    .path(shown)
+                    .value(visible(head))
+                    .allowed(format!("their numbers: {several:?}"))),
+            }
+        }
+        _ => Err(SceneError::new("set.path", format!("`{}` is {}, it has no fields", visible(walked), node.kind())).path(shown).value(visible(head))),
+    }
+}

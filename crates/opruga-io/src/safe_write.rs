@@ -1,0 +1,260 @@
+//! Files that are never half written: written aside, synced, then renamed; and the lock of an output folder.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file that could not be written. What was there before is unchanged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WriteError {
+    /// `write.failed`, `write.exists`, `write.locked` or `write.folder`.
+    pub code: &'static str,
+    /// What happened, in one sentence without a full stop.
+    pub message: String,
+    /// The file or folder.
+    pub path: PathBuf,
+    /// How many bytes had been written.
+    pub bytes: u64,
+    /// What would help.
+    pub hint: Option<String>,
+}
+
+impl WriteError {
+    fn new(code: &'static str, path: &Path, message: impl Into<String>) -> WriteError {
+        WriteError { code, message: message.into(), path: path.to_path_buf(), bytes: 0, hint: None }
+    }
+    fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
+        WriteError { bytes, ..WriteError::new("write.failed", path, format!("writing stopped after {bytes} bytes: {}", crate::scene::reason(error))) }
+    }
+    /// The exit code of a program that stops because of this error.
+    pub fn exit_code(&self) -> i32 {
+        4
+    }
+    /// The error object of the command line.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "code": self.code, "message": self.message, "file": self.path.display().to_string(), "line": null, "column": null,
+            "path": "", "value": self.bytes, "allowed": null, "hint": self.hint,
+        })
+    }
+}
+
+impl core::fmt::Display for WriteError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let path = self.path.display().to_string();
+        write!(f, "{}: error[{}]: {}", crate::problem::visible(&path), self.code, self.message)?;
+        match &self.hint {
+            Some(hint) => write!(f, "\n  = hint: {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for WriteError {}
+
+/// Writes a file so that its name always means a whole file: aside in the same folder, synced, renamed, folder synced.
+/// Returns how many bytes it has.
+///
+/// # Errors
+/// `write.exists` where the file is there and `force` is not given; `write.failed` with the number of bytes written so
+/// far. In both cases the old file is whole and nothing is left behind.
+pub fn safe_write(path: &Path, force: bool, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, WriteError> {
+    safe_write_through(path, force, |file| file, fill)
+}
+
+/// [`safe_write`] through a writer of the caller's making: for tests that let the disk fail.
+///
+/// # Errors
+/// As [`safe_write`].
+pub fn safe_write_through<W: Write>(
+    path: &Path,
+    force: bool,
+    wrap: impl FnOnce(File) -> W,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<u64, WriteError> {
+    if path.is_dir() {
+        return Err(WriteError::new("write.failed", path, "this is a folder"));
+    }
+    let exists = || {
+        let error = WriteError::new("write.exists", path, "the file is already there");
+        WriteError { hint: Some("--force replaces it".into()), ..error }
+    };
+    if !force && path.exists() {
+        return Err(exists());
+    }
+    let Some(name) = path.file_name() else { return Err(WriteError::new("write.failed", path, "this is no name of a file")) };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut aside = std::ffi::OsString::from(".");
+    aside.push(name);
+    aside.push(format!(".{}.writing", std::process::id()));
+    let aside = folder.join(aside);
+
+    // What a killed process of the same number left behind is in nobody's use.
+    let _ = fs::remove_file(&aside);
+    let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| WriteError::failed(path, 0, &e))?;
+    let result = fill_and_sync(&file, wrap, fill).map_err(|(bytes, e)| WriteError::failed(path, bytes, &e));
+    drop(file);
+    let result = result.and_then(|bytes| {
+        if !force && path.exists() {
+            return Err(exists());
+        }
+        fs::rename(&aside, path).map_err(|e| WriteError::failed(path, bytes, &e))?;
+        sync_folder(folder).map_err(|e| WriteError::failed(path, bytes, &e))?;
+        Ok(bytes)
+    });
+    if result.is_err() {
+        let _ = fs::remove_file(&aside);
+    }
+    result
+}
+
+/// Everything up to the renaming; an error comes with the number of bytes that reached the file.
+fn fill_and_sync<W: Write>(file: &File, wrap: impl FnOnce(File) -> W, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, (u64, io::Error)> {
+    let inner = wrap(file.try_clone().map_err(|e| (0, e))?);
+    let mut writer = BufWriter::with_capacity(1 << 16, Counted { inner, bytes: 0 });
+    let filled = fill(&mut writer).and_then(|()| writer.flush());
+    let (counted, _) = writer.into_parts();
+    match filled.and_then(|()| file.sync_all()) {
+        Ok(()) => Ok(counted.bytes),
+        Err(e) => Err((counted.bytes, e)),
+    }
+}
+
+/// Makes a renaming last; only where folders can be opened.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+/// Counts the bytes that went through.
+struct Counted<W> {
+    inner: W,
+    bytes: u64,
+}
+
+impl<W: Write> Write for Counted<W> {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        let n = self.inner.write(buffer)?;
+        self.bytes += n as u64;
+        Ok(n)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// A writer that fails at a byte, as a full disk does: everything before it is written, short writes included.
+#[derive(Debug)]
+pub struct Failing<W> {
+    inner: W,
+    left: u64,
+}
+
+impl<W: Write> Failing<W> {
+    /// Lets `bytes` bytes through.
+    pub fn after(bytes: u64, inner: W) -> Failing<W> {
+        Failing { inner, left: bytes }
+    }
+}
+
+impl<W: Write> Write for Failing<W> {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        if self.left == 0 && !buffer.is_empty() {
+            return Err(io::Error::new(io::ErrorKind::StorageFull, "no space left on device"));
+        }
+        let n = self.inner.write(&buffer[..buffer.len().min(usize::try_from(self.left).unwrap_or(usize::MAX))])?;
+        self.left -= n as u64;
+        Ok(n)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// What happens where the output of an earlier run is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It is an error.
+    Refuse,
+    /// It is replaced, file by file.
+    Replace,
+    /// It is continued.
+    Continue,
+}
+
+/// A folder for the output of one run, locked against other processes as long as this value lives.
+#[derive(Debug)]
+pub struct OutputFolder {
+    path: PathBuf,
+    force: bool,
+    // Held for its lock, which ends with the process at the latest.
+    _lock: File,
+}
+
+/// The file that carries the lock.
+const LOCK: &str = ".opruga-lock";
+
+impl OutputFolder {
+    /// Makes the folder if its parent is there, locks it, and tries whether it can be written: before the run, not after.
+    ///
+    /// # Errors
+    /// `write.folder` where it cannot be made or written, `write.locked` where another process writes into it,
+    /// `write.exists` where it holds other files and `existing` refuses them.
+    pub fn open(path: &Path, existing: Existing) -> Result<OutputFolder, WriteError> {
+        let cannot = |what: &str, e: &io::Error| WriteError::new("write.folder", path, format!("the folder cannot be {what}: {}", crate::scene::reason(e)));
+        if path.exists() && !path.is_dir() {
+            return Err(WriteError::new("write.folder", path, "this is a file, no folder"));
+        }
+        if !path.exists() {
+            fs::create_dir(path).map_err(|e| {
+                let error = cannot("made", &e);
+                if e.kind() == io::ErrorKind::NotFound { WriteError { hint: Some("the folder around it is missing".into()), ..error } } else { error }
+            })?;
+        }
+        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK)).map_err(|e| cannot("written", &e))?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(fs::TryLockError::WouldBlock) => {
+                let error = WriteError::new("write.locked", path, "another process writes into this folder");
+                return Err(WriteError { hint: Some("wait for it, or choose another folder with --out".into()), ..error });
+            }
+            // A file system without locks: the folder can still be used.
+            Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
+            Err(fs::TryLockError::Error(e)) => return Err(cannot("locked", &e)),
+        }
+        if existing == Existing::Refuse {
+            let mut names: Vec<String> = fs::read_dir(path)
+                .map_err(|e| cannot("read", &e))?
+                .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+                .filter(|name| name != LOCK)
+                .collect();
+            names.sort();
+            if let Some(first) = names.first() {
+                let message = format!("the folder already holds {} files, among them {}", names.len(), crate::problem::visible(first));
+                let message = if names.len() == 1 { format!("the folder already holds {}", crate::problem::visible(first)) } else { message };
+                return Err(WriteError { hint: Some("--force replaces them, --out chooses another folder".into()), ..WriteError::new("write.exists", path, message) });
+            }
+        }
+        let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, _lock: lock };
+        let trial = folder.path(".opruga-trial");
+        safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
+            .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(&trial, 7, &e)))
+            .map_err(|e| WriteError { code: "write.folder", path: path.to_path_buf(), ..e })?;
+        Ok(folder)
+    }
+
+    /// The path of a file in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// Writes a file of the folder by [`safe_write`]. A file that this run has written before may be written again.
+    ///
+    /// # Errors
+    /// As [`safe_write`].
+    pub fn write(&self, name: &str, force: bool, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, WriteError> {
+        safe_write(&self.path(name), force || self.force, fill)
+    }
+}

@@ -1,0 +1,208 @@
+//! `[[load]]`, `[[command]]` and `[[probe]]`.
+
+use super::bodies::{self, Bodies};
+use super::reader::{Reader, join, listed};
+use super::{parameters, place_of, selectors};
+use crate::document::{Data, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::{Spec, Values, nearest};
+use opruga_world::blueprint::{Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded};
+use opruga_world::schema::{self, Section};
+use std::collections::HashMap;
+
+/// The section that the tag of a table names, and its plain fields.
+fn tagged(reader: &mut Reader<'_>, node: &Node, path: &str, tag: &'static str, what: &str, sections: &'static [Section]) -> Option<Values> {
+    let words: Vec<&str> = sections.iter().map(|s| s.spec.kind).collect();
+    let word = reader.tag(node, path, tag, what, &words)?;
+    let section = sections.iter().find(|s| s.spec.kind == word)?;
+    Some(reader.fields(node, path, section, Some(tag)))
+}
+
+/// Forces from outside.
+pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Vec<LoadBlueprint<D>> {
+    let mut loads = Vec::new();
+    for (node, path) in reader.list(root, "", "load") {
+        let Some(values) = tagged(reader, node, &path, "kind", "load", schema::LOADS) else { continue };
+        let body = bodies.reference(reader, node, &path);
+        let Some(select) = selectors::of_body(reader, node, &path, bodies, body) else { continue };
+        let Some(body) = body else { continue };
+        let kind = match values.kind() {
+            "force" => LoadKind::Force(values.vector("value")),
+            "traction" => LoadKind::Traction(values.vector("value")),
+            _ => LoadKind::Pressure(values.number("value").unwrap_or(0.0)),
+        };
+        loads.push(LoadBlueprint { body, select, kind, curve: values.rows("curve").to_vec() });
+    }
+    loads
+}
+
+/// What is done to the bodies while they move, in the order of time.
+pub(crate) fn commands<const D: usize>(
+    reader: &mut Reader<'_>,
+    root: &Node,
+    bodies: &Bodies<D>,
+    integrator: Option<&Values>,
+    colliders: &[ColliderBlueprint],
+) -> Vec<CommandBlueprint<D>> {
+    let list = reader.list(root, "", "command");
+    // Bodies that come later may be taken away or changed too.
+    let added: Vec<&str> = list.iter().filter_map(|(node, _)| node.get("body")?.get("name")?.text()).collect();
+    let known = parameters::Known { bodies, added: &added, integrator, colliders };
+    let mut commands = Vec::new();
+    for (node, path) in &list {
+        let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
+        let at = values.number("at").unwrap_or(0.0);
+        let Some(action) = action(reader, node, path, &values, &known) else { continue };
+        let end_of_path = values.rows("path").last().and_then(|row| row.first().copied());
+        let until = values.number("until").or(end_of_path).unwrap_or(at);
+        if until < at {
+            let key = if node.get("until").is_some() { "until" } else { "path" };
+            let error = SceneError::new("scene.range", format!("the command ends at {until} s, before it begins at {at} s")).path(join(path, key));
+            reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time from {at}")));
+        }
+        commands.push(CommandBlueprint { at, until, action });
+    }
+    commands.sort_by(|a, b| a.at.total_cmp(&b.at));
+    commands
+}
+
+fn action<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values, known: &parameters::Known<'_, D>) -> Option<Action<D>> {
+    let bodies = known.bodies;
+    match values.kind() {
+        "drag" => {
+            let body = bodies.reference(reader, node, path);
+            let (number, facet) = held(reader, node, path)?;
+            let body = body?;
+            if let (Some(k), Some(blueprint)) = (number, bodies.list.get(body)) {
+                let only = opruga_world::blueprint::Selector::Nodes(vec![k]);
+                selectors::check(reader, place_of(node, "node"), &join(path, "node"), &only, blueprint).then_some(())?;
+            }
+            Some(Action::Drag {
+                body,
+                node: number,
+                facet,
+                stiffness: values.number("stiffness"),
+                path: values.rows("path").to_vec(),
+                largest_force: values.number("largest_force"),
+            })
+        }
+        "push" => {
+            let body = bodies.reference(reader, node, path);
+            let select = selectors::of_body(reader, node, path, bodies, body)?;
+            Some(Action::Push { body: body?, select, force: values.vector("force") })
+        }
+        "pin" => {
+            let body = bodies.reference(reader, node, path);
+            let axes = bodies::axes(reader, node, path, values);
+            let select = selectors::of_body(reader, node, path, bodies, body)?;
+            Some(Action::Pin { body: body?, select, axes })
+        }
+        "set" => {
+            let value_node = node.get("value")?;
+            let value = reader.any_value(value_node, &join(path, "value"))?;
+            let parameter = values.text("path")?.to_string();
+            let value = parameters::check(reader, node, path, &parameter, value, known)?;
+            Some(Action::Set { path: parameter, value })
+        }
+        "add" => {
+            let body_node = node.get("body")?;
+            let body = bodies::single::<D>(reader, body_node, join(path, "body"))?;
+            let twice = known.added.iter().filter(|n| **n == body.name).count() > 1;
+            if bodies.knows(&body.name) || twice {
+                let error = SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
+                reader.report(place_of(body_node, "name"), error.path(join(path, "body.name")).value(visible(&body.name)));
+            }
+            Some(Action::Add(Box::new(body)))
+        }
+        _ => {
+            let name = values.text("body")?;
+            if !bodies.knows(name) && !known.added.contains(&name) {
+                bodies.unknown(reader, place_of(node, "body"), join(path, "body"), name, known.added);
+                return None;
+            }
+            Some(Action::Remove { name: name.to_string() })
+        }
+    }
+}
+
+/// What a drag holds: a node or the nearest one, and whether it is a point of a facet.
+fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>, bool)> {
+    const WORDS: [&str; 2] = ["nearest", "nearest_facet"];
+    let Some(value) = node.get("node") else { return Some((None, false)) };
+    let here = join(path, "node");
+    match &value.data {
+        Data::Text(word) if word == "nearest" => Some((None, false)),
+        Data::Text(word) if word == "nearest_facet" => Some((None, true)),
+        Data::Text(word) => {
+            let error = SceneError::new("scene.unknown_word", format!("`node` is {}", value.shown())).path(here).value(value.shown());
+            let error = error.allowed("the number of a node, \"nearest\" or \"nearest_facet\"").nearest(nearest(word, WORDS.into_iter()));
+            reader.report(value.place, error);
+            None
+        }
+        Data::Integer(..) => Some((Some(reader.natural(value, &here)?), false)),
+        _ => {
+            reader.wrong_type(value, &here, "the number of a node, \"nearest\" or \"nearest_facet\"");
+            None
+        }
+    }
+}
+
+/// Columns of `diagnostics.csv`.
+pub(crate) fn probes<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Vec<ProbeBlueprint<D>> {
+    let mut probes = Vec::new();
+    let mut seen: HashMap<String, Place> = HashMap::new();
+    for (node, path) in reader.list(root, "", "probe") {
+        let values = reader.fields(node, &path, &schema::PROBE, None);
+        let name = values.text("name").unwrap_or("").to_string();
+        if let Some(at) = node.get("name").filter(|n| n.text().is_some()) {
+            bodies::check_name(reader, at, &join(&path, "name"), &name);
+            if seen.contains_key(&name) {
+                let error = SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
+                reader.report(at.place, error.path(join(&path, "name")).value(visible(&name)));
+            }
+            seen.insert(name.clone(), at.place);
+        }
+        let record = recorded(reader, node, &path);
+        let body = bodies.reference(reader, node, &path);
+        let Some(select) = selectors::of_body(reader, node, &path, bodies, body) else { continue };
+        if let Some(body) = body {
+            probes.push(ProbeBlueprint { name, body, select, record });
+        }
+    }
+    probes
+}
+
+/// The words of `record`, each once and at least one.
+fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
+    const WORDS: [(&str, Recorded); 3] = [("position", Recorded::Position), ("velocity", Recorded::Velocity), ("reaction", Recorded::Reaction)];
+    let words = || WORDS.iter().map(|(w, _)| *w);
+    let here = join(path, "record");
+    let Some(value) = node.get("record") else { return Vec::new() };
+    let Data::Array(items) = &value.data else {
+        reader.wrong_type(value, &here, "a list of position, velocity, reaction");
+        return Vec::new();
+    };
+    if items.is_empty() {
+        reader.report(value.place, SceneError::new("scene.length", "`record` is empty").path(here.clone()).value("[]").allowed(listed(words())));
+    }
+    let mut out: Vec<Recorded> = Vec::new();
+    for (k, item) in items.iter().enumerate() {
+        let place = join(&here, &k.to_string());
+        match item.text().and_then(|text| WORDS.iter().find(|(w, _)| *w == text)) {
+            Some((word, recorded)) if out.contains(recorded) => {
+                reader.report(item.place, SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice")).path(place).value(*word));
+            }
+            Some((_, recorded)) => out.push(*recorded),
+            None => {
+                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown())).path(place).value(item.shown());
+                reader.report(item.place, error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())));
+            }
+        }
+    }
+    out
+}
+
+/// The specification of a kind in a list, for paths.
+pub(crate) fn spec_of(list: &[&'static Spec], kind: &str) -> Option<&'static Spec> {
+    crate::catalogue::find(list, kind)
+}

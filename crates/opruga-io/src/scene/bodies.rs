@@ -1,0 +1,415 @@
+//! `[[body]]`: shape, mass, models, pins and copies.
+
+use super::reader::{Reader, join};
+use super::{place_of, selectors};
+use crate::document::{Data, Node, Place};
+use crate::problem::{SceneError, unprintable, visible};
+use opruga_core::spec::{Allowed, Value, Values, nearest};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
+use opruga_world::{schema, shapes};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The bodies of a scene, copies written out.
+pub(crate) struct Bodies<const D: usize> {
+    pub(crate) list: Vec<BodyBlueprint<D>>,
+    /// Name → place in the list.
+    names: HashMap<String, usize>,
+    /// Name of a body with copies → how many.
+    copied: HashMap<String, usize>,
+    /// Names of bodies that have errors of their own: a reference to them is no further error.
+    broken: Vec<String>,
+}
+
+/// A body as it was read, before its mesh is made.
+struct Draft<'n, const D: usize> {
+    node: &'n Node,
+    path: String,
+    name: String,
+    values: Values,
+    shape: Option<Values>,
+    rotation: Vec<f64>,
+    angular_velocity: Vec<f64>,
+    mass: Option<Mass>,
+    models: Vec<Values>,
+    pins: Vec<(PinBlueprint<D>, Place, String)>,
+    copies: Option<Copies<D>>,
+    sound: bool,
+}
+
+/// Rows, columns and layers.
+#[derive(Clone, Copy)]
+struct Copies<const D: usize> {
+    count: [u32; D],
+    spacing: [f64; D],
+    first: [f64; D],
+    jitter: f64,
+}
+
+impl<const D: usize> Copies<D> {
+    fn total(&self) -> u64 {
+        self.count.iter().fold(1u64, |product, n| product.saturating_mul(u64::from(*n)))
+    }
+}
+
+/// Reads all bodies, checks what they cost, and then makes their meshes.
+pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u64) -> Bodies<D> {
+    let mut drafts: Vec<Draft<'_, D>> = Vec::new();
+    for (node, path) in reader.list(root, "", "body") {
+        if let Some(draft) = draft(reader, node, path, true) {
+            drafts.push(draft);
+        }
+    }
+    duplicate_names(reader, &drafts);
+    let mut bodies = Bodies { list: Vec::new(), names: HashMap::new(), copied: HashMap::new(), broken: Vec::new() };
+    let affordable = within_limits(reader, &drafts);
+    for (number, draft) in drafts.into_iter().enumerate() {
+        let Some(body) = (if affordable { build(reader, &draft) } else { None }) else {
+            bodies.broken.push(draft.name);
+            continue;
+        };
+        write_out(&mut bodies, &draft, body, seed, number as u64);
+    }
+    bodies
+}
+
+/// A body of an `add` command.
+pub(crate) fn single<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: String) -> Option<BodyBlueprint<D>> {
+    let drafts = vec![draft::<D>(reader, node, path, false)?];
+    if !within_limits(reader, &drafts) {
+        return None;
+    }
+    build(reader, &drafts[0])
+}
+
+fn draft<'n, const D: usize>(reader: &mut Reader<'_>, node: &'n Node, path: String, may_copy: bool) -> Option<Draft<'n, D>> {
+    if !matches!(node.data, Data::Table(_)) {
+        reader.wrong_type(node, &path, "a table");
+        return None;
+    }
+    let before = reader.errors.len();
+    let values = reader.fields(node, &path, &schema::BODY, None);
+    let name = values.text("name").unwrap_or("").to_string();
+    if let Some(at) = node.get("name").filter(|n| n.text().is_some()) {
+        check_name(reader, at, &join(&path, "name"), &name);
+    }
+    let mass = mass(reader, node, &path, &values);
+    let shape = node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
+    let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
+    let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
+    let kinds = reader.catalogue.models.clone();
+    let mut models = Vec::new();
+    for (item, here) in reader.list(node, &path, "models") {
+        models.extend(reader.kind_table(item, &here, "model", &kinds));
+    }
+    let mut pins = Vec::new();
+    for (item, here) in reader.list(node, &path, "pin") {
+        pins.extend(pin(reader, item, &here));
+    }
+    if values.flag("fixed") {
+        let everything = PinBlueprint { select: Selector::All, axes: [true; D], motion: Vec::new() };
+        pins.push((everything, node.place, join(&path, "fixed")));
+    }
+    let copies = match node.get("copies") {
+        Some(at) if !may_copy => {
+            let error = SceneError::new("scene.not_here", "a body that a command adds has no copies").path(join(&path, "copies"));
+            reader.report(at.place, error.hint("write one command for every body"));
+            None
+        }
+        Some(at) => copies(reader, at, &join(&path, "copies")),
+        None => None,
+    };
+    let sound = reader.errors.len() == before;
+    Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, models, pins, copies, sound })
+}
+
+/// Names stand in paths and in the heads of tables: they keep clear of what separates those.
+pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
+    let bad = name.chars().find(|c| unprintable(*c) || ".,[]\"'=".contains(*c));
+    let why = if name.is_empty() {
+        "the name is empty".to_string()
+    } else if name.len() > 256 {
+        return; // reported by its field
+    } else if let Some(c) = bad {
+        format!("the name contains `{}`", visible(&c.to_string()))
+    } else if name.chars().all(|c| c.is_ascii_digit()) {
+        "the name is a number, which would be the place of a body".to_string()
+    } else {
+        return;
+    };
+    let error = SceneError::new("scene.name", why).path(path).value(visible(name));
+    reader.report(node.place, error.allowed("1 to 256 bytes without control characters and . , [ ] = quotes; not only digits"));
+}
+
+/// Exactly one of mass, density and node_mass.
+fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Option<Mass> {
+    const WORDS: [&str; 3] = ["mass", "density", "node_mass"];
+    let given: Vec<&str> = WORDS.into_iter().filter(|w| node.get(w).is_some()).collect();
+    match given.as_slice() {
+        [word] => {
+            let x = values.number(word)?;
+            Some(match *word {
+                "mass" => Mass::Total(x),
+                "density" => Mass::Density(x),
+                _ => Mass::Node(x),
+            })
+        }
+        [] if values.flag("fixed") => Some(Mass::Node(1.0)),
+        [] => {
+            let error = SceneError::new("scene.missing", "the body has no mass").path(join(path, "mass")).allowed("exactly one of mass, density, node_mass");
+            reader.report(node.place, error.hint("a body that never moves is `fixed = true`"));
+            None
+        }
+        several => {
+            let words = several.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(" and ");
+            let error = SceneError::new("scene.conflict", format!("the body has {words}")).path(join(path, several[1]));
+            reader.report(place_of(node, several[1]), error.allowed("exactly one of mass, density, node_mass"));
+            None
+        }
+    }
+}
+
+/// Which axes the letters name; all where there are none.
+pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
+    let Some(letters) = values.text("axes") else { return [true; D] };
+    if D == 2 && letters.contains('z') {
+        let error = SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
+        reader.report(place_of(node, "axes"), error.allowed("one of \"x\", \"y\", \"xy\"").hint("there is no z in 2D"));
+    }
+    core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
+}
+
+fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(PinBlueprint<D>, Place, String)> {
+    let values = reader.fields(node, path, &schema::PIN, None);
+    let axes = axes(reader, node, path, &values);
+    node.get("select")?;
+    let select = selectors::of(reader, node, path)?;
+    let motion = values.rows("motion").to_vec();
+    Some((PinBlueprint { select, axes, motion }, place_of(node, "select"), join(path, "select")))
+}
+
+fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Copies<D>> {
+    let values = reader.fields(node, path, &schema::COPIES, None);
+    let count = node.get("count")?;
+    let here = join(path, "count");
+    let Data::Array(items) = &count.data else {
+        reader.wrong_type(count, &here, "a list of whole numbers such as [10, 5]");
+        return None;
+    };
+    if items.is_empty() || items.len() > D {
+        let error = SceneError::new("scene.length", format!("`count` has {} numbers", items.len())).path(here).value(count.shown());
+        reader.report(count.place, error.allowed(format!("1 to {D} whole numbers from 1")));
+        return None;
+    }
+    let mut number = [1u32; D];
+    let range = Allowed::Integer { least: 1, greatest: i64::from(u32::MAX) };
+    let mut sound = true;
+    for (k, item) in items.iter().enumerate() {
+        match reader.plain(item, &join(&here, &k.to_string()), "count", &range) {
+            Some(Value::Integer(n)) => number[k] = u32::try_from(n).unwrap_or(1),
+            _ => sound = false,
+        }
+    }
+    let jitter = values.number("jitter").unwrap_or(0.0);
+    sound.then(|| Copies { count: number, spacing: values.vector("spacing"), first: values.vector("first"), jitter })
+}
+
+/// The same name twice: both places are named.
+fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
+    let mut seen: HashMap<&str, Place> = HashMap::new();
+    for draft in drafts {
+        if draft.name.is_empty() {
+            continue;
+        }
+        let place = place_of(draft.node, "name");
+        match seen.get(draft.name.as_str()) {
+            Some(first) => {
+                let first = match first {
+                    Place::Bytes(at, _) => format!(", first in line {}", reader.source.position(*at).0),
+                    Place::Override(_) => String::new(),
+                };
+                let error = SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`{first}", visible(&draft.name)))
+                    .path(join(&draft.path, "name"))
+                    .value(visible(&draft.name));
+                reader.report(place, error.hint("every body needs a name of its own; many alike are `copies`"));
+            }
+            None => {
+                seen.insert(&draft.name, place);
+            }
+        }
+    }
+}
+
+/// What the bodies would cost, compared with the limits before any mesh is made.
+fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) -> bool {
+    let limits = reader.options.limits.clone();
+    let (mut bodies, mut nodes, mut bytes) = (0u64, 0u64, 0u64);
+    for draft in drafts {
+        let copies = draft.copies.map_or(1, |c| c.total());
+        let size = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
+        bodies = bodies.saturating_add(copies);
+        nodes = nodes.saturating_add(size.saturating_mul(copies));
+        // A mesh once, and state, models and description for every copy.
+        let models: u64 = draft.models.len() as u64;
+        let each = size.saturating_mul(120 + 60 * D as u64 * models).saturating_add(1000 + 600 * models);
+        bytes = bytes.saturating_add(size.saturating_mul(250 * D as u64)).saturating_add(each.saturating_mul(copies));
+        let over = if bodies > limits.bodies {
+            Some(("limit.bodies", format!("the scene has {bodies} bodies or more"), bodies, format!("at most {} bodies", limits.bodies)))
+        } else if nodes > limits.nodes || size > u64::from(u32::MAX) {
+            Some(("limit.nodes", format!("the scene has {nodes} nodes or more"), nodes, format!("at most {} nodes", limits.nodes)))
+        } else if bytes > limits.memory_bytes {
+            Some(("limit.memory", format!("the scene would take about {bytes} bytes or more"), bytes, format!("at most {} bytes", limits.memory_bytes)))
+        } else {
+            None
+        };
+        if let Some((code, message, value, allowed)) = over {
+            let path = if draft.copies.is_some() { join(&draft.path, "copies") } else { join(&draft.path, "shape") };
+            let place = if draft.copies.is_some() { place_of(draft.node, "copies") } else { place_of(draft.node, "shape") };
+            reader.report(place, SceneError::new(code, message).path(path).value(value.to_string()).allowed(allowed));
+            return false;
+        }
+    }
+    true
+}
+
+/// Makes the mesh of a body and checks its pins.
+fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Option<BodyBlueprint<D>> {
+    if !draft.sound {
+        return None;
+    }
+    let shape = draft.shape.as_ref()?;
+    let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
+    let mesh: Mesh<D> = match shapes::mesh(shape, &transform) {
+        Ok(mesh) => mesh,
+        Err(refusal) => {
+            let error = SceneError::new("scene.shape", refusal.message).path(join(&draft.path, "shape"));
+            reader.report(place_of(draft.node, "shape"), SceneError { allowed: refusal.allowed, ..error });
+            return None;
+        }
+    };
+    let body = BodyBlueprint {
+        name: draft.name.clone(),
+        mesh: Arc::new(mesh),
+        translation: draft.values.vector("position"),
+        velocity: draft.values.vector("velocity"),
+        angular_velocity: draft.angular_velocity.clone(),
+        mass: draft.mass?,
+        thickness: draft.values.number("thickness").unwrap_or(1.0),
+        models: draft.models.clone(),
+        pins: draft.pins.iter().map(|(pin, _, _)| pin.clone()).collect(),
+    };
+    for (pin, place, path) in &draft.pins {
+        selectors::check(reader, *place, path, &pin.select, &body);
+    }
+    Some(body)
+}
+
+/// Adds a body and its copies to the list. Places in selectors move along with every copy.
+fn write_out<const D: usize>(bodies: &mut Bodies<D>, draft: &Draft<'_, D>, body: BodyBlueprint<D>, seed: u64, number: u64) {
+    let Some(copies) = draft.copies else {
+        bodies.names.entry(body.name.clone()).or_insert(bodies.list.len());
+        bodies.list.push(body);
+        return;
+    };
+    let mut random = SplitMix(seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+    bodies.copied.insert(body.name.clone(), copies.total() as usize);
+    for k in 0..copies.total() {
+        let mut rest = k;
+        let offset: [f64; D] = core::array::from_fn(|a| {
+            let along = rest % u64::from(copies.count[a]);
+            rest /= u64::from(copies.count[a]);
+            let jitter = if copies.jitter > 0.0 { copies.jitter * (2.0 * random.unit() - 1.0) } else { 0.0 };
+            copies.first[a] + along as f64 * copies.spacing[a] + jitter
+        });
+        let name = format!("{}[{k}]", body.name);
+        bodies.names.entry(name.clone()).or_insert(bodies.list.len());
+        bodies.list.push(BodyBlueprint {
+            name,
+            translation: core::array::from_fn(|a| body.translation[a] + offset[a]),
+            pins: body.pins.iter().map(|pin| PinBlueprint { select: pin.select.moved(offset), ..pin.clone() }).collect(),
+            ..body.clone()
+        });
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014): a small generator with the same numbers everywhere.
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// A number in [0, 1), evenly spread.
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) as f64 / 18_446_744_073_709_551_616.0
+    }
+}
+
+impl<const D: usize> Bodies<D> {
+    /// The place of the body that `body = …` of a table names.
+    pub(crate) fn reference(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<usize> {
+        let node = table.get("body")?;
+        let here = join(path, "body");
+        match &node.data {
+            Data::Integer(Some(k), _) => {
+                if let Ok(k) = usize::try_from(*k)
+                    && k < self.list.len()
+                {
+                    return Some(k);
+                }
+                if self.broken.is_empty() {
+                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}")).path(here).value(k.to_string());
+                    reader.report(node.place, error.allowed(self.allowed()));
+                }
+                None
+            }
+            Data::Text(name) => match self.names.get(name) {
+                Some(k) => Some(*k),
+                None => {
+                    self.unknown(reader, node.place, here, name, &[]);
+                    None
+                }
+            },
+            _ => {
+                reader.wrong_type(node, &here, "the name of a body or its number");
+                None
+            }
+        }
+    }
+
+    /// Whether a body, all copies of a body, or one of `others` has this name.
+    pub(crate) fn knows(&self, name: &str) -> bool {
+        self.names.contains_key(name) || self.copied.contains_key(name)
+    }
+
+    /// The first body that a name means, copies by their common name too.
+    pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
+        let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));
+        k.and_then(|k| self.list.get(*k)).or_else(|| name.parse::<usize>().ok().and_then(|k| self.list.get(k)))
+    }
+
+    /// Reports a name that no body has.
+    pub(crate) fn unknown(&self, reader: &mut Reader<'_>, place: Place, path: String, name: &str, others: &[&str]) {
+        if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
+            return; // the body is there, but has errors of its own
+        }
+        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name))).path(path).value(visible(name));
+        error.allowed = Some(self.allowed());
+        let base = name.split('[').next().unwrap_or(name);
+        error = match self.copied.get(base) {
+            Some(count) => error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1)),
+            None => error.nearest(nearest(name, self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()))),
+        };
+        reader.report(place, error);
+    }
+
+    fn allowed(&self) -> String {
+        match self.list.len() {
+            0 => "the scene has no bodies".into(),
+            n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
+            n => format!("{n} bodies, by name or by number from 0 to {}", n - 1),
+        }
+    }
+}

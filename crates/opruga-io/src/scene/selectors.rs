@@ -1,0 +1,169 @@
+//! Sets of nodes: reading them, and refusing those that select nothing.
+
+use super::bodies::Bodies;
+use super::reader::{Reader, join, listed};
+use crate::document::{Data, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::{Allowed, nearest};
+use opruga_world::blueprint::{BodyBlueprint, Selector};
+use opruga_world::schema::{SELECTORS, Section};
+use opruga_world::selection;
+
+/// A set of nodes of a table: `select = { … }`; all nodes where the table has none.
+pub(crate) fn of<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Selector<D>> {
+    match table.get("select") {
+        Some(node) => one(reader, node, &join(path, "select")),
+        None => Some(Selector::All),
+    }
+}
+
+/// One selector: a table with exactly one key.
+fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Selector<D>> {
+    let words = || SELECTORS.iter().map(|s| s.kind);
+    let entries = match &node.data {
+        Data::Table(entries) => entries,
+        _ => {
+            reader.wrong_type(node, path, "a table such as { all = true }");
+            return None;
+        }
+    };
+    if entries.len() != 1 {
+        let error = SceneError::new("scene.selector", format!("a selector has exactly one key, here are {}", entries.len()))
+            .path(path)
+            .value(node.shown())
+            .allowed(listed(words()))
+            .hint("combine sets with { and = [ … ] } or { or = [ … ] }");
+        reader.report(node.place, error);
+        return None;
+    }
+    let (key, value) = (entries[0].key.as_str(), &entries[0].value);
+    let here = join(path, key);
+    Some(match key {
+        "box" => {
+            let rows = reader.rows(value, &here, D, false, &Allowed::Points)?;
+            let [a, b] = rows.as_slice() else {
+                let error = SceneError::new("scene.length", format!("`box` has {} corners", rows.len())).path(here).value(value.shown());
+                reader.report(value.place, error.allowed("two opposite corners"));
+                return None;
+            };
+            Selector::Box(fixed(a), fixed(b))
+        }
+        "ball" | "half_space" => {
+            let spec = SELECTORS.iter().find(|s| s.kind == key)?;
+            let before = reader.errors.len();
+            let values = reader.fields(value, &here, &Section { spec, children: &[] }, None);
+            if reader.errors.len() > before {
+                return None;
+            }
+            if key == "ball" {
+                Selector::Ball { center: values.vector("center"), radius: values.number("radius")? }
+            } else {
+                let normal: [f64; D] = values.vector("normal");
+                if normal.iter().all(|n| *n == 0.0) {
+                    let error = SceneError::new("scene.range", "`normal` is zero").path(join(&here, "normal")).allowed("a vector that is not zero");
+                    reader.report(super::place_of(value, "normal"), error);
+                    return None;
+                }
+                Selector::HalfSpace { point: values.vector("point"), normal }
+            }
+        }
+        "side" => {
+            let range = Allowed::Choice(if D == 2 { &["left", "right", "bottom", "top"] } else { &["left", "right", "bottom", "top", "back", "front"] });
+            match reader.plain(value, &here, "side", &range)? {
+                opruga_core::spec::Value::Text(side) => Selector::Side(side),
+                _ => return None,
+            }
+        }
+        "node" => Selector::Nodes(vec![reader.natural(value, &here)?]),
+        "nodes" => Selector::Nodes(reader.naturals(value, &here, &Allowed::Integers)?),
+        "group" => match reader.plain(value, &here, "group", &Allowed::Text)? {
+            opruga_core::spec::Value::Text(name) => Selector::Group(name),
+            _ => return None,
+        },
+        "boundary" | "all" => {
+            if !matches!(value.data, Data::Boolean(true)) {
+                let error = SceneError::new("scene.selector", format!("`{key}` is {}", value.shown())).path(here).value(value.shown());
+                reader.report(value.place, error.allowed("true"));
+                return None;
+            }
+            if key == "all" { Selector::All } else { Selector::Boundary }
+        }
+        "and" | "or" => {
+            let Data::Array(items) = &value.data else {
+                reader.wrong_type(value, &here, "a list of selectors");
+                return None;
+            };
+            let sets: Vec<Option<Selector<D>>> = items.iter().enumerate().map(|(k, item)| one(reader, item, &format!("{here}.{k}"))).collect();
+            let sets: Vec<Selector<D>> = sets.into_iter().collect::<Option<_>>()?;
+            if key == "and" { Selector::And(sets) } else { Selector::Or(sets) }
+        }
+        "not" => Selector::Not(Box::new(one(reader, value, &here)?)),
+        _ => {
+            let error = SceneError::new("scene.unknown_field", format!("there is no selector `{}`", visible(key)))
+                .path(visible(&here))
+                .value(visible(key))
+                .allowed(listed(words()))
+                .nearest(nearest(key, words()));
+            reader.report(entries[0].place, error);
+            return None;
+        }
+    })
+}
+
+fn fixed<const D: usize>(row: &[f64]) -> [f64; D] {
+    core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))
+}
+
+/// Refuses a selector that names nodes or groups that are not there, or that selects nothing.
+pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, place: Place, path: &str, selector: &Selector<D>, body: &BodyBlueprint<D>) -> bool {
+    let count = body.mesh.positions.len();
+    let mut beyond = None;
+    let mut unknown = None;
+    visit(selector, &mut |s| match s {
+        Selector::Nodes(nodes) => beyond = beyond.or(nodes.iter().copied().find(|n| *n as usize >= count)),
+        Selector::Group(name) if !body.mesh.groups.contains_key(name) => unknown = Some(name.clone()),
+        _ => {}
+    });
+    let name = visible(&body.name);
+    if let Some(node) = beyond {
+        let error = SceneError::new("scene.range", format!("body `{name}` has no node {node}")).path(path).value(node.to_string());
+        reader.report(place, error.allowed(format!("nodes from 0 to {}", count.saturating_sub(1))));
+        return false;
+    }
+    if let Some(group) = unknown {
+        let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
+        let mut error = SceneError::new("scene.unknown_name", format!("the mesh of `{name}` has no group `{}`", visible(&group))).path(path);
+        error.value = Some(visible(&group));
+        error.allowed = Some(if groups.is_empty() { "it has no groups".into() } else { listed(groups.iter().copied()) });
+        reader.report(place, error.nearest(nearest(&group, groups.iter().copied())));
+        return false;
+    }
+    if selector.resolve(&body.mesh, &body.translation).is_empty() {
+        let (low, high) = selection::extent(&body.mesh);
+        let corner = |x: [f64; D]| {
+            let x: [f64; D] = core::array::from_fn(|a| x[a] + body.translation[a]);
+            format!("{x:?}")
+        };
+        let error = SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
+        reader.report(place, error.hint(format!("at the start the body lies between {} and {}", corner(low), corner(high))));
+        return false;
+    }
+    true
+}
+
+fn visit<const D: usize>(selector: &Selector<D>, each: &mut impl FnMut(&Selector<D>)) {
+    each(selector);
+    match selector {
+        Selector::And(sets) | Selector::Or(sets) => sets.iter().for_each(|s| visit(s, each)),
+        Selector::Not(set) => visit(set, each),
+        _ => {}
+    }
+}
+
+/// Reads and checks the selector of a table that names a body.
+pub(crate) fn of_body<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &str, bodies: &Bodies<D>, body: Option<usize>) -> Option<Selector<D>> {
+    let selector = of(reader, table, path)?;
+    let body = bodies.list.get(body?)?;
+    let place = super::place_of(table, "select");
+    check(reader, place, &join(path, "select"), &selector, body).then_some(selector)
+}

@@ -1,0 +1,194 @@
+//! `final.csv`, `diagnostics.csv` and `summary.json`.
+
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// The state of one body at the end.
+#[derive(Clone, Copy, Debug)]
+pub struct FinalBody<'a, const D: usize> {
+    /// Its name.
+    pub name: &'a str,
+    /// Positions, node by node [m].
+    pub positions: &'a [[f64; D]],
+    /// Velocities, node by node [m/s].
+    pub velocities: &'a [[f64; D]],
+}
+
+/// Writes `final.csv`: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_final<'a, const D: usize>(out: &mut dyn Write, bodies: impl Iterator<Item = FinalBody<'a, D>>) -> io::Result<()> {
+    let axes = &["x", "y", "z"][..D];
+    let columns: Vec<String> = axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}"))).collect();
+    writeln!(out, "body,node,{}", columns.join(","))?;
+    for body in bodies {
+        let name = cell(body.name);
+        for (node, (x, v)) in body.positions.iter().zip(body.velocities).enumerate() {
+            write!(out, "{name},{node}")?;
+            for value in x.iter().chain(v) {
+                write!(out, ",{}", Digits(*value))?;
+            }
+            writeln!(out)?;
+        }
+    }
+    Ok(())
+}
+
+/// A table of numbers: a head, then rows of as many numbers; `diagnostics.csv` is one.
+#[derive(Debug)]
+pub struct NumberTable {
+    columns: Vec<String>,
+    rows: Vec<f64>,
+}
+
+impl NumberTable {
+    /// An empty table.
+    pub fn new(columns: Vec<String>) -> NumberTable {
+        NumberTable { columns, rows: Vec::new() }
+    }
+    /// Adds a row. Too few numbers are filled up with NaN, too many are an error of the caller and are left out.
+    pub fn push(&mut self, row: &[f64]) {
+        debug_assert_eq!(row.len(), self.columns.len(), "a row fits its head");
+        self.rows.extend((0..self.columns.len()).map(|k| row.get(k).copied().unwrap_or(f64::NAN)));
+    }
+    /// The names of the columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.rows.chunks_exact(self.columns.len().max(1))
+    }
+    /// Writes the table as CSV, 17 significant digits.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "{}", self.columns.iter().map(|c| cell(c)).collect::<Vec<_>>().join(","))?;
+        for row in self.rows() {
+            let numbers: Vec<String> = row.iter().map(|x| Digits(*x).to_string()).collect();
+            writeln!(out, "{}", numbers.join(","))?;
+        }
+        Ok(())
+    }
+}
+
+/// A number with 17 significant digits: reading it back gives the same bits.
+struct Digits(f64);
+
+impl core::fmt::Display for Digits {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{:.16e}", self.0)
+    }
+}
+
+/// A text as a cell of a table.
+fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_string() }
+}
+
+/// What `summary.json` says about a run; `schema` is added when it is written.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Summary {
+    /// The name of the scene.
+    pub scene: String,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// How many bodies there are at the end.
+    pub bodies: usize,
+    /// How many nodes.
+    pub nodes: usize,
+    /// How many elements: springs, edges of the gas, triangles …
+    pub elements: usize,
+    /// The kinds of the models in use.
+    pub models: Vec<String>,
+    /// The kind of the integrator.
+    pub integrator: String,
+    /// The length of a frame [s].
+    pub frame: f64,
+    /// The substeps of a frame.
+    pub substeps: u32,
+    /// The length of a substep [s].
+    pub h: f64,
+    /// How many substeps were taken.
+    pub steps: u64,
+    /// Simulated time at the end [s].
+    pub time: f64,
+    /// Wall-clock time [s].
+    pub wall_seconds: f64,
+    /// Wall-clock time per node and substep [ns].
+    pub nanoseconds_per_node_step: f64,
+    /// The path of the processor's instructions: `scalar`, `avx2`, `avx512` …
+    pub simd: String,
+    /// How many threads.
+    pub threads: usize,
+    /// `everywhere` or `this_cpu_class`.
+    pub reproducibility: String,
+    /// Energies and works [J].
+    pub energy: EnergySummary,
+    /// Momentum.
+    pub momentum: MomentumSummary,
+    /// 16 hexadecimal digits over positions, then velocities.
+    pub state_hash: String,
+    /// What was odd, counted.
+    pub warnings: Vec<WarningSummary>,
+    /// The files that were written.
+    pub files: Vec<String>,
+}
+
+/// Energies at the end, works and losses since the beginning [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the words are the documentation")]
+pub struct EnergySummary {
+    pub kinetic: f64,
+    pub elastic: f64,
+    pub gas: f64,
+    pub gravity: f64,
+    pub work_user: f64,
+    pub loss_damping: f64,
+    pub loss_friction: f64,
+    pub loss_contact: f64,
+    pub loss_integrator: f64,
+    pub closure: f64,
+}
+
+/// Momentum at the end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MomentumSummary {
+    /// Σ m v [kg·m/s], one number per axis.
+    pub linear: Vec<f64>,
+    /// Σ m x × v [kg·m²/s]: one number in 2D, three in 3D.
+    pub angular: Vec<f64>,
+}
+
+/// A counted warning.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct WarningSummary {
+    /// A stable word for programs.
+    pub code: String,
+    /// One sentence.
+    pub message: String,
+    /// How often.
+    pub count: u64,
+}
+
+impl Summary {
+    /// The object of `summary.json`, with `schema = 1` in front. Numbers that are not finite become null.
+    pub fn to_json(&self) -> serde_json::Value {
+        let mut object = serde_json::Map::new();
+        object.insert("schema".into(), 1.into());
+        if let Ok(serde_json::Value::Object(fields)) = serde_json::to_value(self) {
+            object.extend(fields);
+        }
+        serde_json::Value::Object(object)
+    }
+    /// Writes `summary.json`.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut *out, &self.to_json())?;
+        writeln!(out)
+    }
+}

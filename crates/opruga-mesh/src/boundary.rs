@@ -1,0 +1,114 @@
+//! From cells to their boundary, and from boxes to simplices.
+
+use crate::edges::ascending;
+use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES};
+use crate::{Element, Mesh, MeshError};
+
+/// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. On a grid neighbours cut their common face alike.
+///
+/// # Source
+/// Kuhn, "Some combinatorial lemmas in topology", IBM J. Res. Dev. 4 (1960).
+const KUHN: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 5, 1, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 4, 5, 6], [0, 7, 4, 6]];
+
+/// A face of a cell: its nodes ascending (the key), and as seen from outside. A triangle repeats its last node.
+struct Face {
+    key: [u32; 4],
+    order: usize,
+    nodes: [u32; 4],
+}
+
+impl<const D: usize> Mesh<D> {
+    /// The facets that bound the cells: oriented faces that belong to one cell only, in the order of the cells.
+    ///
+    /// A face of a hexahedron becomes two triangles, cut from its lowest node.
+    ///
+    /// # Errors
+    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
+    pub fn facets_from_cells(&self) -> Result<Vec<[u32; D]>, MeshError> {
+        self.validate()?;
+        let mut faces = Vec::new();
+        for (element, _, cell) in self.cell_elements() {
+            let mut push = |nodes: [u32; 4]| {
+                let mut key = nodes;
+                key.sort_unstable();
+                faces.push(Face { key, order: faces.len(), nodes });
+            };
+            match element {
+                Element::Tetrahedron => TETRAHEDRON_FACES.iter().for_each(|&[a, b, c]| push([cell[a], cell[b], cell[c], cell[c]])),
+                Element::Hexahedron => HEXAHEDRON_FACES.iter().for_each(|face| push(face.map(|corner| cell[corner]))),
+                _ => {
+                    for (place, &a) in cell.iter().enumerate() {
+                        let b = cell[(place + 1) % cell.len()];
+                        push([a, b, b, b]);
+                    }
+                }
+            }
+        }
+
+        // Faces of one cell only are the boundary; back to the order of the cells. A repeated node sorts equally on both sides only for the plane,
+        // so triangles compare by their three nodes.
+        for face in &mut faces {
+            let mut distinct = face.key.to_vec();
+            distinct.dedup();
+            distinct.resize(4, u32::MAX);
+            face.key.copy_from_slice(&distinct);
+        }
+        faces.sort_unstable_by_key(|face| (face.key, face.order));
+        let groups = || faces.chunk_by(|p, q| p.key == q.key);
+        let mut crowded: Vec<[u32; 2]> = groups().filter(|group| group.len() > 2).map(|group| ascending(group[0].key[0], group[0].key[1])).collect();
+        if !crowded.is_empty() {
+            crowded.dedup();
+            return Err(MeshError::NonManifoldEdges { edges: crowded });
+        }
+        let mut outer: Vec<&Face> = groups().filter(|group| group.len() == 1).map(|group| &group[0]).collect();
+        outer.sort_unstable_by_key(|face| face.order);
+
+        let mut facets = Vec::with_capacity(2 * outer.len());
+        for face in outer {
+            let [a, b, c, d] = face.nodes;
+            if D == 2 || c == d {
+                facets.push(facet([a, b, c]));
+            } else {
+                // Turn the quadrilateral so that its lowest node comes first.
+                let mut nodes = face.nodes;
+                let lowest = (0..4).min_by_key(|&corner| nodes[corner]).unwrap_or(0);
+                nodes.rotate_left(lowest);
+                facets.push(facet([nodes[0], nodes[1], nodes[2]]));
+                facets.push(facet([nodes[0], nodes[2], nodes[3]]));
+            }
+        }
+        Ok(facets)
+    }
+
+    /// The same body of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra into six tetrahedra.
+    ///
+    /// Nodes, groups, wires and sheets stay; facets are found anew where there were cells.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::facets_from_cells`].
+    pub fn into_simplices(mut self) -> Result<Mesh<D>, MeshError> {
+        self.validate()?;
+        if self.cells.is_empty() {
+            return Ok(self);
+        }
+        for [a, b, c, d] in std::mem::take(&mut self.cells.quadrilaterals) {
+            // On a grid with rows of n nodes the lower left node is i + n·j; the row length is the step up.
+            let row = d.abs_diff(a).max(1);
+            if (a % row + a / row).is_multiple_of(2) {
+                self.cells.triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                self.cells.triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+        for cell in std::mem::take(&mut self.cells.hexahedra) {
+            self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner])));
+        }
+        self.facets = self.facets_from_cells()?;
+        Ok(self)
+    }
+}
+
+/// The first D nodes as a facet.
+fn facet<const D: usize>(nodes: [u32; 3]) -> [u32; D] {
+    std::array::from_fn(|place| nodes[place])
+}

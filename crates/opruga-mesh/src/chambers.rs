@@ -1,0 +1,287 @@
+//! Closed chambers: which facets enclose one volume.
+
+use crate::geometry::{cross, dot, lift, norm, signed_volume, subtract};
+use crate::{Mesh, MeshError};
+
+/// A connected piece of the boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Its facets, ascending.
+    pub facets: Vec<u32>,
+    /// Enclosed area [m²] or volume [m³]: positive for an outer skin, negative for a hole.
+    pub signed_volume: f64,
+}
+
+/// Where facets meet: a node in the plane, an edge in space. `forward` tells the two directions apart.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Use {
+    ridge: [u32; 2],
+    facet: u32,
+    forward: bool,
+}
+
+/// What facets look like as a whole: components, relative orientation, free boundaries.
+pub(crate) struct Survey {
+    /// Component of each facet; components are numbered by their lowest facet.
+    component: Vec<u32>,
+    /// Number of components.
+    components: usize,
+    /// Facets that face against the majority of their component, ascending.
+    minority: Vec<u32>,
+    /// Lowest node of each free boundary, ascending.
+    open: Vec<u32>,
+}
+
+/// The D ridges of each facet, sorted. One source for both dimensions: end points of edges, sides of triangles.
+fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
+    let mut uses = Vec::with_capacity(D * facets.len());
+    for (index, facet) in facets.iter().enumerate() {
+        for corner in 0..D {
+            let (a, b) = (facet[corner], facet[(corner + 1) % D]);
+            let (ridge, forward) = if D == 2 { ([a, a], corner == 0) } else { (crate::edges::ascending(a, b), a < b) };
+            uses.push(Use { ridge, facet: index as u32, forward });
+        }
+    }
+    uses.sort_unstable();
+    uses
+}
+
+impl Survey {
+    /// Walks the facets across their ridges.
+    ///
+    /// # Errors
+    /// More than two facets at a ridge, or a surface with one side.
+    pub(crate) fn of<const D: usize>(facets: &[[u32; D]]) -> Result<Survey, MeshError> {
+        let uses = ridges(facets);
+
+        // At most two facets may meet at a ridge.
+        let crowded: Vec<[u32; 2]> = uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() > 2).map(|group| group[0].ridge).collect();
+        if !crowded.is_empty() {
+            return Err(if D == 2 {
+                MeshError::NonManifoldNodes { nodes: crowded.iter().map(|ridge| ridge[0]).collect() }
+            } else {
+                MeshError::NonManifoldEdges { edges: crowded }
+            });
+        }
+
+        // Neighbours across ridges, with whether the two facets face the same way.
+        let mut links: Vec<(u32, u32, bool)> = Vec::with_capacity(uses.len());
+        for pair in uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 2) {
+            let agree = pair[0].forward != pair[1].forward;
+            links.push((pair[0].facet, pair[1].facet, agree));
+            links.push((pair[1].facet, pair[0].facet, agree));
+        }
+        links.sort_unstable();
+
+        // Flood each component from its lowest facet; `against` compares with that facet.
+        const NONE: u32 = u32::MAX;
+        let mut component = vec![NONE; facets.len()];
+        let mut against = vec![false; facets.len()];
+        let mut minority = Vec::new();
+        let mut components = 0;
+        let mut members = Vec::new();
+        for seed in 0..facets.len() {
+            if component[seed] != NONE {
+                continue;
+            }
+            members.clear();
+            members.push(seed as u32);
+            component[seed] = components as u32;
+            let mut next = 0;
+            while next < members.len() {
+                let facet = members[next];
+                next += 1;
+                let from = links.partition_point(|link| link.0 < facet);
+                for &(_, other, agree) in links[from..].iter().take_while(|link| link.0 == facet) {
+                    let expected = against[facet as usize] == agree;
+                    if component[other as usize] == NONE {
+                        component[other as usize] = components as u32;
+                        against[other as usize] = expected;
+                        members.push(other);
+                    } else if against[other as usize] != expected {
+                        return Err(MeshError::NonOrientable { facet: other });
+                    }
+                }
+            }
+            // The smaller part is the one to turn; a tie keeps the lowest facet.
+            let turned = members.iter().filter(|&&facet| against[facet as usize]).count();
+            let wrong = 2 * turned <= members.len();
+            minority.extend(members.iter().copied().filter(|&facet| against[facet as usize] == wrong));
+            components += 1;
+        }
+        minority.sort_unstable();
+
+        let free: Vec<Use> = uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 1).map(|group| group[0]).collect();
+        let open = if D == 2 { chain_ends(&free, &component) } else { loops(&free) };
+        Ok(Survey { component, components, minority, open })
+    }
+
+    /// Refuses free boundaries and facets that face against their neighbours.
+    pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
+        if !self.open.is_empty() {
+            return Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() });
+        }
+        if !self.minority.is_empty() {
+            return Err(MeshError::InconsistentOrientation { facets: self.minority.clone() });
+        }
+        Ok(())
+    }
+}
+
+/// Lowest free end of each open chain.
+fn chain_ends(free: &[Use], component: &[u32]) -> Vec<u32> {
+    let mut ends: Vec<(u32, u32)> = free.iter().map(|end| (component[end.facet as usize], end.ridge[0])).collect();
+    ends.sort_unstable();
+    ends.dedup_by_key(|end| end.0);
+    let mut nodes: Vec<u32> = ends.into_iter().map(|end| end.1).collect();
+    nodes.sort_unstable();
+    nodes
+}
+
+/// Lowest node of each loop of free edges.
+fn loops(free: &[Use]) -> Vec<u32> {
+    let mut nodes: Vec<u32> = free.iter().flat_map(|edge| edge.ridge).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let place = |node: u32| nodes.partition_point(|&other| other < node);
+
+    // Union by lowest node, with path halving.
+    let mut parent: Vec<usize> = (0..nodes.len()).collect();
+    let root = |parent: &mut Vec<usize>, mut at: usize| {
+        while parent[at] != at {
+            parent[at] = parent[parent[at]];
+            at = parent[at];
+        }
+        at
+    };
+    for edge in free {
+        let (p, q) = (root(&mut parent, place(edge.ridge[0])), root(&mut parent, place(edge.ridge[1])));
+        if p < q {
+            parent[q] = p;
+        } else {
+            parent[p] = q;
+        }
+    }
+    (0..nodes.len()).filter(|&at| parent[at] == at).map(|at| nodes[at]).collect()
+}
+
+impl<const D: usize> Mesh<D> {
+    /// Connected components of the closed boundary, each with its signed area [m²] or volume [m³]; holes are negative.
+    ///
+    /// Facets are connected where they share a node (plane) or an edge (space). Components are ordered by their lowest facet.
+    ///
+    /// # Errors
+    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldNodes`] (plane) or [`MeshError::NonManifoldEdges`] (space) where more than two facets
+    /// meet; [`MeshError::NonOrientable`] for a surface with one side; [`MeshError::Open`] with the number of free boundaries and a node on each;
+    /// [`MeshError::InconsistentOrientation`] where neighbours face opposite ways.
+    pub fn components(&self) -> Result<Vec<Component>, MeshError> {
+        self.validate()?;
+        let survey = Survey::of(&self.facets)?;
+        survey.closed_and_consistent()?;
+        let mut components = vec![Component { facets: Vec::new(), signed_volume: 0.0 }; survey.components];
+        for (facet, &component) in survey.component.iter().enumerate() {
+            components[component as usize].facets.push(facet as u32);
+        }
+        for component in &mut components {
+            component.signed_volume = signed_volume(&self.gather(&component.facets), &self.positions);
+        }
+        Ok(components)
+    }
+
+    /// The closed chambers, each as the ascending indices of the facets that enclose it.
+    ///
+    /// A chamber is one component of positive volume and the holes (components of negative volume) in it. A hole belongs to the smallest positive
+    /// component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole in nothing.
+    pub fn chambers(&self) -> Result<Vec<Vec<u32>>, MeshError> {
+        let components = self.components()?;
+        let outer: Vec<&Component> = components.iter().filter(|component| component.signed_volume >= 0.0).collect();
+        let skins: Vec<Vec<[u32; D]>> = outer.iter().map(|component| self.gather(&component.facets)).collect();
+        let mut chambers: Vec<Vec<u32>> = outer.iter().map(|component| component.facets.clone()).collect();
+
+        // Each hole goes to the tightest skin around it.
+        for hole in components.iter().filter(|component| component.signed_volume < 0.0) {
+            let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
+            let mut home: Option<usize> = None;
+            for candidate in 0..outer.len() {
+                let tighter = home.is_none_or(|best| outer[candidate].signed_volume < outer[best].signed_volume);
+                if tighter && winding_number(&skins[candidate], &self.positions, &point) > 0.5 {
+                    home = Some(candidate);
+                }
+            }
+            match home {
+                Some(home) => chambers[home].extend(&hole.facets),
+                None => return Err(MeshError::InsideOut { facet: hole.facets[0], signed_volume: hole.signed_volume }),
+            }
+        }
+        chambers.iter_mut().for_each(|chamber| chamber.sort_unstable());
+        Ok(chambers)
+    }
+
+    /// Turns facets so that neighbours agree and the total signed volume is positive; returns how many facets were reversed.
+    ///
+    /// In each component the majority decides. Holes stay holes: if the total is negative, every facet is reversed.
+    ///
+    /// # Errors
+    /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
+    /// [`MeshError::Open`]. The mesh is then unchanged.
+    pub fn orient_outward(&mut self) -> Result<usize, MeshError> {
+        self.validate()?;
+        let survey = Survey::of(&self.facets)?;
+        if !survey.open.is_empty() {
+            return Err(MeshError::Open { loops: survey.open.len(), nodes: survey.open });
+        }
+        let before = self.facets.clone();
+        for &facet in &survey.minority {
+            self.facets[facet as usize].swap(0, 1);
+        }
+        if signed_volume(&self.facets, &self.positions) < 0.0 {
+            self.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
+        }
+        // A facet turned twice must be as it was.
+        let mut reversed = 0;
+        for (facet, old) in self.facets.iter().zip(&before) {
+            reversed += usize::from(facet != old);
+        }
+        Ok(reversed)
+    }
+
+    /// The facets with the given indices.
+    fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
+        facets.iter().map(|&facet| self.facets[facet as usize]).collect()
+    }
+}
+
+/// How often closed facets wind around a point: 1 inside an outward skin, 0 outside.
+///
+/// Plane: signed crossings of the ray to the right. Space: solid angles over 4π.
+///
+/// # Source
+/// van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), equation 8.
+fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
+    let o = lift(point);
+    let from = |node: u32| subtract(lift(&positions[node as usize]), o);
+    let mut total = 0.0;
+    if D == 2 {
+        for facet in facets {
+            let (a, b) = (from(facet[0]), from(facet[1]));
+            let left = a[0] * b[1] - a[1] * b[0];
+            if a[1] <= 0.0 && b[1] > 0.0 && left > 0.0 {
+                total += 1.0;
+            } else if a[1] > 0.0 && b[1] <= 0.0 && left < 0.0 {
+                total -= 1.0;
+            }
+        }
+        return total;
+    }
+    for facet in facets {
+        let (a, b, c) = (from(facet[0]), from(facet[1]), from(facet[D - 1]));
+        let (la, lb, lc) = (norm(a), norm(b), norm(c));
+        let numerator = dot(a, cross(b, c));
+        let denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        total += 2.0 * libm::atan2(numerator, denominator);
+    }
+    total / (4.0 * std::f64::consts::PI)
+}

@@ -1,0 +1,180 @@
+//! What can be wrong with a mesh or with the numbers that a generator is given.
+
+use std::fmt;
+
+/// The kinds of element that a mesh is made of; used to say where something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Element {
+    /// An oriented piece of the boundary: an edge in the plane, a triangle in space.
+    Facet,
+    /// An edge of a chain that bounds nothing.
+    Wire,
+    /// A triangle of an open surface.
+    Sheet,
+    /// A quadrilateral of an open surface, cut into two sheet triangles.
+    SheetQuadrilateral,
+    /// A filled triangle of the plane.
+    Triangle,
+    /// A filled quadrilateral of the plane.
+    Quadrilateral,
+    /// A filled tetrahedron of space.
+    Tetrahedron,
+    /// A filled hexahedron of space.
+    Hexahedron,
+    /// A named set of nodes; its index counts the groups in order of name.
+    Group,
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Element::Facet => "facet",
+            Element::Wire => "wire",
+            Element::Sheet => "sheet triangle",
+            Element::SheetQuadrilateral => "sheet quadrilateral",
+            Element::Triangle => "triangle",
+            Element::Quadrilateral => "quadrilateral",
+            Element::Tetrahedron => "tetrahedron",
+            Element::Hexahedron => "hexahedron",
+            Element::Group => "group",
+        })
+    }
+}
+
+/// Why a mesh could not be made or read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A count lies outside what the generator allows.
+    #[error("{what} is {value}, but must be between {least} and {most}")]
+    Count {
+        /// Name of the count.
+        what: &'static str,
+        /// The count that was given.
+        value: u64,
+        /// Smallest count allowed.
+        least: u64,
+        /// Largest count allowed.
+        most: u64,
+    },
+    /// A length, coordinate or angle has an impossible value.
+    #[error("{what} is {value}, but must be {must}")]
+    Size {
+        /// Name of the quantity.
+        what: &'static str,
+        /// The value that was given [m, or rad for angles].
+        value: f64,
+        /// What the value has to satisfy.
+        must: &'static str,
+    },
+    /// The mesh would have more nodes than [`crate::MAXIMUM_NODES`].
+    #[error("the mesh would have {nodes} nodes, but at most {most} are allowed")]
+    TooManyNodes {
+        /// Number of nodes asked for.
+        nodes: u64,
+        /// Number of nodes allowed.
+        most: u64,
+    },
+    /// Two consecutive points of an outline or chain coincide.
+    #[error("points {first} and {second} follow each other at the same place")]
+    RepeatedPoint {
+        /// Index of the first point.
+        first: u32,
+        /// Index of the point that follows it.
+        second: u32,
+    },
+    /// Two edges of an outline cross, touch or overlap.
+    #[error(
+        "the edge from point {} to point {} meets the edge from point {} to point {}",
+        first[0], first[1], second[0], second[1]
+    )]
+    SelfIntersection {
+        /// End points of one edge, in the order given.
+        first: [u32; 2],
+        /// End points of the other edge, in the order given.
+        second: [u32; 2],
+    },
+    /// An element or group names a node that does not exist.
+    #[error("{element} {index} names node {node}, but there are {nodes} nodes")]
+    IndexOutOfRange {
+        /// Kind of the element.
+        element: Element,
+        /// Index of the element among its kind.
+        index: u32,
+        /// The node that it names.
+        node: u32,
+        /// Number of nodes of the mesh.
+        nodes: u32,
+    },
+    /// An element names the same node twice.
+    #[error("{element} {index} names node {node} twice")]
+    RepeatedNode {
+        /// Kind of the element.
+        element: Element,
+        /// Index of the element among its kind.
+        index: u32,
+        /// The node that is named twice.
+        node: u32,
+    },
+    /// An element of space in a plane mesh, or a filled plane cell in a mesh of space.
+    #[error("a {element} has no place in a mesh of {dimension} dimensions")]
+    WrongDimension {
+        /// Kind of the element.
+        element: Element,
+        /// Dimension of the mesh.
+        dimension: usize,
+    },
+    /// Sheet quadrilateral k is not the union of sheet triangles 2k and 2k + 1.
+    #[error("sheet quadrilateral {index} is not cut into sheet triangles {} and {}", 2 * u64::from(*index), 2 * u64::from(*index) + 1)]
+    SheetPairing {
+        /// Index of the quadrilateral.
+        index: u32,
+    },
+    /// The boundary has free ends: open chains in the plane, boundary loops of an open surface in space.
+    #[error("the boundary is not closed: {loops} free {}, through nodes {nodes:?}", if *loops == 1 { "boundary" } else { "boundaries" })]
+    Open {
+        /// Number of open chains (plane) or boundary loops (space).
+        loops: usize,
+        /// One node on each, the one of lowest index.
+        nodes: Vec<u32>,
+    },
+    /// More than two triangles meet at an edge.
+    #[error("more than two triangles meet at the edges {edges:?}")]
+    NonManifoldEdges {
+        /// The edges, lower node first, in ascending order.
+        edges: Vec<[u32; 2]>,
+    },
+    /// More than two edges of an outline meet at a node, or the triangles at a node form more than one fan.
+    #[error("the boundary touches itself at the nodes {nodes:?}")]
+    NonManifoldNodes {
+        /// The nodes, in ascending order.
+        nodes: Vec<u32>,
+    },
+    /// The surface has only one side, as a Möbius band.
+    #[error("the surface through facet {facet} has only one side")]
+    NonOrientable {
+        /// A facet that would have to face both ways.
+        facet: u32,
+    },
+    /// Neighbouring facets face opposite ways; [`crate::Mesh::orient_outward`] repairs it.
+    #[error("{} facets face against their neighbours, the first is facet {}", facets.len(), facets.first().copied().unwrap_or(0))]
+    InconsistentOrientation {
+        /// The minority of each connected component, in ascending order.
+        facets: Vec<u32>,
+    },
+    /// A component with negative volume lies in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
+    #[error("the component through facet {facet} is inside out: its volume is {signed_volume} and no other component encloses it")]
+    InsideOut {
+        /// Lowest facet of the component.
+        facet: u32,
+        /// Its signed area [m²] or volume [m³].
+        signed_volume: f64,
+    },
+    /// Elements of different dimension share one mesh, so that one density cannot give a mass.
+    #[error("the mesh mixes {first} and {second} elements, which have no common measure")]
+    MixedMeasures {
+        /// One kind of element.
+        first: Element,
+        /// The other.
+        second: Element,
+    },
+}

@@ -1,0 +1,114 @@
+//! Length, area or volume of a body, as a whole and per node.
+
+use crate::geometry::{Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume, triangle_area};
+use crate::{Element, Mesh, MeshError};
+
+/// How much there is of a body, in the dimension of its own matter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// Length of outlines in the plane and of wires [m].
+    Length(f64),
+    /// Area of surfaces, and of filled bodies in the plane [m²].
+    Area(f64),
+    /// Volume of filled bodies in space [m³].
+    Volume(f64),
+}
+
+impl Measure {
+    /// The number, in m, m² or m³.
+    pub fn value(self) -> f64 {
+        match self {
+            Measure::Length(value) | Measure::Area(value) | Measure::Volume(value) => value,
+        }
+    }
+}
+
+/// How a body's measure is shared among its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// Every node has the same share.
+    Equal,
+    /// Each element gives equal parts of its own measure to its nodes: half an edge, a third of a triangle, an eighth of a hexahedron.
+    Proportional,
+}
+
+impl<const D: usize> Mesh<D> {
+    /// Length, area or volume of the body: of its cells where it is filled, else of its facets and sheets, else of its wires.
+    ///
+    /// In the plane facets and wires are lengths and add up. Facets that bound cells count nothing of their own. An empty mesh has length 0.
+    ///
+    /// # Errors
+    /// What [`Mesh::validate`] finds; [`MeshError::MixedMeasures`] where elements of different dimension share the mesh.
+    pub fn measure(&self) -> Result<Measure, MeshError> {
+        let mut total = 0.0;
+        let kind = self.visit_measures(|_, measure| total += measure)?;
+        Ok(kind(total))
+    }
+
+    /// Each node's share of the measure [m, m² or m³], one value per node; times the density it is the lumped mass. The shares add up to the total.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::measure`].
+    pub fn lumped_measures(&self, share: Share) -> Result<Vec<f64>, MeshError> {
+        let mut shares = vec![0.0; self.nodes()];
+        match share {
+            Share::Equal => {
+                let each = self.measure()?.value() / shares.len() as f64;
+                shares.fill(each);
+            }
+            Share::Proportional => {
+                self.visit_measures(|nodes, measure| {
+                    let part = measure / nodes.len() as f64;
+                    nodes.iter().for_each(|&node| shares[node as usize] += part);
+                })?;
+            }
+        }
+        Ok(shares)
+    }
+
+    /// Calls `visit(nodes, measure)` for each element that carries matter; returns which measure it is.
+    fn visit_measures(&self, mut visit: impl FnMut(&[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
+        self.validate()?;
+
+        // Matter is in the elements of highest dimension; those of lower dimension are a boundary, or do not belong.
+        let rank = |element: Element| match element {
+            Element::Facet if self.cells.is_empty() => Some(D - 1),
+            Element::Facet | Element::SheetQuadrilateral | Element::Group => None,
+            Element::Wire => Some(1),
+            Element::Sheet | Element::Triangle | Element::Quadrilateral => Some(2),
+            Element::Tetrahedron | Element::Hexahedron => Some(3),
+        };
+        let mut known: Option<(Element, usize)> = None;
+        for (element, _, nodes) in self.elements() {
+            let Some(own) = rank(element) else { continue };
+            match known {
+                Some((first, other)) if other != own => return Err(MeshError::MixedMeasures { first, second: element }),
+                Some(_) => {}
+                None => known = Some((element, own)),
+            }
+            visit(nodes, self.size_of(nodes, element).abs());
+        }
+        Ok(match known {
+            Some((_, 3)) => Measure::Volume,
+            Some((_, 2)) => Measure::Area,
+            _ => Measure::Length,
+        })
+    }
+
+    /// Length, area or volume of one element; signed for filled cells, negative where they are inverted.
+    pub(crate) fn size_of(&self, nodes: &[u32], element: Element) -> f64 {
+        let mut corners: [Point; 8] = [[0.0; 3]; 8];
+        for (corner, &node) in corners.iter_mut().zip(nodes) {
+            *corner = lift(&self.positions[node as usize]);
+        }
+        let [a, b, c, d, ..] = corners;
+        match element {
+            Element::Hexahedron => hexahedron_volume(&corners),
+            Element::Tetrahedron => tetrahedron_volume(a, b, c, d),
+            Element::Quadrilateral => quadrilateral_area(&[a, b, c, d]),
+            Element::Triangle => crate::geometry::area_vector(a, b, c)[2],
+            _ if nodes.len() == 3 => triangle_area(a, b, c),
+            _ => norm(subtract(b, a)),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The mesh itself, and the checks that every reader of it relies on.
+
+use std::collections::BTreeMap;
+
+use crate::{Element, MeshError};
+
+/// Most nodes that a mesh may have: 2²⁵, so that every index and every doubled index fits `u32` and a mistyped count cannot exhaust the memory.
+pub const MAXIMUM_NODES: u64 = 1 << 25;
+
+/// The filled interior of a body.
+///
+/// ```text
+///  triangle    quadrilateral    tetrahedron         hexahedron
+///     2           3-----2            3                7------6
+///    / \          |     |           /|\              /|     /|      z  y
+///   /   \         |     |          / | \            4------5 |      | /
+///  0-----1        0-----1         0--|--2           | 3----|-2      |/
+///                                  \ | /            |/     |/       +---x
+///                                   \|/             0------1
+///                                    1
+/// ```
+/// Triangles and quadrilaterals are counter-clockwise; a tetrahedron has (X₁−X₀)·((X₂−X₀)×(X₃−X₀)) > 0; a hexahedron has its nodes 0 1 2 3
+/// counter-clockwise seen from 4 5 6 7, which lie above them.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Cells {
+    /// Triangles of the plane, 3 nodes each.
+    pub triangles: Vec<[u32; 3]>,
+    /// Quadrilaterals of the plane, 4 nodes each.
+    pub quadrilaterals: Vec<[u32; 4]>,
+    /// Tetrahedra of space, 4 nodes each.
+    pub tetrahedra: Vec<[u32; 4]>,
+    /// Hexahedra of space, 8 nodes each.
+    pub hexahedra: Vec<[u32; 8]>,
+}
+
+impl Cells {
+    /// True where the body has no filled interior.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of cells of all kinds.
+    pub fn len(&self) -> usize {
+        self.triangles.len() + self.quadrilaterals.len() + self.tetrahedra.len() + self.hexahedra.len()
+    }
+}
+
+/// A body at rest: where its nodes are and what spans them, in the plane (`D = 2`) or in space (`D = 3`).
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Mesh<const D: usize> {
+    /// Rest positions X [m], one row per node.
+    pub positions: Vec<[f64; D]>,
+    /// The boundary: edges with the interior to their left in the plane, triangles counter-clockwise seen from outside in space.
+    pub facets: Vec<[u32; D]>,
+    /// One-dimensional cells: edges of open or closed chains that bound nothing.
+    pub wires: Vec<[u32; 2]>,
+    /// Triangles of an open surface (cloth), in space only.
+    pub sheets: Vec<[u32; 3]>,
+    /// Quadrilaterals of an open surface, where it is a grid: number k is the union of triangles 2k and 2k + 1 of `sheets`.
+    pub sheet_quadrilaterals: Vec<[u32; 4]>,
+    /// The filled interior.
+    pub cells: Cells,
+    /// Named node sets, ascending (`left`, `right`, `bottom`, `top`, `back`, `front` for grids).
+    pub groups: BTreeMap<String, Vec<u32>>,
+}
+
+/// A row of elements as (kind, index, nodes).
+fn rows<const N: usize>(kind: Element, list: &[[u32; N]]) -> impl Iterator<Item = (Element, u32, &[u32])> {
+    list.iter().enumerate().map(move |(index, nodes)| (kind, index as u32, nodes.as_slice()))
+}
+
+impl<const D: usize> Mesh<D> {
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// All elements, kind by kind, as (kind, index, nodes); groups are no elements.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
+        rows(Element::Facet, &self.facets)
+            .chain(rows(Element::Wire, &self.wires))
+            .chain(rows(Element::Sheet, &self.sheets))
+            .chain(rows(Element::SheetQuadrilateral, &self.sheet_quadrilaterals))
+            .chain(self.cell_elements())
+    }
+
+    /// All filled cells as (kind, index, nodes).
+    pub(crate) fn cell_elements(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
+        rows(Element::Triangle, &self.cells.triangles)
+            .chain(rows(Element::Quadrilateral, &self.cells.quadrilaterals))
+            .chain(rows(Element::Tetrahedron, &self.cells.tetrahedra))
+            .chain(rows(Element::Hexahedron, &self.cells.hexahedra))
+    }
+
+    /// Facets as triangles; empty in the plane.
+    pub(crate) fn facet_triangles(&self) -> Vec<[u32; 3]> {
+        if D != 3 {
+            return Vec::new();
+        }
+        self.facets.iter().map(|facet| [facet[0], facet[1], facet[D - 1]]).collect()
+    }
+
+    /// Checks that every index names a node and no element names a node twice, so that no reader of the mesh can go astray.
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyNodes`], [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::WrongDimension`] or
+    /// [`MeshError::SheetPairing`], whichever is met first. [`Mesh::check`] lists every problem instead.
+    pub fn validate(&self) -> Result<(), MeshError> {
+        const { assert!(D == 2 || D == 3, "bodies live in the plane or in space") }
+        limit_nodes(self.positions.len() as u64)?;
+        let nodes = self.positions.len() as u32;
+
+        // Every element: in its dimension, indices in range and distinct.
+        for (element, index, list) in self.elements() {
+            if !belongs(element, D) {
+                return Err(MeshError::WrongDimension { element, dimension: D });
+            }
+            for (place, &node) in list.iter().enumerate() {
+                if node >= nodes {
+                    return Err(MeshError::IndexOutOfRange { element, index, node, nodes });
+                }
+                if list[..place].contains(&node) {
+                    return Err(MeshError::RepeatedNode { element, index, node });
+                }
+            }
+        }
+
+        // Groups: indices in range.
+        for (index, list) in self.groups.values().enumerate() {
+            if let Some(&node) = list.iter().find(|&&node| node >= nodes) {
+                return Err(MeshError::IndexOutOfRange { element: Element::Group, index: index as u32, node, nodes });
+            }
+        }
+
+        // Sheet quadrilaterals: each the union of its two triangles.
+        for (index, quadrilateral) in self.sheet_quadrilaterals.iter().enumerate() {
+            let halves = self.sheets.get(2 * index..2 * index + 2);
+            let covers = |halves: &[[u32; 3]]| {
+                let within = halves.iter().flatten().all(|node| quadrilateral.contains(node));
+                within && quadrilateral.iter().all(|node| halves.iter().flatten().any(|other| other == node))
+            };
+            if !halves.is_some_and(covers) {
+                return Err(MeshError::SheetPairing { index: index as u32 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Vertices − edges + facets of the boundary: 2 for each sphere, 0 for each torus; for outlines vertices − edges, 0 for each closed loop.
+    ///
+    /// Only nodes that a facet names are counted.
+    pub fn euler_characteristic(&self) -> i64 {
+        let mut vertices: Vec<u32> = self.facets.iter().flatten().copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let edges = self.edges(crate::EdgeSet::Boundary).len() as i64;
+        let faces = if D == 3 { self.facets.len() as i64 } else { 0 };
+        vertices.len() as i64 - edges + faces
+    }
+}
+
+/// Whether an element of this kind may be part of a mesh of this dimension.
+fn belongs(element: Element, dimension: usize) -> bool {
+    match element {
+        Element::Facet | Element::Wire | Element::Group => true,
+        Element::Triangle | Element::Quadrilateral => dimension == 2,
+        Element::Sheet | Element::SheetQuadrilateral | Element::Tetrahedron | Element::Hexahedron => dimension == 3,
+    }
+}
+
+/// Refuses more than [`MAXIMUM_NODES`] nodes.
+pub(crate) fn limit_nodes(nodes: u64) -> Result<(), MeshError> {
+    if nodes > MAXIMUM_NODES { Err(MeshError::TooManyNodes { nodes, most: MAXIMUM_NODES }) } else { Ok(()) }
+}
+
+/// Refuses a count outside `least..=most`.
+pub(crate) fn count(what: &'static str, value: u32, least: u64, most: u64) -> Result<(), MeshError> {
+    let value = u64::from(value);
+    if (least..=most).contains(&value) { Ok(()) } else { Err(MeshError::Count { what, value, least, most }) }
+}
+
+/// Refuses a length that is not positive and finite [m].
+pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), MeshError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MeshError::Size { what, value, must: "positive and finite" }) }
+}
+
+/// Refuses coordinates that are not finite [m].
+pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), MeshError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(MeshError::Size { what, value, must: "finite" }),
+        None => Ok(()),
+    }
+}

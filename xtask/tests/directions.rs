@@ -1,0 +1,72 @@
+//! Which crate may see which: math ← mesh ← core ← {models, integrators, collide} ← world ← io ← draw ← opruga ← cli.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+/// The layer of each crate: a crate may depend on lower layers alone, so siblings cannot see one another.
+fn layers() -> BTreeMap<&'static str, u32> {
+    BTreeMap::from([
+        ("opruga-math", 0),
+        ("opruga-mesh", 1),
+        ("opruga-core", 2),
+        ("opruga-models", 3),
+        ("opruga-integrators", 3),
+        ("opruga-collide", 3),
+        ("opruga-world", 4),
+        ("opruga-io", 5),
+        ("opruga-draw", 6),
+        ("opruga", 7),
+        ("opruga-cli", 9),
+        ("xtask", 10),
+    ])
+}
+
+#[test]
+fn crates_depend_on_lower_layers_only() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace has a folder");
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
+        .current_dir(root)
+        .output()
+        .expect("cargo runs");
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON");
+    let layers = layers();
+    let packages = metadata["packages"].as_array().expect("packages");
+    assert!(packages.len() >= 12, "the whole workspace is looked at");
+    for package in packages {
+        let name = package["name"].as_str().expect("a name");
+        let layer = layers.get(name).unwrap_or_else(|| panic!("{name} has no layer: add it here and to ARCHITECTURE.md"));
+        for dependency in package["dependencies"].as_array().expect("dependencies") {
+            // Tests may look anywhere.
+            if dependency["kind"].as_str() == Some("dev") {
+                continue;
+            }
+            let other = dependency["name"].as_str().expect("a name");
+            if let Some(below) = layers.get(other) {
+                assert!(below < layer, "{name} (layer {layer}) must not depend on {other} (layer {below})");
+            }
+        }
+    }
+}
+
+#[test]
+fn physics_crates_do_no_input_or_output() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace has a folder");
+    for name in ["opruga-math", "opruga-mesh", "opruga-core", "opruga-models", "opruga-integrators", "opruga-collide"] {
+        let mut folders = vec![root.join("crates").join(name).join("src")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(&folder).expect("a folder of sources") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                    continue;
+                }
+                let text = std::fs::read_to_string(&path).expect("a source file");
+                for word in ["std::fs", "std::net", "std::time::Instant", "SystemTime", "println!", "std::env"] {
+                    assert!(!text.contains(word), "{} uses {word}", path.display());
+                }
+            }
+        }
+    }
+}
