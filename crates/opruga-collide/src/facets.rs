@@ -19,7 +19,7 @@ trait Tree<const D: usize>: Send + Sync + Debug {
 
 /// Writes a tree over one of parry's two crates.
 macro_rules! tree {
-    ($name:ident, $parry:ident, $dimension:literal, $facet:ident, $($corner:literal)*, $($axis:literal)*) => {
+    ($name:ident, $parry:ident, $facet:ident, $($corner:literal)*, $($axis:literal)*) => {
         #[derive(Debug)]
         struct $name {
             bounds: $parry::partitioning::Bvh,
@@ -27,11 +27,8 @@ macro_rules! tree {
         }
         impl $name {
             fn new<const D: usize>(facets: &[[[f64; D]; D]]) -> $name {
-                use $parry::math::Vector;
-                let facets: Vec<_> = facets
-                    .iter()
-                    .map(|f| $parry::shape::$facet::new($(Vector::new($(f[$corner % D][$axis % D]),*)),*))
-                    .collect();
+                let vector = |p: &[f64; D]| $parry::math::Vector::new($(p[$axis % D]),*);
+                let facets: Vec<_> = facets.iter().map(|f| $parry::shape::$facet::new($(vector(&f[$corner % D])),*)).collect();
                 let boxes: Vec<_> = facets.iter().map(|f| f.local_aabb()).collect();
                 let bounds = $parry::partitioning::Bvh::from_leaves(Default::default(), &boxes);
                 $name { bounds, facets }
@@ -63,8 +60,8 @@ macro_rules! tree {
         }
     };
 }
-tree! { PlaneTree, parry2d_f64, 2, Segment, 0 1, 0 1 }
-tree! { SpaceTree, parry3d_f64, 3, Triangle, 0 1 2, 0 1 2 }
+tree! { PlaneTree, parry2d_f64, Segment, 0 1, 0 1 }
+tree! { SpaceTree, parry3d_f64, Triangle, 0 1 2, 0 1 2 }
 
 /// A facet as part of a plane (line in 2D).
 #[derive(Clone, Copy, Debug)]

@@ -1,1 +1,53 @@
-//! placeholder
+//! # Obstacles
+//!
+//! Rigid bodies that stand still or move as prescribed, against the nodes of deformable bodies: one pass per substep over
+//! the nodes that were just moved freely. For a node at x with velocity v, a collider with signed distance g and normal
+//! n at the end of the step, and the collider's own velocity v_c there:
+//!
+//! ```text
+//! contact          g(x) < thickness
+//! relative speed   u = v − v_c,  u_n = u·n
+//! impact, u_n < 0  u_n' = −e u_n   if it is one, else 0          (restitution)
+//! friction         |Δu_t| = min(µ (u_n' − u_n), |u_t|), against u_t  (Coulomb: what sticks stops fully)
+//! position         onto the surface
+//! ```
+//!
+//! **Rest.** An approach is an impact where the node was off the surface at the start of the step (its whole normal speed
+//! would otherwise have been given to it within the step, by weight or by the body behind it) and comes faster than
+//! `rest_speed`. All other contacts do not bounce. With `rest_speed = 0` every crossing is an impact, also that of a
+//! node that lies on the floor: this is the rule v = −e v of the thesis.
+//!
+//! **Position.** Without friction the node is moved along the normal onto the surface and its tangential motion is left
+//! alone, to the bit. With friction a node that does not bounce goes from where it was (carried along by the collider)
+//! with its new tangential velocity, and then onto the surface; so what sticks does not creep by h² g sin θ per step.
+//!
+//! **Energy.** The kinetic energy of the node changes by exactly −loss_contact − loss_friction + work_colliders, with
+//! ½ m (u_n² − u_n'²), ½ m (u_t² − u_t'²) and m Δv·v_c. The change of potential energy by moving the node onto the
+//! surface is O(h) and appears in the remainder of the ledger; so does the kinetic energy ½ m (g h)² that a node at rest
+//! wins and loses in every step.
+//!
+//! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a
+//! step is stopped where it came in. Polylines and triangle meshes are thin and hold on both sides: the segment from
+//! where the node was (in the frame of the collider) to where it is, is cut with them, and a node that would
+//! nevertheless end on the other side (in a narrow groove) stays where it was.
+//!
+//! **Order.** Colliders act in the order of the scene, twice, so that a node in a corner obeys both of its walls.
+//! What a node does depends on nothing but the node: not on the tile, the layout or the vector instructions.
+//!
+//! **Limits.** Nodes meet colliders; edges and facets between nodes do not: an obstacle finer than the mesh can poke
+//! through between two nodes. The tilted or curved surface is taken at the end of the step: first order in h.
+
+mod collider;
+mod contacts;
+mod facets;
+mod hull;
+mod motion;
+mod picture;
+mod response;
+mod shape;
+pub mod spec;
+mod vector;
+
+pub use contacts::Colliders;
+pub use picture::Picture;
+pub use spec::all;

@@ -11,12 +11,23 @@
 //! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products
 //! as a power iteration from the same start vector, but the best combination of all of them; a power iteration still
 //! misses 2 % after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz
-//! value plus its residual is taken, and 2 % more. Negative eigenvalues (a body about to buckle) are no matter of the step.
+//! value plus its residual is taken; the step found from it is lowered by 2 %. Negative eigenvalues (a body about to buckle) are no matter of the step.
 //!
-//! **Which mode.** The eigenvectors of K and C are not compared. Every mode lies in the rectangle [0, ω] × [c₀, c] (c₀ is the
-//! smallest eigenvalue of damping, mostly zero), and since a step scales with it, its outer edges are enough: ω with any
-//! damping from c₀ to c, and c with any frequency up to ω. A step that is stable there is stable for every mode. The price:
-//! an integrator that is unstable without damping has a stable step only if *all* modes are damped (`c₀ > 0`).
+//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 obeys μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the pairs
+//! (ω², c) of all modes lie in the joint numerical range of K and C, whatever their eigenvectors. Around it a polygon is
+//! drawn, from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//!
+//! ```text
+//!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
+//!       │    /           / |
+//!       │   /           /  |         offset₀ ≤ c − γω² ≤ offset₁
+//!       │  /           /   |
+//!       │ /___________/____|         (C ∝ K: a line from corner to corner;
+//!       └────────────────── ω²        damping of every node alike: a line at one height)
+//! ```
+//!
+//! A step that is stable for all of it is stable for every mode. The price: an integrator that is unstable without
+//! damping has a stable step only if *all* motions are damped (`least_damping > 0`).
 
 use crate::error::StepError;
 use crate::integrator::{Integrator, spectral_radius};
@@ -25,8 +36,8 @@ use crate::system::System;
 use crate::tile::Tile;
 use opruga_math::{Lane, WIDTH};
 
-/// Estimates are raised by this factor, for residuals and for small changes of the state.
-const SAFETY: f64 = 1.02;
+/// Limits are lowered by this factor, for small changes of the state.
+const SAFETY: f64 = 0.98;
 
 /// The most products with K or C.
 const MOST_PRODUCTS: usize = 300;
@@ -37,101 +48,145 @@ const TOLERANCE: f64 = 2e-3;
 /// Displacements for the differences of forces, in extents of the system.
 const DISPLACEMENT: f64 = 1e-7;
 
+/// Where the frequencies and the damping of all modes of a system lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spectrum {
+    /// The fastest oscillation, √ of the largest eigenvalue of M⁻¹K [rad/s].
+    pub omega: f64,
+    /// The strongest damping, the largest eigenvalue of M⁻¹C [1/s].
+    pub damping: f64,
+    /// The weakest damping of any motion, the smallest eigenvalue of M⁻¹C [1/s].
+    pub least_damping: f64,
+    /// The smallest and the largest eigenvalue of M⁻¹(C − γK), γ = damping/omega² [1/s].
+    pub offset: [f64; 2],
+}
+
 /// What the spectra of a system say about the step of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// The fastest oscillation, √ of the largest eigenvalue of M⁻¹K, raised by 2 % [rad/s].
-    pub omega: f64,
-    /// The strongest damping, the largest eigenvalue of M⁻¹C, raised by 2 % [1/s].
-    pub damping: f64,
-    /// The weakest damping of any motion, the smallest eigenvalue of M⁻¹C [1/s]; zero below 1 % of the strongest.
-    pub least_damping: f64,
-    /// The largest step for which no mode grows [s]; infinite for a free body, `None` where every step lets one grow.
+    /// The spectra, each with its residual on the safe side; a least damping below 1 % of the strongest counts as zero.
+    pub spectrum: Spectrum,
+    /// The largest step for which no mode grows, lowered by 2 % [s]; infinite for a free body, `None` where every step
+    /// lets one grow.
     pub largest_stable_step: Option<f64>,
-}
-
-impl Stability {
-    /// How fast the amplitude of the worst mode grows in steps of h [1/s]: ln ρ / h; zero where h is stable.
-    pub fn growth_per_second<const D: usize>(&self, integrator: &dyn Integrator<D>, h: f64) -> f64 {
-        let radius = worst(integrator, &edges(self.omega, [self.least_damping, self.damping]), h);
-        if radius <= 1.0 + ROUNDING { 0.0 } else { radius.ln() / h }
-    }
 }
 
 /// Estimates the spectra of a system in its present state, and the largest stable step of an integrator.
 ///
-/// About 30 evaluations of all forces; the system is left as it is. Held nodes and axes do not move and do not count.
+/// About 30 evaluations of all forces, 100 with damping; the system is left as it is. Held nodes and axes do not count.
 ///
 /// # Errors
 /// [`StepError`] where a model refuses the state or its forces are not finite.
 pub fn estimate<const D: usize>(system: &System<D>, integrator: &dyn Integrator<D>) -> Result<Stability, StepError> {
-    let mut probe = Probe::new(system);
-    let [_, stiffness] = spectrum(&probe.weights.clone(), false, |d, out| probe.stiffness(d, out))?;
-    let mut weakest = 0.0;
-    let mut strongest = 0.0;
-    if system.members.iter().any(|m| m.potential.views().damping) {
-        probe.start_damping()?;
-        [weakest, strongest] = spectrum(&probe.weights.clone(), true, |d, out| probe.damping(d, out))?;
-    }
-    let omega = SAFETY * stiffness.larger(0.0).sqrt();
-    let damping = SAFETY * strongest.larger(0.0);
-    let least_damping = if weakest > 0.01 * damping { weakest } else { 0.0 };
-    let largest_stable_step = largest_stable_step(integrator, omega, [least_damping, damping]);
-    Ok(Stability { omega, damping, least_damping, largest_stable_step })
+    let spectrum = Spectrum::of(system)?;
+    Ok(Stability { spectrum, largest_stable_step: spectrum.largest_stable_step(integrator).map(|h| SAFETY * h) })
 }
 
-/// The largest step of an integrator that is stable for all frequencies up to ω [rad/s] and all damping in a range [1/s].
-///
-/// Infinite for ω = c = 0; `None` where every step lets a mode grow.
-pub fn largest_stable_step<const D: usize>(integrator: &dyn Integrator<D>, omega: f64, damping: [f64; 2]) -> Option<f64> {
-    let edges = edges(omega, damping);
-    let fastest = omega.larger(damping[1]);
-    if fastest == 0.0 {
-        return Some(f64::INFINITY);
+impl Spectrum {
+    /// All modes with frequencies up to ω [rad/s], all damped alike [1/s].
+    pub fn uniform(omega: f64, damping: f64) -> Spectrum {
+        let low = if omega > 0.0 { 0.0 } else { damping };
+        Spectrum { omega, damping, least_damping: damping, offset: [low, damping] }
     }
-    let stable = |h: f64| worst(integrator, &edges, h) <= 1.0 + 1e-9;
-    // A stable step below an unstable one.
-    let mut low = 1.0 / fastest;
-    let mut high = 2.0 * low;
-    if stable(low) {
-        while stable(high) && high * fastest < 1e9 {
-            low = high;
-            high *= 2.0;
+
+    /// Estimates the spectra of a system in its present state.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state or its forces are not finite.
+    pub fn of<const D: usize>(system: &System<D>) -> Result<Spectrum, StepError> {
+        let mut probe = Probe::new(system);
+        let weights = probe.weights.clone();
+        let [_, stiffness] = extremes(&weights, false, 0.0, |d, out| probe.add_stiffness(1.0, d, out))?;
+        let omega = stiffness.larger(0.0).sqrt();
+        if !system.members.iter().any(|m| m.potential.views().damping) {
+            return Ok(Spectrum::uniform(omega, 0.0));
         }
-    } else {
-        while !stable(low) {
-            high = low;
-            low *= 0.5;
-            if low * fastest < 1e-9 {
-                return None;
+        probe.start_damping()?;
+        let [weakest, strongest] = extremes(&weights, true, 0.0, |d, out| probe.add_damping(d, out))?;
+        let damping = strongest.larger(0.0);
+        let least_damping = if weakest > 0.01 * damping { weakest } else { 0.0 };
+        if omega == 0.0 || damping == 0.0 {
+            return Ok(Spectrum { least_damping, ..Spectrum::uniform(omega, damping) });
+        }
+        let gamma = damping / (omega * omega);
+        let offset = extremes(&weights, true, damping, |d, out| {
+            probe.add_damping(d, out)?;
+            probe.add_stiffness(-gamma, d, out)
+        })?;
+        Ok(Spectrum { omega, damping, least_damping, offset })
+    }
+
+    /// The largest step of an integrator that is stable for all modes [s].
+    ///
+    /// Infinite where nothing oscillates and nothing is damped; `None` where every step lets a mode grow.
+    pub fn largest_stable_step<const D: usize>(&self, integrator: &dyn Integrator<D>) -> Option<f64> {
+        let fastest = self.omega.larger(self.damping);
+        if fastest == 0.0 {
+            return Some(f64::INFINITY);
+        }
+        let modes = self.corners();
+        let stable = |h: f64| worst(integrator, &modes, h) <= 1.0 + 1e-9;
+        // A stable step below an unstable one.
+        let mut low = 1.0 / fastest;
+        let mut high = 2.0 * low;
+        if stable(low) {
+            while stable(high) && high * fastest < 1e9 {
+                low = high;
+                high *= 2.0;
+            }
+        } else {
+            while !stable(low) {
+                high = low;
+                low *= 0.5;
+                if low * fastest < 1e-9 {
+                    return None;
+                }
             }
         }
-    }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if stable(middle) {
-            low = middle;
-        } else {
-            high = middle;
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if stable(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
+        // Growth too slow for the tolerance at the limit is growth nevertheless: half the step must show none.
+        (worst(integrator, &modes, 0.5 * low) <= 1.0 + ROUNDING).then_some(low)
     }
-    // Growth too slow to be seen at the limit shows in rounding-free digits of a smaller step.
-    (worst(integrator, &edges, 0.5 * low) <= 1.0 + ROUNDING).then_some(low)
+
+    /// How fast the amplitude of the worst mode grows in steps of h [1/s]: ln ρ / h; zero where h is stable.
+    pub fn growth_per_second<const D: usize>(&self, integrator: &dyn Integrator<D>, h: f64) -> f64 {
+        let radius = worst(integrator, &self.corners(), h);
+        if radius <= 1.0 + ROUNDING { 0.0 } else { Lane::ln(radius) / h }
+    }
+
+    /// Pairs (ω, c) on the boundary of the polygon: its least and its strongest damping at many frequencies.
+    fn corners(&self) -> Vec<(f64, f64)> {
+        const POINTS: usize = 24;
+        let most = self.omega * self.omega;
+        let mut squares: Vec<f64> = (0..=POINTS).map(|k| (k * k) as f64 / (POINTS * POINTS) as f64 * most).collect();
+        let gamma = if most > 0.0 { self.damping / most } else { 0.0 };
+        if gamma > 0.0 {
+            // Where the slanted edges meet the level ones.
+            for offset in self.offset {
+                squares.extend([(self.damping - offset) / gamma, (self.least_damping - offset) / gamma]);
+            }
+        }
+        let mut out = Vec::with_capacity(2 * squares.len());
+        for square in squares {
+            let least = (gamma * square + self.offset[0]).larger(self.least_damping);
+            let greatest = (gamma * square + self.offset[1]).smaller(self.damping);
+            if (0.0..=most).contains(&square) && least <= greatest {
+                out.extend([(square.sqrt(), least), (square.sqrt(), greatest)]);
+            }
+        }
+        out
+    }
 }
 
 /// How far rounding lifts the spectral radius of a stable step above 1.
 const ROUNDING: f64 = 4e-15;
-
-/// Points on the outer edges of the rectangle of frequencies and damping.
-fn edges(omega: f64, [least, most]: [f64; 2]) -> Vec<(f64, f64)> {
-    const POINTS: usize = 32;
-    let part = |k: usize| k as f64 / POINTS as f64;
-    let mut out: Vec<_> = (0..=POINTS).map(|k| (omega, least + (most - least) * part(k))).collect();
-    if most > 0.0 {
-        out.extend((0..POINTS).map(|k| (omega * part(k), most)));
-    }
-    out
-}
 
 /// The largest spectral radius at some points; what is not finite counts as infinite.
 fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], h: f64) -> f64 {
@@ -224,9 +279,12 @@ impl<'a, const D: usize> Probe<'a, D> {
         Ok(())
     }
 
-    /// K d from central differences of forces, without velocities.
-    fn stiffness(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
+    /// Adds factor · K d, from central differences of forces without velocities.
+    fn add_stiffness(&mut self, factor: f64, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
         let step = self.small / largest(d);
+        for column in &mut self.v.0 {
+            column.fill(0.0);
+        }
         for sign in [-1.0, 1.0] {
             for i in 0..D {
                 for p in 0..d.0[i].len() {
@@ -234,27 +292,29 @@ impl<'a, const D: usize> Probe<'a, D> {
                 }
             }
             self.evaluate(false)?;
-            let factor = -sign / (2.0 * step);
+            let weight = -sign * factor / (2.0 * step);
             for i in 0..D {
                 for p in 0..d.0[i].len() {
-                    out.0[i][p] += factor * self.force.0[i][p];
+                    out.0[i][p] += weight * self.force.0[i][p];
                 }
             }
         }
         Ok(())
     }
 
-    /// Remembers the forces without velocities.
+    /// Remembers the forces of damped models without velocities.
     fn start_damping(&mut self) -> Result<(), StepError> {
         self.x = self.system.state.x.clone();
+        self.v = Columns::zeros(self.system.places());
         self.evaluate(true)?;
         self.at_rest = self.force.clone();
         Ok(())
     }
 
-    /// C d from the difference that a velocity d makes (at most 1 m/s: damping is linear, rounding is not).
-    fn damping(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
+    /// Adds C d, from the difference that a velocity along d of at most 1 m/s makes: damping is linear in the velocity.
+    fn add_damping(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
         let step = 1.0 / largest(d);
+        self.x.clone_from(&self.system.state.x);
         for i in 0..D {
             for p in 0..d.0[i].len() {
                 self.v.0[i][p] = step * d.0[i][p];
@@ -263,7 +323,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         self.evaluate(true)?;
         for i in 0..D {
             for p in 0..d.0[i].len() {
-                out.0[i][p] = (self.at_rest.0[i][p] - self.force.0[i][p]) / step;
+                out.0[i][p] += (self.at_rest.0[i][p] - self.force.0[i][p]) / step;
             }
         }
         Ok(())
@@ -284,10 +344,11 @@ fn largest<const D: usize>(columns: &Columns<D>) -> f64 {
 /// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
 ///
 /// Lanczos' recurrence q ← (W A W − α) q − β q′ from a fixed start; both ends, or only the upper one, are followed until
-/// their residuals are small.
-fn spectrum<const D: usize>(
+/// their residuals are small against the larger of them and `reference`.
+fn extremes<const D: usize>(
     weights: &Columns<D>,
     both: bool,
+    reference: f64,
     mut product: impl FnMut(&Columns<D>, &mut Columns<D>) -> Result<(), StepError>,
 ) -> Result<[f64; 2], StepError> {
     let mut q = start(weights);
@@ -334,7 +395,7 @@ fn spectrum<const D: usize>(
         let last = beta <= 1e-12 * scale || iteration == MOST_PRODUCTS.min(freedom);
         for (end, value) in [low, high].into_iter().enumerate() {
             let residual = matrix.residual(value);
-            if found[end].is_none() && (last || residual <= TOLERANCE * scale) {
+            if found[end].is_none() && (last || residual <= TOLERANCE * scale.larger(reference)) {
                 // Where everything is exhausted the values are exact.
                 let rest = if beta <= 1e-12 * scale || iteration == freedom { 0.0 } else { residual };
                 found[end] = Some(if end == 0 { value - rest } else { value + rest });

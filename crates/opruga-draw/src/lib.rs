@@ -8,12 +8,28 @@
 mod canvas;
 mod colour;
 mod error;
+mod flat;
 mod image;
+mod layout;
+mod marks;
 mod picture;
 mod ticks;
+mod view;
 
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
 pub use image::Image;
-pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture};
-pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
+pub use layout::Style;
+pub use picture::{
+    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
+};
+pub use ticks::{
+    decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific,
+};
+pub use view::View;
+
+/// Draws a picture as it is seen in a view.
+pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, DrawError> {
+    picture.check()?;
+    flat::draw(picture, view, style)
+}

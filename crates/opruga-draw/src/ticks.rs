@@ -16,7 +16,9 @@ pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
 pub fn nice_step(rough: f64) -> f64 {
     let power = power_of_ten(rough);
     let mantissa = rough / power;
-    let round = [1.0, 2.0, 2.5, 5.0].into_iter().find(|&candidate| mantissa <= candidate * (1.0 + 1e-9));
+    let round = [1.0, 2.0, 2.5, 5.0]
+        .into_iter()
+        .find(|&candidate| mantissa <= candidate * (1.0 + 1e-9));
     round.unwrap_or(10.0) * power
 }
 
@@ -24,7 +26,9 @@ pub fn nice_step(rough: f64) -> f64 {
 pub fn nice_length(limit: f64) -> f64 {
     let power = power_of_ten(limit);
     let mantissa = limit / power;
-    let round = [5.0, 2.0].into_iter().find(|&candidate| mantissa >= candidate * (1.0 - 1e-9));
+    let round = [5.0, 2.0]
+        .into_iter()
+        .find(|&candidate| mantissa >= candidate * (1.0 - 1e-9));
     round.unwrap_or(1.0) * power
 }
 
@@ -72,7 +76,11 @@ pub fn format_value(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    format_tick(value, ten_to((value.abs().log10() + 1e-9).floor() as i32 - 2)).trim_end_matches_fraction()
+    format_tick(
+        value,
+        ten_to((value.abs().log10() + 1e-9).floor() as i32 - 2),
+    )
+    .trim_end_matches_fraction()
 }
 
 /// Takes the zeros from the end of a decimal fraction.
@@ -106,7 +114,8 @@ pub fn scientific(value: f64) -> String {
         .chars()
         .map(|sign| match sign {
             '-' => '⁻',
-            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+                [digit.to_digit(10).unwrap_or(0) as usize],
         })
         .collect();
     let mantissa = format!("{rounded}").replace('-', "−");
@@ -119,8 +128,12 @@ pub fn scientific(value: f64) -> String {
 
 /// Puts a thin space between groups of three digits of a whole part with five digits or more.
 fn grouped(text: &str) -> String {
-    let (sign, rest) = text.strip_prefix('-').map_or(("", text), |rest| ("-", rest));
-    let (whole, fraction) = rest.split_once('.').map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));
+    let (sign, rest) = text
+        .strip_prefix('-')
+        .map_or(("", text), |rest| ("-", rest));
+    let (whole, fraction) = rest
+        .split_once('.')
+        .map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));
     let mut out = String::from(sign);
     for (place, digit) in whole.chars().enumerate() {
         if whole.len() >= 5 && place > 0 && (whole.len() - place) % 3 == 0 {
@@ -141,7 +154,10 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(nice_ticks(0.0, 1.0, 5), vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(
+            nice_ticks(0.0, 1.0, 5),
+            vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]
+        );
         assert_eq!(nice_ticks(-3.2, 7.9, 5), vec![-2.5, 0.0, 2.5, 5.0, 7.5]);
         assert_eq!(nice_ticks(4.0, 4.0, 5), vec![4.0]);
     }

@@ -194,7 +194,7 @@ pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, String> {
     let (parsed, errors) = DeValue::parse_recoverable(trimmed);
     let mut value = if errors.is_empty() {
         node(parsed)
-    } else if !trimmed.is_empty() && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./".contains(c)) && trimmed.starts_with(char::is_alphabetic) {
+    } else if !trimmed.is_empty() && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./[]".contains(c)) && trimmed.starts_with(char::is_alphabetic) {
         Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
     } else {
         return Err(errors.first().map(|e| e.message().to_string()).unwrap_or_default());

@@ -15,7 +15,10 @@ pub struct Adjacency {
 impl Adjacency {
     /// Neighbours of a node; empty for a node that does not exist.
     pub fn of(&self, node: u32) -> &[u32] {
-        match (self.starts.get(node as usize), self.starts.get(node as usize + 1)) {
+        match (
+            self.starts.get(node as usize),
+            self.starts.get(node as usize + 1),
+        ) {
             (Some(&start), Some(&end)) => &self.neighbours[start as usize..end as usize],
             _ => &[],
         }
@@ -34,7 +37,10 @@ impl Adjacency {
             end += count;
             starts.push(end);
         }
-        Adjacency { starts, neighbours: vec![0; end as usize] }
+        Adjacency {
+            starts,
+            neighbours: vec![0; end as usize],
+        }
     }
 }
 
@@ -47,7 +53,12 @@ pub fn node_neighbours(edges: &[[u32; 2]], nodes: usize) -> Result<Adjacency, Me
     let mut pairs = Vec::with_capacity(2 * edges.len());
     for (index, &[a, b]) in edges.iter().enumerate() {
         if let Some(&node) = [a, b].iter().find(|&&node| node as usize >= nodes) {
-            return Err(MeshError::IndexOutOfRange { element: crate::Element::Wire, index: index as u32, node, nodes: nodes as u32 });
+            return Err(MeshError::IndexOutOfRange {
+                element: crate::Element::Edge,
+                index: index as u32,
+                node,
+                nodes: nodes as u32,
+            });
         }
         pairs.push([a, b]);
         pairs.push([b, a]);
@@ -95,7 +106,9 @@ impl Mesh<3> {
         for node in 0..self.nodes() {
             let (start, end) = (rings.starts[node] as usize, rings.starts[node + 1] as usize);
             let own = &steps[start..end];
-            let Some(&[_, first, _]) = own.first() else { continue };
+            let Some(&[_, first, _]) = own.first() else {
+                continue;
+            };
             let mut current = first;
             for (place, slot) in rings.neighbours[start..end].iter_mut().enumerate() {
                 if place > 0 && current == first {
@@ -104,10 +117,16 @@ impl Mesh<3> {
                 }
                 *slot = current;
                 // On a closed, consistent surface every neighbour is stepped from exactly once.
-                let Ok(found) = own.binary_search_by_key(&current, |step| step[1]) else { break };
+                let Ok(found) = own.binary_search_by_key(&current, |step| step[1]) else {
+                    break;
+                };
                 current = own[found][2];
             }
         }
-        if pinched.is_empty() { Ok(rings) } else { Err(MeshError::NonManifoldNodes { nodes: pinched }) }
+        if pinched.is_empty() {
+            Ok(rings)
+        } else {
+            Err(MeshError::NonManifoldNodes { nodes: pinched })
+        }
     }
 }

@@ -21,6 +21,8 @@ pub enum Element {
     Tetrahedron,
     /// A filled hexahedron of space.
     Hexahedron,
+    /// An edge of an edge list.
+    Edge,
     /// A named set of nodes; its index counts the groups in order of name.
     Group,
 }
@@ -36,6 +38,7 @@ impl fmt::Display for Element {
             Element::Quadrilateral => "quadrilateral",
             Element::Tetrahedron => "tetrahedron",
             Element::Hexahedron => "hexahedron",
+            Element::Edge => "edge",
             Element::Group => "group",
         })
     }
@@ -134,7 +137,7 @@ pub enum MeshError {
     Open {
         /// Number of open chains (plane) or boundary loops (space).
         loops: usize,
-        /// One node on each, the one of lowest index.
+        /// One node on each, ascending: its lowest node, for an open chain its lower end.
         nodes: Vec<u32>,
     },
     /// More than two triangles meet at an edge.
@@ -162,7 +165,9 @@ pub enum MeshError {
         facets: Vec<u32>,
     },
     /// A component with negative volume lies in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
-    #[error("the component through facet {facet} is inside out: its volume is {signed_volume} and no other component encloses it")]
+    #[error(
+        "the component through facet {facet} is inside out: its volume is {signed_volume} and no other component encloses it"
+    )]
     InsideOut {
         /// Lowest facet of the component.
         facet: u32,

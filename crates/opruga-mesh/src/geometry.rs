@@ -20,7 +20,11 @@ pub(crate) fn dot(a: Point, b: Point) -> f64 {
 
 #[inline]
 pub(crate) fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 #[inline]
@@ -48,8 +52,14 @@ pub(crate) fn tetrahedron_volume(o: Point, a: Point, b: Point, c: Point) -> f64 
 }
 
 /// Outward faces of a hexahedron, counter-clockwise seen from outside.
-pub(crate) const HEXAHEDRON_FACES: [[usize; 4]; 6] =
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+pub(crate) const HEXAHEDRON_FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
 
 /// Outward faces of a tetrahedron, counter-clockwise seen from outside.
 pub(crate) const TETRAHEDRON_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
@@ -80,7 +90,9 @@ pub(crate) fn quadrilateral_area(corners: &[Point; 4]) -> f64 {
 /// # Panics
 /// Where a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds these.
 pub fn signed_volume<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]]) -> f64 {
-    let Some(first) = facets.first() else { return 0.0 };
+    let Some(first) = facets.first() else {
+        return 0.0;
+    };
     let o = lift(&positions[first[0] as usize]);
     let at = |node: u32| lift(&positions[node as usize]);
     let mut volume = 0.0;

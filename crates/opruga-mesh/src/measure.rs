@@ -1,6 +1,9 @@
 //! Length, area or volume of a body, as a whole and per node.
 
-use crate::geometry::{Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume, triangle_area};
+use crate::geometry::{
+    Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume,
+    triangle_area,
+};
 use crate::{Element, Mesh, MeshError};
 
 /// How much there is of a body, in the dimension of its own matter.
@@ -67,13 +70,16 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// Calls `visit(nodes, measure)` for each element that carries matter; returns which measure it is.
-    fn visit_measures(&self, mut visit: impl FnMut(&[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
+    fn visit_measures(
+        &self,
+        mut visit: impl FnMut(&[u32], f64),
+    ) -> Result<fn(f64) -> Measure, MeshError> {
         self.validate()?;
 
         // Matter is in the elements of highest dimension; those of lower dimension are a boundary, or do not belong.
         let rank = |element: Element| match element {
             Element::Facet if self.cells.is_empty() => Some(D - 1),
-            Element::Facet | Element::SheetQuadrilateral | Element::Group => None,
+            Element::Facet | Element::SheetQuadrilateral | Element::Edge | Element::Group => None,
             Element::Wire => Some(1),
             Element::Sheet | Element::Triangle | Element::Quadrilateral => Some(2),
             Element::Tetrahedron | Element::Hexahedron => Some(3),
@@ -82,7 +88,12 @@ impl<const D: usize> Mesh<D> {
         for (element, _, nodes) in self.elements() {
             let Some(own) = rank(element) else { continue };
             match known {
-                Some((first, other)) if other != own => return Err(MeshError::MixedMeasures { first, second: element }),
+                Some((first, other)) if other != own => {
+                    return Err(MeshError::MixedMeasures {
+                        first,
+                        second: element,
+                    });
+                }
                 Some(_) => {}
                 None => known = Some((element, own)),
             }

@@ -241,7 +241,8 @@ impl<const D: usize> World<D> {
             }
             seen.push(key);
             let name = blueprint.name.clone();
-            let stability = estimate(&mut self.islands[number].system, &*self.integrator);
+            let stability = estimate(&mut self.islands[number].system, &*self.integrator)
+                .map_err(|e| WorldError::Step { body: name.clone(), message: e.to_string() })?;
             match stability.largest_stable_step {
                 Some(limit) if h > limit => {
                     let error = WorldError::UnstableStep {
@@ -259,9 +260,9 @@ impl<const D: usize> World<D> {
                     self.warnings.push(Warning { code: "step.unstable".into(), message: error.to_string(), count: 1 });
                 }
                 None => {
-                    let growth = stability.growth_per_second(h);
+                    let growth = stability.growth_per_second(&*self.integrator, h);
                     let message = format!(
-                        "`{}` has no stable step for body `{name}` (undamped ω = {:.4e} rad/s): the fastest motion grows by a factor of {growth:.4e} per second",
+                        "`{}` has no stable step for body `{name}` (ω = {:.4e} rad/s): its fastest motion grows as exp({growth:.4e} t)",
                         self.integrator.name(),
                         stability.omega,
                     );

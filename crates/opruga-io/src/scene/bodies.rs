@@ -280,14 +280,26 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let shape = draft.shape.as_ref()?;
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
-    let mesh: Mesh<D> = match shapes::mesh(shape, &transform) {
-        Ok(mesh) => mesh,
+    let mesh: Mesh<D> = match shapes::mesh::<D>(shape, &transform) {
+        Ok(made) => {
+            if made.flipped {
+                let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(&draft.name)));
+                reader.notice(place_of(draft.node, "shape"), notice.path(join(&draft.path, "shape")).hint("its edges run against them"));
+            }
+            made.mesh
+        }
         Err(refusal) => {
-            let error = SceneError::new("scene.shape", refusal.message).path(join(&draft.path, "shape"));
-            reader.report(place_of(draft.node, "shape"), SceneError { allowed: refusal.allowed, ..error });
+            let error = SceneError::new("scene.shape", refusal.to_string()).path(join(&draft.path, "shape"));
+            reader.report(place_of(draft.node, "shape"), error);
             return None;
         }
     };
+    // Large factors may leave the range of numbers.
+    if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
+        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}")).path(join(&draft.path, "shape"));
+        reader.report(place_of(draft.node, "shape"), error.allowed("finite coordinates"));
+        return None;
+    }
     let body = BodyBlueprint {
         name: draft.name.clone(),
         mesh: Arc::new(mesh),

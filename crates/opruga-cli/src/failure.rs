@@ -1,0 +1,123 @@
+//! Why a command failed, for people and for programs, and the exit code.
+
+use opruga::WorldError;
+use opruga::io::checkpoint::CheckpointError;
+use opruga::io::problem::SceneError;
+use opruga::io::safe_write::WriteError;
+use serde_json::{Value, json};
+
+/// Why a command failed.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The scene has errors.
+    Scene(Vec<SceneError>),
+    /// The world refuses or diverged.
+    World { error: WorldError, file: String },
+    /// A file cannot be written.
+    Write(WriteError),
+    /// A checkpoint cannot be read.
+    Checkpoint { error: CheckpointError, file: String },
+    /// A file cannot be drawn or encoded.
+    Draw(String),
+    /// The call makes no sense.
+    Call { message: String, hint: Option<String> },
+    /// Ctrl-C or a signal to end; the files are closed.
+    Interrupted,
+    /// Whoever reads our output has gone.
+    ClosedPipe,
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Failure::Write(error)
+    }
+}
+
+impl From<Vec<SceneError>> for Failure {
+    fn from(errors: Vec<SceneError>) -> Self {
+        Failure::Scene(errors)
+    }
+}
+
+impl Failure {
+    /// A call that makes no sense.
+    pub(crate) fn call(message: impl Into<String>) -> Failure {
+        Failure::Call { message: message.into(), hint: None }
+    }
+
+    /// 2 bad call or content · 3 diverged · 4 reading and writing · 130 interrupted.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),
+            Failure::World { error: WorldError::Diverged { .. } | WorldError::Step { .. }, .. } => 3,
+            Failure::World { .. } | Failure::Call { .. } => 2,
+            Failure::Write(_) | Failure::Draw(_) => 4,
+            Failure::Checkpoint { .. } => 2,
+            Failure::Interrupted => 130,
+            Failure::ClosedPipe => 0,
+        }
+    }
+
+    fn to_json(&self) -> Value {
+        let plain = |code: &str, message: String, file: &str, hint: Option<&str>| {
+            json!({"code": code, "message": message, "file": file, "line": null, "column": null,
+                   "path": "", "value": null, "allowed": null, "hint": hint})
+        };
+        match self {
+            Failure::Scene(errors) => {
+                let mut first = errors.first().map_or(Value::Null, SceneError::to_json);
+                if let Some(object) = first.as_object_mut() {
+                    let rest: Vec<Value> = errors.iter().skip(1).map(SceneError::to_json).collect();
+                    object.insert("more".into(), Value::Array(rest));
+                }
+                first
+            }
+            Failure::World { error, file } => plain(error.code(), error.to_string(), file, None),
+            Failure::Write(error) => error.to_json(),
+            Failure::Checkpoint { error, file } => error.to_json(file),
+            Failure::Draw(message) => plain("draw.failed", message.clone(), "", None),
+            Failure::Call { message, hint } => plain("call", message.clone(), "", hint.as_deref()),
+            Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), "", None),
+            Failure::ClosedPipe => Value::Null,
+        }
+    }
+
+    /// Prints the failure on stderr.
+    pub(crate) fn print(&self, json: bool) {
+        use std::io::Write as _;
+        let mut err = std::io::stderr().lock();
+        if json {
+            let _ = writeln!(err, "{}", self.to_json());
+            return;
+        }
+        let _ = match self {
+            Failure::Scene(errors) => {
+                for error in errors {
+                    let _ = writeln!(err, "{error}");
+                }
+                writeln!(err, "{} error{} in the scene", errors.len(), if errors.len() == 1 { "" } else { "s" })
+            }
+            Failure::World { error, file } => writeln!(err, "{file}: error[{}]: {error}", error.code()),
+            Failure::Write(error) => writeln!(err, "{error}"),
+            Failure::Checkpoint { error, file } => writeln!(err, "{file}: error[{}]: {error}", error.code()),
+            Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
+            Failure::Call { message, hint } => {
+                let _ = writeln!(err, "error: {message}");
+                hint.as_ref().map_or(Ok(()), |h| writeln!(err, "hint: {h}"))
+            }
+            Failure::Interrupted => writeln!(err, "interrupted; the files are closed"),
+            Failure::ClosedPipe => Ok(()),
+        };
+    }
+}
+
+/// Prints data on stdout; a reader that has gone is no error.
+pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
+    use std::io::Write as _;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Ok(()),
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
+        Err(e) => Err(Failure::Call { message: format!("stdout cannot be written: {e}"), hint: None }),
+    }
+}

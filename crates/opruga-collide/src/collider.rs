@@ -1,0 +1,437 @@
+//! A collider: a shape, how it moves, and how it answers to touch.
+
+use crate::facets::{Facets, Flaw};
+use crate::motion::Motion;
+use crate::shape::{Ball, Capsule, Cuboid, HalfSpace};
+use crate::vector::{add, dot, identity, length, magnitude, rotation, scaled, subtract, turning};
+use opruga_core::error::BuildError;
+use opruga_core::spec::{Value, Values};
+use opruga_math::Lane;
+
+/// How a collider answers to touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Law {
+    /// Ratio of normal speeds after and before an impact.
+    pub(crate) restitution: f64,
+    /// Coulomb's coefficient.
+    pub(crate) friction: f64,
+    /// Normal speed up to which nothing bounces [m/s].
+    pub(crate) rest_speed: f64,
+    /// Distance that nodes keep [m].
+    pub(crate) thickness: f64,
+    /// The size of the coordinates of the shape [m], against which rounding is measured.
+    pub(crate) extent: f64,
+}
+
+/// One convex piece, or one set of facets, of a collider at rest.
+#[derive(Clone, Debug)]
+pub(crate) enum Part<const D: usize> {
+    HalfSpace(HalfSpace<D>),
+    Ball(Ball<D>),
+    Capsule(Capsule<D>),
+    Cuboid(Cuboid<D>),
+    Facets(Facets<D>),
+}
+
+/// The shape as it was described, for drawing.
+#[derive(Clone, Debug)]
+pub(crate) enum Form<const D: usize> {
+    HalfSpace { point: [f64; D], normal: [f64; D] },
+    Box { shape: Cuboid<D>, inside: bool },
+    Ball { center: [f64; D], radius: f64, inside: bool },
+    Capsule { a: [f64; D], b: [f64; D], radius: f64 },
+    Polygon { points: Vec<[f64; D]> },
+    Polyline { points: Vec<[f64; D]>, closed: bool },
+    Triangles { points: Vec<[f64; D]>, triangles: Vec<[u32; 3]>, solid: bool },
+}
+
+/// A shape, how it moves, and how it answers to touch.
+#[derive(Clone, Debug)]
+pub(crate) struct Collider<const D: usize> {
+    pub(crate) law: Law,
+    pub(crate) motion: Motion<D>,
+    pub(crate) form: Form<D>,
+    pub(crate) parts: Vec<Part<D>>,
+    /// The box around a bounded shape at rest.
+    bounds: Option<[[f64; D]; 2]>,
+}
+
+/// How far a collider may be from its placement within an interval of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach<const D: usize> {
+    /// Least and greatest displacement along each axis [m].
+    pub(crate) shifts: [[f64; D]; 2],
+    /// The largest angle turned within the interval times the largest radius, squared over the radius: how far a
+    /// straight line in the turning frame may leave the straight line in space [m].
+    pub(crate) bend: f64,
+}
+
+/// Refuses a collider.
+struct Refusal<'a> {
+    number: usize,
+    values: &'a Values,
+}
+
+impl Refusal<'_> {
+    fn error(&self, code: &'static str, message: String) -> BuildError {
+        BuildError::new(format!("collider {} ({})", self.number, self.values.kind()), code, message)
+    }
+    /// The value of a field, as it stands in the scene.
+    fn shown(&self, field: &str) -> String {
+        self.values.get(field).map_or("absent".to_string(), Value::to_string)
+    }
+}
+
+impl<const D: usize> Collider<D> {
+    /// Builds a collider from its parameters; `number` counts colliders from 0 and names it in errors.
+    pub(crate) fn build(number: usize, values: &Values) -> Result<Collider<D>, BuildError> {
+        let refuse = Refusal { number, values };
+        let (form, parts, center) = match values.kind() {
+            "half_space" => half_space(values, &refuse)?,
+            "box" => cuboid(values, &refuse)?,
+            "ball" => ball(values, &refuse)?,
+            "capsule" => capsule(values, &refuse)?,
+            "convex" => convex(values, &refuse)?,
+            "polyline" if D == 2 => polyline(values, &refuse)?,
+            "triangle_mesh" if D == 3 => triangle_mesh(values, &refuse)?,
+            _ => return Err(refuse.error("collider.kind", format!("there is no such collider in {D}D"))),
+        };
+        let motion = motion(values, &center);
+        let mut law = Law {
+            restitution: values.number("restitution").unwrap_or(0.0),
+            friction: values.number("friction").unwrap_or(0.0),
+            rest_speed: values.number("rest_speed").unwrap_or(0.05),
+            thickness: values.number("thickness").unwrap_or(0.0),
+            extent: magnitude(&center),
+        };
+        let mut bounds: Option<[[f64; D]; 2]> = None;
+        for part in &parts {
+            bounds = part.bounds();
+            if let Some([low, high]) = &bounds {
+                law.extent = magnitude(low).larger(magnitude(high));
+            }
+            match part {
+                Part::Facets(facets) => law.thickness = law.thickness.larger(facets.skin()),
+                Part::Ball(ball) => {
+                    law.extent += ball.radius;
+                    if ball.sign < 0.0 && law.thickness >= ball.radius {
+                        return Err(refuse.error(
+                            "collider.no_room",
+                            format!("`thickness` is {}; allowed: less than the radius {}", law.thickness, ball.radius),
+                        ));
+                    }
+                }
+                _ => {}
+            }
+        }
+        if let Form::Box { shape, inside: true } = &form {
+            law.extent += magnitude(&shape.half);
+            for half in &shape.half {
+                if law.thickness >= *half {
+                    return Err(refuse.error(
+                        "collider.no_room",
+                        format!("`thickness` is {}; allowed: less than half of every side, {half}", law.thickness),
+                    ));
+                }
+            }
+        }
+        Ok(Collider { law, motion, form, parts, bounds })
+    }
+    /// Whether it stands still.
+    pub(crate) fn is_static(&self) -> bool {
+        self.motion.path.is_empty() && !self.motion.turns
+    }
+    /// Where it may be within an interval of time, seen by nodes that move in steps of `h`.
+    pub(crate) fn reach(&self, from: f64, to: f64, h: f64) -> Reach<D> {
+        if self.is_static() {
+            return Reach { shifts: [[0.0; D]; 2], bend: 0.0 };
+        }
+        let mut rate = 0.0;
+        for row in &self.motion.omega {
+            rate += 0.5 * dot(row, row);
+        }
+        Reach { shifts: self.motion.shifts(from, to), bend: rate * h * h * self.radius() }
+    }
+    /// The largest distance of a bounded shape from the pivot.
+    fn radius(&self) -> f64 {
+        let Some([low, high]) = &self.bounds else { return 0.0 };
+        let mut arm = [0.0; D];
+        for d in 0..D {
+            arm[d] = (low[d] - self.motion.pivot[d]).abs().larger((high[d] - self.motion.pivot[d]).abs());
+        }
+        length(&arm)
+    }
+    /// Whether a part may touch something within a box of space; never no where it does.
+    pub(crate) fn may_touch(&self, part: &Part<D>, reach: &Reach<D>, low: &[f64; D], high: &[f64; D]) -> bool {
+        let slack = 1e-9 * (self.law.extent + magnitude(low) + magnitude(high));
+        let margin = self.law.thickness + reach.bend + slack;
+        let [least, most] = &reach.shifts;
+        match part {
+            // A plane that turns gets anywhere.
+            Part::HalfSpace(_) if self.motion.turns => true,
+            Part::HalfSpace(plane) => {
+                // The plane moves along its normal at most so far.
+                let mut ahead = 0.0;
+                for d in 0..D {
+                    ahead += (least[d] * plane.normal[d]).larger(most[d] * plane.normal[d]);
+                }
+                !(plane.least_gap(low, high) - ahead >= margin)
+            }
+            // A hollow that turns about a point beside its centre gets anywhere.
+            Part::Ball(ball) if ball.sign < 0.0 => {
+                let mut far = [0.0; D];
+                for d in 0..D {
+                    let below = (ball.center[d] + most[d] - low[d]).abs().larger((ball.center[d] + least[d] - low[d]).abs());
+                    let above = (high[d] - ball.center[d] - least[d]).abs().larger((high[d] - ball.center[d] - most[d]).abs());
+                    far[d] = below.larger(above);
+                }
+                self.motion.turns || !(ball.radius - length(&far) >= margin)
+            }
+            _ => {
+                let Some([from, to]) = &self.bounds else { return true };
+                let (mut from, mut to) = (*from, *to);
+                if self.motion.turns {
+                    let radius = self.radius();
+                    for d in 0..D {
+                        from[d] = self.motion.pivot[d] - radius;
+                        to[d] = self.motion.pivot[d] + radius;
+                    }
+                }
+                for d in 0..D {
+                    if from[d] + least[d] - margin > high[d] || to[d] + most[d] + margin < low[d] {
+                        return false;
+                    }
+                }
+                true
+            }
+        }
+    }
+}
+
+impl<const D: usize> Part<D> {
+    /// The box around it; none if it has no end.
+    fn bounds(&self) -> Option<[[f64; D]; 2]> {
+        let (center, half) = match self {
+            Part::HalfSpace(_) => return None,
+            Part::Ball(ball) if ball.sign < 0.0 => return None,
+            Part::Ball(ball) => (ball.center, [ball.radius; D]),
+            Part::Capsule(capsule) => {
+                let mut half = [capsule.radius; D];
+                for d in 0..D {
+                    half[d] += 0.5 * capsule.along[d].abs();
+                }
+                (add(&capsule.start, &scaled(&capsule.along, 0.5)), half)
+            }
+            Part::Cuboid(cuboid) => {
+                let mut half = [0.0; D];
+                for d in 0..D {
+                    for i in 0..D {
+                        half[d] += (cuboid.half[i] * cuboid.axes[i][d]).abs();
+                    }
+                }
+                (cuboid.center, half)
+            }
+            Part::Facets(facets) => return Some([facets.low, facets.high]),
+        };
+        Some([subtract(&center, &half), add(&center, &half)])
+    }
+}
+
+/// Form, parts and centre of a shape.
+type Built<const D: usize> = (Form<D>, Vec<Part<D>>, [f64; D]);
+
+fn half_space<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (point, normal) = (values.vector::<D>("point"), values.vector::<D>("normal"));
+    let size = length(&normal);
+    if !(size > 1e-150 && size.is_finite()) {
+        let message = format!("`normal` is {}; allowed: a vector of a length above 0", refuse.shown("normal"));
+        return Err(refuse.error("collider.no_direction", message));
+    }
+    let mut unit = normal;
+    for n in &mut unit {
+        *n /= size;
+    }
+    Ok((Form::HalfSpace { point, normal: unit }, vec![Part::HalfSpace(HalfSpace::through(&point, unit))], point))
+}
+
+fn cuboid<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let given = |name| values.get(name).is_some();
+    let corners = [given("min"), given("max")];
+    let middle = [given("center"), given("size")];
+    let (center, half) = match (corners, middle) {
+        ([true, true], [false, false]) => {
+            let (min, max) = (values.vector::<D>("min"), values.vector::<D>("max"));
+            (scaled(&add(&min, &max), 0.5), scaled(&subtract(&max, &min), 0.5))
+        }
+        ([false, false], [true, true]) => (values.vector::<D>("center"), scaled(&values.vector::<D>("size"), 0.5)),
+        _ => {
+            let message = "needs either `min` and `max`, or `center` and `size`".to_string();
+            return Err(refuse.error("collider.box_fields", message));
+        }
+    };
+    if half.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
+        let message = if corners[0] {
+            format!("`max` is {} and `min` is {}; allowed: every coordinate of `max` above that of `min`", refuse.shown("max"), refuse.shown("min"))
+        } else {
+            format!("`size` is {}; allowed: lengths above 0", refuse.shown("size"))
+        };
+        return Err(refuse.error("collider.empty_box", message));
+    }
+    // The rows of the transpose are the turned unit vectors.
+    let turn = rotation::<D>(&turning(&spin(values, "rotation")), -1.0);
+    let shape = Cuboid { center, axes: if given("rotation") { turn } else { identity() }, half };
+    let inside = values.flag("inside");
+    let parts = if inside {
+        // A container is the half-spaces behind its walls: so a node in a corner meets each of them.
+        let mut walls = Vec::with_capacity(2 * D);
+        for d in 0..D {
+            for side in [-1.0, 1.0] {
+                let wall = add(&center, &scaled(&shape.axes[d], side * half[d]));
+                walls.push(Part::HalfSpace(HalfSpace::through(&wall, scaled(&shape.axes[d], -side))));
+            }
+        }
+        walls
+    } else {
+        vec![Part::Cuboid(shape)]
+    };
+    Ok((Form::Box { shape, inside }, parts, center))
+}
+
+fn ball<const D: usize>(values: &Values, _refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (center, inside) = (values.vector::<D>("center"), values.flag("inside"));
+    let radius = values.number("radius").unwrap_or(0.0);
+    let ball = Ball { center, radius, sign: if inside { -1.0 } else { 1.0 } };
+    Ok((Form::Ball { center, radius, inside }, vec![Part::Ball(ball)], center))
+}
+
+fn capsule<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (a, b) = (values.vector::<D>("a"), values.vector::<D>("b"));
+    let radius = values.number("radius").unwrap_or(0.0);
+    let along = subtract(&b, &a);
+    let square = dot(&along, &along);
+    if !(square > 1e-280 && square.is_finite()) {
+        let message = format!("`a` is {} and `b` is {}; allowed: two different points (one point is a `ball`)", refuse.shown("a"), refuse.shown("b"));
+        return Err(refuse.error("collider.no_direction", message));
+    }
+    // Of the coordinate axes the one that is most at a right angle, made fully so.
+    let mut least = 0;
+    for d in 1..D {
+        if along[d].abs() < along[least].abs() {
+            least = d;
+        }
+    }
+    let mut aside = scaled(&along, -along[least] / square);
+    aside[least] += 1.0;
+    let aside = scaled(&aside, 1.0 / length(&aside));
+    let capsule = Capsule { start: a, along, inverse_square: 1.0 / square, radius, aside };
+    Ok((Form::Capsule { a, b, radius }, vec![Part::Capsule(capsule)], add(&a, &scaled(&along, 0.5))))
+}
+
+/// The points of a field, and the middle of the box around them.
+fn points<const D: usize>(values: &Values, refuse: &Refusal) -> Result<(Vec<[f64; D]>, [f64; D]), BuildError> {
+    let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    let mut points = Vec::new();
+    for row in values.rows("points") {
+        let mut point = [0.0; D];
+        for d in 0..D.min(row.len()) {
+            point[d] = row[d];
+            low[d] = point[d].smaller(low[d]);
+            high[d] = point[d].larger(high[d]);
+        }
+        points.push(point);
+    }
+    // Squares of lengths must stay finite.
+    if points.is_empty() || !(magnitude(&subtract(&high, &low)) < 1e100) {
+        let message = format!("`points` has {} points from {low:?} to {high:?}; allowed: at least one, within 1e100 m of each other", points.len());
+        return Err(refuse.error("collider.points", message));
+    }
+    Ok((points, scaled(&add(&low, &high), 0.5)))
+}
+
+fn convex<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values, refuse)?;
+    let (facets, faces) = Facets::convex(&points).map_err(|_| {
+        let what = if D == 2 { "area" } else { "volume" };
+        refuse.error("collider.flat_hull", format!("the hull of the {} `points` has no {what}; allowed: points that are not all on one {}", points.len(), if D == 2 { "line" } else { "plane" }))
+    })?;
+    let form = if D == 2 {
+        // Faces run clockwise one after the other; their second corners are the polygon counterclockwise.
+        Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
+    } else {
+        Form::Triangles { points, triangles: faces.iter().map(|f| [f[0] as u32, f[1] as u32, f[D - 1] as u32]).collect(), solid: true }
+    };
+    Ok((form, vec![Part::Facets(facets)], center))
+}
+
+fn polyline<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values, refuse)?;
+    let closed = values.flag("closed");
+    let least = if closed { 3 } else { 2 };
+    if points.len() < least {
+        let message = format!("`points` has {} points; allowed: at least {least}", points.len());
+        return Err(refuse.error("collider.points", message));
+    }
+    let count = if closed { points.len() } else { points.len() - 1 };
+    let mut segments = Vec::with_capacity(count);
+    for k in 0..count {
+        let mut corners = [points[k]; D];
+        corners[1] = points[(k + 1) % points.len()];
+        segments.push(corners);
+    }
+    let facets = Facets::surface(&segments).map_err(|flaw| match flaw {
+        Flaw::Degenerate(k) => refuse.error(
+            "collider.degenerate_facet",
+            format!("points {k} and {} are both {:?}; allowed: segments of a length above 0", (k + 1) % points.len(), points[k]),
+        ),
+        Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
+    })?;
+    Ok((Form::Polyline { points, closed }, vec![Part::Facets(facets)], center))
+}
+
+fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
+    let (points, center) = points::<D>(values, refuse)?;
+    let numbers = values.integers("triangles");
+    if numbers.is_empty() || !numbers.len().is_multiple_of(3) {
+        let message = format!("`triangles` has {} numbers; allowed: three per triangle, at least one triangle", numbers.len());
+        return Err(refuse.error("collider.triangles", message));
+    }
+    let mut corners = Vec::with_capacity(numbers.len() / 3);
+    let mut triangles = Vec::with_capacity(numbers.len() / 3);
+    for triangle in numbers.chunks_exact(3) {
+        let mut corner = [points[0]; D];
+        for (k, &number) in triangle.iter().enumerate() {
+            let Some(point) = points.get(number as usize) else {
+                let message = format!("`triangles` names point {number}; allowed: 0 to {}", points.len() - 1);
+                return Err(refuse.error("collider.triangles", message));
+            };
+            corner[k % D] = *point;
+        }
+        corners.push(corner);
+        triangles.push([triangle[0], triangle[1], triangle[2]]);
+    }
+    let facets = Facets::surface(&corners).map_err(|flaw| match flaw {
+        Flaw::Degenerate(k) => {
+            refuse.error("collider.degenerate_facet", format!("triangle {k} with points {:?} has no area; allowed: triangles with an area", triangles[k]))
+        }
+        Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
+    })?;
+    Ok((Form::Triangles { points, triangles, solid: false }, vec![Part::Facets(facets)], center))
+}
+
+/// The number (2D) or vector (3D) of a turn; zeros where there is none.
+fn spin(values: &Values, field: &str) -> [f64; 3] {
+    match values.number(field) {
+        Some(number) => [number, 0.0, 0.0],
+        None => values.vector::<3>(field),
+    }
+}
+
+fn motion<const D: usize>(values: &Values, center: &[f64; D]) -> Motion<D> {
+    let spin = spin(values, "spin");
+    Motion {
+        path: values.rows("motion").to_vec(),
+        omega: turning(&spin),
+        turns: spin.iter().any(|s| *s != 0.0),
+        pivot: if values.get("pivot").is_some() { values.vector("pivot") } else { *center },
+    }
+}

@@ -1,0 +1,384 @@
+//! The pass over a tile of nodes.
+
+use crate::collider::{Collider, Law, Part, Reach};
+use crate::facets::Facets;
+use crate::motion::{Carry, Pose};
+use crate::picture::{Picture, picture};
+use crate::response::{Meeting, Surface, respond};
+use crate::shape::{Shape, entry};
+use crate::vector::{dot, subtract};
+use opruga_core::contacts::{Contacts, Moved};
+use opruga_core::error::BuildError;
+use opruga_core::spec::Values;
+use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
+use std::sync::Arc;
+
+/// The rigid obstacles of a world. Cloning shares them.
+#[derive(Clone, Debug)]
+pub struct Colliders<const D: usize>(Arc<[Collider<D>]>);
+
+impl<const D: usize> Colliders<D> {
+    /// Builds colliders from their parameters, in order; the kind of each is that of its [`Values`].
+    ///
+    /// # Errors
+    /// [`BuildError`] with the number of the collider (from 0), the offending value and what is allowed: a normal or
+    /// capsule without direction, an empty box, a flat hull, a facet without extent, a number of a point that does not
+    /// exist, a thickness that leaves no room.
+    pub fn build(values: &[Values]) -> Result<Colliders<D>, BuildError> {
+        let mut colliders = Vec::with_capacity(values.len());
+        for (number, values) in values.iter().enumerate() {
+            colliders.push(Collider::build(number, values)?);
+        }
+        Ok(Colliders(colliders.into()))
+    }
+    /// The number of colliders.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+    /// Whether any of them moves.
+    pub fn any_moves(&self) -> bool {
+        self.0.iter().any(|collider| !collider.is_static())
+    }
+    /// Whether any of them may touch something that stays between the corners `min` and `max` [m] of a box of space
+    /// from `time0` to `time1` [s]. Never no where one does; it may be yes where none does.
+    pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
+        self.0.iter().any(|collider| {
+            let reach = collider.reach(time0, time1, time1 - time0);
+            collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
+        })
+    }
+    /// Where the colliders are at a time [s], in order.
+    pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
+        self.0.iter().map(|collider| picture(collider, time)).collect()
+    }
+    /// One plane or ball has no corners: then one look at every node is enough, and no bounds are needed first.
+    fn is_simple(&self) -> bool {
+        matches!(&*self.0, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
+    }
+}
+
+impl<const D: usize> Contacts<D> for Colliders<D> {
+    fn resolve(&self, simd: Simd, moved: &mut Moved<D>) {
+        let used = moved.places_used.min(moved.range.end).saturating_sub(moved.range.start);
+        if used == 0 {
+            return;
+        }
+        let simple = self.is_simple();
+        // Twice, since one collider may push a node into another.
+        for _ in 0..2 {
+            let space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
+            let mut touched = false;
+            for collider in self.0.iter() {
+                let reach = collider.reach(moved.time - moved.h, moved.time, moved.h);
+                let mut frame = None;
+                for part in &collider.parts {
+                    if let Some([low, high]) = &space
+                        && !collider.may_touch(part, &reach, low, high)
+                    {
+                        continue;
+                    }
+                    let frame = frame.get_or_insert_with(|| Frame::new(collider, moved.time, moved.h));
+                    touched |= hold_back(simd, part, collider, frame, &reach, moved, used);
+                }
+            }
+            if simple || !touched {
+                break;
+            }
+        }
+    }
+}
+
+/// Where a collider is at the end of a step and how it got there.
+struct Frame<const D: usize> {
+    pose: Pose<D>,
+    carry: Carry<D>,
+}
+
+impl<const D: usize> Frame<D> {
+    fn new(collider: &Collider<D>, time: f64, h: f64) -> Frame<D> {
+        let pose = collider.motion.pose(time);
+        let carry = if collider.is_static() { pose } else { collider.motion.pose(time - h) }.carry_to(&pose);
+        Frame { pose, carry }
+    }
+}
+
+/// Lets one part of a collider hold back the nodes of a tile; says whether it touched any.
+fn hold_back<const D: usize>(
+    simd: Simd,
+    part: &Part<D>,
+    collider: &Collider<D>,
+    frame: &Frame<D>,
+    reach: &Reach<D>,
+    moved: &mut Moved<D>,
+    used: usize,
+) -> bool {
+    let (law, Frame { pose, carry }) = (&collider.law, frame);
+    match part {
+        Part::HalfSpace(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
+        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
+        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
+        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
+        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, reach.bend, moved, used),
+    }
+}
+
+/// The box around all nodes of a tile, before and after their free motion.
+struct Bounds<'a, 'm, const D: usize> {
+    moved: &'a Moved<'m, D>,
+    used: usize,
+}
+
+impl<const D: usize> Work for Bounds<'_, '_, D> {
+    type Output = [[f64; D]; 2];
+    #[inline(always)]
+    fn run<P: Pack>(self) -> [[f64; D]; 2] {
+        let length = self.moved.range.len();
+        let mut x = [&[] as &[f64]; D];
+        for d in 0..D {
+            x[d] = &self.moved.x.0[d];
+        }
+        let x = Strip::<D>::new(&x, self.moved.range.start, length);
+        let before = Strip::<D>::new(&self.moved.before, 0, length);
+        let (mut low, mut high) = ([P::splat(f64::INFINITY); D], [P::splat(f64::NEG_INFINITY); D]);
+        for k in (0..self.used).step_by(WIDTH) {
+            for d in 0..D {
+                let (mut a, mut b) = (x.load::<P>(d, k), before.load::<P>(d, k));
+                if k + WIDTH > self.used {
+                    // Padding takes the place of the first node of the pack.
+                    let nodes = P::first(self.used - k);
+                    a = P::select(nodes, a, P::splat(a.to_array()[0]));
+                    b = P::select(nodes, b, P::splat(b.to_array()[0]));
+                }
+                low[d] = a.smaller(b.smaller(low[d]));
+                high[d] = a.larger(b.larger(high[d]));
+            }
+        }
+        let mut out = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
+        for d in 0..D {
+            let (low, high) = (low[d].to_array(), high[d].to_array());
+            for l in 0..WIDTH {
+                out[0][d] = low[l].smaller(out[0][d]);
+                out[1][d] = high[l].larger(out[1][d]);
+            }
+        }
+        out
+    }
+}
+
+/// A shape with the distance that nodes keep from it.
+struct Around<'a, T> {
+    shape: &'a T,
+    thickness: f64,
+}
+
+impl<S: Lane, T: Shape<D>, const D: usize> Surface<S, D> for Around<'_, T> {
+    #[inline(always)]
+    fn find(&self, x: &[S; D], _before: &[S; D], _reach: S) -> (S, [S; D]) {
+        let (gap, normal) = self.shape.gap_and_normal(x);
+        (gap - S::splat(self.thickness), normal)
+    }
+}
+
+/// One shape against the nodes of a tile, eight at a time.
+struct Pass<'a, 'm, T, const D: usize> {
+    shape: T,
+    law: &'a Law,
+    pose: &'a Pose<D>,
+    carry: &'a Carry<D>,
+    moved: &'a mut Moved<'m, D>,
+    used: usize,
+}
+
+/// The columns of a tile.
+struct Tile<'a, const D: usize> {
+    x: StripMut<'a, D>,
+    v: StripMut<'a, D>,
+    before: Strip<'a, D>,
+    mass: RepeatStrip<'a>,
+}
+
+impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<P: Pack>(self) -> bool {
+        let (shape, law, used) = (&self.shape, self.law, self.used);
+        let Moved { range, before, x, v, mass, h, loss_contact, loss_friction, work_colliders, .. } = self.moved;
+        let (start, length) = (range.start, range.len());
+        let mut tile = Tile {
+            x: x.strip_mut(start, length),
+            v: v.strip_mut(start, length),
+            before: Strip::new(before, 0, length),
+            mass: mass.strip(start, length),
+        };
+        let thickness = P::splat(law.thickness);
+        // A node that moves so far in a step could come out on the far side of the shape.
+        let far = 0.5 * shape.half_width();
+        let has_far_side = far < f64::INFINITY;
+        let far = P::splat(far * far);
+
+        // One look at all nodes; mostly that is all.
+        let mut least = P::splat(f64::INFINITY);
+        let mut most = P::zero();
+        for k in (0..used).step_by(WIDTH) {
+            let x = lanes!(P, d => tile.x.load::<P>(d, k));
+            let gap = shape.gap(&x);
+            least = if k + WIDTH <= used { gap } else { P::select(P::first(used - k), gap, least) }.smaller(least);
+            if has_far_side {
+                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
+                most = P::select(P::first(used - k), dot(&way, &way), most).larger(most);
+            }
+        }
+        if !P::any(least.less(thickness)) && !(has_far_side && P::any(far.less(most))) {
+            return false;
+        }
+
+        let (mut losses, mut frictions, mut works) = (P::load(&**loss_contact), P::load(&**loss_friction), P::load(&**work_colliders));
+        let mut touched = false;
+        for k in (0..used).step_by(WIDTH) {
+            let x = lanes!(P, d => tile.x.load::<P>(d, k));
+            let nodes = P::first(used - k);
+            let hit = P::both((shape.gap(&x) - thickness).less(P::zero()), nodes);
+            let before = self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k)));
+            let way = subtract(&x, &before);
+            let fast = P::both(far.less(dot(&way, &way)), nodes);
+            if !P::any(hit) && !(has_far_side && P::any(fast)) {
+                continue;
+            }
+            let (gap, normal) = shape.gap_and_normal(&x);
+            let mut found = Found { hit: P::select(hit, P::one(), P::zero()), gap: gap - thickness, normal };
+            if has_far_side && P::any(fast) {
+                let mut entered = found.to_array();
+                look_for_entries(shape, law.thickness, &arrays(&x), &arrays(&before), &P::select(fast, P::one(), P::zero()).to_array(), &mut entered);
+                found = Found::from_array(&entered);
+            }
+            let hit = P::zero().less(found.hit);
+            if !P::any(hit) {
+                continue;
+            }
+            touched = true;
+            let v = lanes!(P, d => tile.v.load::<P>(d, k));
+            let mass = tile.mass.load::<P>(k);
+            let obstacle = self.pose.velocity_at(&x);
+            let meeting = Meeting { x, v, before, mass, gap: found.gap, normal: found.normal, obstacle, h: P::splat(*h) };
+            let parting = respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting);
+            for d in 0..D {
+                tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
+                tile.v.store(d, k, P::select(hit, parting.v[d], v[d]));
+            }
+            losses += P::select(hit, parting.loss_contact, P::zero());
+            frictions += P::select(hit, parting.loss_friction, P::zero());
+            works += P::select(hit, parting.work, P::zero());
+        }
+        losses.store(&mut **loss_contact);
+        frictions.store(&mut **loss_friction);
+        works.store(&mut **work_colliders);
+        touched
+    }
+}
+
+/// Which nodes of a pack touch (above 0: yes), their gaps and normals.
+struct Found<S, const D: usize> {
+    hit: S,
+    gap: S,
+    normal: [S; D],
+}
+
+impl<P: Pack, const D: usize> Found<P, D> {
+    #[inline(always)]
+    fn to_array(&self) -> Found<[f64; WIDTH], D> {
+        Found { hit: self.hit.to_array(), gap: self.gap.to_array(), normal: arrays(&self.normal) }
+    }
+    #[inline(always)]
+    fn from_array(from: &Found<[f64; WIDTH], D>) -> Self {
+        Found { hit: P::from_array(from.hit), gap: P::from_array(from.gap), normal: lanes!(P, d => P::from_array(from.normal[d])) }
+    }
+}
+
+/// The numbers of packs.
+#[inline(always)]
+fn arrays<P: Pack, const D: usize>(packs: &[P; D]) -> [[f64; WIDTH]; D] {
+    let mut out = [[0.0; WIDTH]; D];
+    for d in 0..D {
+        out[d] = packs[d].to_array();
+    }
+    out
+}
+
+/// For nodes that went far: whether they came into the shape on their way, and where.
+#[inline(never)]
+fn look_for_entries<T: Shape<D>, const D: usize>(
+    shape: &T,
+    margin: f64,
+    x: &[[f64; WIDTH]; D],
+    before: &[[f64; WIDTH]; D],
+    fast: &[f64; WIDTH],
+    found: &mut Found<[f64; WIDTH], D>,
+) {
+    for l in 0..WIDTH {
+        if fast[l] == 0.0 {
+            continue;
+        }
+        let (a, b): ([f64; D], [f64; D]) = (lanes!(f64, d => before[d][l]), lanes!(f64, d => x[d][l]));
+        if let Some((gap, normal)) = entry(shape, margin, &a, &b) {
+            found.hit[l] = 1.0;
+            found.gap[l] = gap;
+            for d in 0..D {
+                found.normal[d][l] = normal[d];
+            }
+        }
+    }
+}
+
+/// Facets where they are at the end of the step.
+struct Placed<'a, const D: usize> {
+    facets: &'a Facets<D>,
+    pose: &'a Pose<D>,
+    margin: f64,
+}
+
+impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
+    fn find(&self, x: &[f64; D], before: &[f64; D], reach: f64) -> (f64, [f64; D]) {
+        let (x, before) = (self.pose.unplace(x), self.pose.unplace(before));
+        let (gap, normal) = self.facets.touch(&x, &before, self.margin, reach);
+        (gap, self.pose.direct(&normal))
+    }
+}
+
+/// Facets against the nodes of a tile, one node at a time.
+fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, bend: f64, moved: &mut Moved<D>, used: usize) -> bool {
+    let mut touched = false;
+    for k in 0..used {
+        let place = moved.range.start + k;
+        let (x, v) = (moved.x.at(place), moved.v.at(place));
+        let before: [f64; D] = carry.along(&lanes!(f64, d => moved.before[d][k]));
+        let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
+        let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
+        if !finite || !surface.facets.near(&from, &to, surface.margin + bend) {
+            continue;
+        }
+        let (gap, normal) = surface.find(&x, &before, 0.0);
+        if !(gap < 0.0) {
+            continue;
+        }
+        touched = true;
+        let mass = moved.mass.at(place);
+        let obstacle = surface.pose.velocity_at(&x);
+        let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, h: moved.h };
+        let mut parting = respond(surface, law, true, &meeting);
+        // Pushed out of one facet and through another: the motion of this step is undone.
+        if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
+            parting.x = before;
+        }
+        moved.x.set(place, parting.x);
+        moved.v.set(place, parting.v);
+        let lane = place % WIDTH;
+        moved.loss_contact[lane] += parting.loss_contact;
+        moved.loss_friction[lane] += parting.loss_friction;
+        moved.work_colliders[lane] += parting.work;
+    }
+    touched
+}

@@ -1,0 +1,109 @@
+//! What a contact does to a node: non-penetration, restitution, Coulomb friction.
+
+use crate::collider::Law;
+use crate::vector::{add, choose, dot, length, scaled, subtract};
+use opruga_math::{Lane, lanes};
+
+/// Anything with a surface that can say how far away a node is.
+pub(crate) trait Surface<S: Lane, const D: usize> {
+    /// The gap less the thickness [m], and the normal, of a node that came from `before`; gaps above `reach` need not
+    /// be known and are infinite then.
+    fn find(&self, x: &[S; D], before: &[S; D], reach: S) -> (S, [S; D]);
+}
+
+/// A node that penetrates a collider.
+pub(crate) struct Meeting<S, const D: usize> {
+    /// Position after the free motion [m].
+    pub(crate) x: [S; D],
+    /// Velocity after it [m/s].
+    pub(crate) v: [S; D],
+    /// Position before it, carried along with the collider [m].
+    pub(crate) before: [S; D],
+    /// Mass [kg].
+    pub(crate) mass: S,
+    /// The gap, below zero where there is contact [m].
+    pub(crate) gap: S,
+    /// The normal out of the collider.
+    pub(crate) normal: [S; D],
+    /// Velocity of the collider at the node [m/s].
+    pub(crate) obstacle: [S; D],
+    /// The substep [s].
+    pub(crate) h: S,
+}
+
+/// The node afterwards, and what became of its kinetic energy: ΔE = −loss_contact − loss_friction + work.
+pub(crate) struct Parting<S, const D: usize> {
+    /// Position [m].
+    pub(crate) x: [S; D],
+    /// Velocity [m/s].
+    pub(crate) v: [S; D],
+    /// Taken out along the normal [J].
+    pub(crate) loss_contact: S,
+    /// Taken out by friction [J].
+    pub(crate) loss_friction: S,
+    /// Work of a collider that moves [J].
+    pub(crate) work: S,
+}
+
+/// Holds back a node where `hit` holds (what comes out elsewhere has no meaning but is finite if what comes in is).
+#[inline(always)]
+pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(surface: &T, law: &Law, hit: S::Mask, node: &Meeting<S, D>) -> Parting<S, D> {
+    let (zero, half) = (S::zero(), S::splat(0.5));
+    let u = subtract(&node.v, &node.obstacle);
+    let un = dot(&u, &node.normal);
+    let closing = S::both(hit, un.less(zero));
+    let speed = S::select(closing, -un, zero);
+
+    // A fraction e of the speed returns at an impact. A node that began the step on the surface, or comes slower than
+    // the speed of rest, is no impact: what it has was given to it within the step, by weight or by the body behind it.
+    let mut e = zero;
+    let mut rounding = S::splat(law.extent);
+    for d in 0..D {
+        rounding += node.before[d].abs();
+    }
+    rounding = rounding * S::splat(1e-12);
+    if law.restitution > 0.0 {
+        let mut bounces = S::splat(law.rest_speed).less(speed);
+        if law.rest_speed > 0.0 {
+            let (gap, _) = surface.find(&node.before, &node.before, rounding);
+            bounces = S::both(bounces, rounding.less(gap));
+        }
+        e = S::select(bounces, S::splat(law.restitution), zero);
+    }
+    let back = e * speed;
+    let change = back + speed;
+
+    // Out along the normal; without friction the motion along the surface is left as it is, to the bit.
+    let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
+    let mut v = add(&node.v, &scaled(&node.normal, change));
+    let mut loss_friction = zero;
+    if law.friction > 0.0 {
+        // Coulomb: the tangential change is at most µ times the normal one, and stops the sliding at most.
+        let slide = lanes!(S, d => u[d] - un * node.normal[d]);
+        let pace = length(&slide);
+        let most = S::splat(law.friction) * change;
+        let keep = S::select(pace.less_or_equal(most), zero, S::one() - most / pace);
+        let slide_after = scaled(&slide, keep);
+        loss_friction = S::select(closing, half * node.mass * (pace * pace - dot(&slide_after, &slide_after)), zero);
+        v = lanes!(S, d => (node.obstacle[d] + slide_after[d]) + back * node.normal[d]);
+
+        // A node that rests or slides goes where the new velocity takes it from where it was, and then onto the surface:
+        // the tangential part of the free step is undone, so that what sticks does not creep.
+        let path = add(&node.before, &scaled(&slide_after, node.h));
+        let near = node.h * (speed + speed) + rounding;
+        let (gap, normal) = surface.find(&path, &node.before, near);
+        let onto = choose(gap.less(near), &subtract(&path, &scaled(&normal, gap)), &path);
+        let rests = S::both(closing, e.less_or_equal(zero));
+        x = choose(rests, &onto, &x);
+    }
+    v = choose(closing, &v, &node.v);
+
+    let gained = subtract(&v, &node.v);
+    Parting {
+        x,
+        v,
+        loss_contact: half * node.mass * (speed * speed - back * back),
+        loss_friction,
+        work: node.mass * dot(&gained, &node.obstacle),
+    }
+}

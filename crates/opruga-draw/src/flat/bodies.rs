@@ -1,0 +1,368 @@
+//! Bodies in two dimensions.
+
+use super::Projection;
+use super::loops::{Loop, chain};
+use super::shade;
+use crate::canvas::{Canvas, paint};
+use crate::colour::{BODIES, ColourMap, INK, darker, mix};
+use crate::picture::{BodyPicture, Facets, Picture};
+use crate::view::View;
+use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
+
+/// How the scalars of a picture become colours.
+struct Scalars {
+    /// The colour map.
+    map: ColourMap,
+    /// The values at its ends.
+    range: [f64; 2],
+}
+
+impl Scalars {
+    /// The place of a scalar on the map.
+    fn place(&self, scalar: f64) -> f64 {
+        View::place(self.range, scalar)
+    }
+
+    /// The colour of a scalar.
+    fn colour(&self, scalar: f64) -> [u8; 3] {
+        self.map.colour(self.place(scalar))
+    }
+
+    /// The mean of the scalars of some nodes.
+    fn mean(body: &BodyPicture, nodes: impl Iterator<Item = u32>) -> f64 {
+        let (sum, count) = nodes.fold((0.0, 0.0), |(sum, count), node| {
+            (sum + body.scalar[node as usize], count + 1.0)
+        });
+        sum / f64::max(count, 1.0)
+    }
+}
+
+/// Draws all bodies of a picture.
+pub(crate) fn draw(
+    canvas: &mut Canvas,
+    picture: &Picture,
+    view: &View,
+    projection: &Projection,
+    unit: f32,
+) {
+    let map = picture
+        .legend
+        .as_ref()
+        .map_or(ColourMap::Viridis, |legend| legend.map);
+    let scalars = Scalars {
+        map,
+        range: view.range(picture),
+    };
+    let mut pixels = Vec::new();
+    for (index, body) in picture.bodies.iter().enumerate() {
+        pixels.clear();
+        pixels.extend(
+            body.positions
+                .iter()
+                .map(|&position| projection.pixel(position)),
+        );
+        let used = body
+            .positions
+            .iter()
+            .zip(&pixels)
+            .filter(|(position, _)| position.iter().all(|v| v.is_finite()));
+        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+        for (_, pixel) in used {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(pixel[axis]);
+                high[axis] = high[axis].max(pixel[axis]);
+            }
+        }
+        let outside =
+            (0..2).any(|axis| high[axis] < -2.0 || low[axis] > projection.size[axis] + 2.0);
+        if outside || low[0] > high[0] {
+            continue;
+        }
+        let base = body.colour.unwrap_or(BODIES[index % BODIES.len()]);
+        let size = (high[0] - low[0]).max(high[1] - low[1]);
+        Drawing {
+            body,
+            pixels: &pixels,
+            low,
+            high,
+            size,
+            unit,
+            base,
+            scalars: &scalars,
+        }
+        .draw(canvas);
+    }
+}
+
+/// One body on its way to the canvas.
+struct Drawing<'a> {
+    /// The body.
+    body: &'a BodyPicture,
+    /// The pixels of its nodes.
+    pixels: &'a [[f32; 2]],
+    /// The left and upper ends of the body in pixels.
+    low: [f32; 2],
+    /// The right and lower ends of the body in pixels.
+    high: [f32; 2],
+    /// The larger side of the body in pixels.
+    size: f32,
+    /// The size of lines.
+    unit: f32,
+    /// The colour where there are no scalars.
+    base: [u8; 3],
+    /// The colours of scalars.
+    scalars: &'a Scalars,
+}
+
+impl Drawing<'_> {
+    /// Draws the body.
+    fn draw(&self, canvas: &mut Canvas) {
+        let body = self.body;
+        let coloured = !body.scalar.is_empty();
+        let loops = match &body.facets {
+            Facets::Edges(edges) => chain(edges),
+            Facets::Triangles(_) => Vec::new(),
+        };
+        let surface: &[[u32; 3]] = match &body.facets {
+            Facets::Triangles(triangles) => triangles,
+            Facets::Edges(_) => &[],
+        };
+        let cells = if body.cells.is_empty() {
+            surface
+        } else {
+            &body.cells
+        };
+        let outline = self.outline(&loops);
+        let fill = if coloured {
+            self.scalars
+                .colour(Scalars::mean(body, 0..body.positions.len() as u32))
+        } else {
+            self.base
+        };
+        if coloured && !cells.is_empty() && self.size > 4.0 {
+            self.fill_cells(canvas, cells, outline.as_ref());
+        } else if let Some(outline) = &outline {
+            let pale = coloured && self.size > 12.0;
+            canvas.fill(
+                outline,
+                &paint(
+                    if pale {
+                        mix(fill, [255; 3], 0.45)
+                    } else {
+                        fill
+                    },
+                    1.0,
+                ),
+            );
+        } else if !cells.is_empty() {
+            cells.iter().for_each(|cell| {
+                canvas.polygon(&cell.map(|node| self.pixels[node as usize]), fill, 1.0)
+            });
+        }
+        self.cell_edges(canvas, cells);
+        self.segments(canvas, outline.is_some());
+        if let (Some(path), true) = (&outline, self.size > 7.0) {
+            let width = (0.03 * self.size).clamp(0.5, 1.7 * self.unit);
+            if coloured && cells.is_empty() {
+                self.coloured_outline(canvas, &loops, path);
+            } else {
+                canvas.stroke(path, width, &paint(darker(fill), 0.95));
+            }
+        }
+        self.nodes(canvas);
+    }
+
+    /// The path of the loops, without points which fall on the same pixel.
+    fn outline(&self, loops: &[Loop]) -> Option<Path> {
+        let mut builder = PathBuilder::new();
+        for chain in loops {
+            let mut last = [f32::INFINITY; 2];
+            for &node in &chain.nodes {
+                let point = self.pixels[node as usize];
+                if !last[0].is_finite() {
+                    builder.move_to(point[0], point[1]);
+                } else if (point[0] - last[0]).abs() + (point[1] - last[1]).abs() < 0.4 {
+                    continue;
+                } else {
+                    builder.line_to(point[0], point[1]);
+                }
+                last = point;
+            }
+            if chain.closed {
+                builder.close();
+            }
+        }
+        builder.finish()
+    }
+
+    /// Fills cells with the colours of their nodes, cut off at the outline.
+    fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
+        let limit = [canvas.pixmap.width() as f32, canvas.pixmap.height() as f32];
+        let low: [f32; 2] =
+            std::array::from_fn(|axis| (self.low[axis] - 2.0).floor().clamp(0.0, limit[axis]));
+        let high: [f32; 2] =
+            std::array::from_fn(|axis| (self.high[axis] + 2.0).ceil().clamp(0.0, limit[axis]));
+        let Some(mut scratch) = Pixmap::new((high[0] - low[0]) as u32, (high[1] - low[1]) as u32)
+        else {
+            return;
+        };
+        let places: Vec<f64> = self
+            .body
+            .scalar
+            .iter()
+            .map(|&scalar| self.scalars.place(scalar))
+            .collect();
+        // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
+        let passes: &[f32] = if outline.is_some() {
+            &[1.5, 0.01]
+        } else {
+            &[0.01]
+        };
+        for &reach in passes {
+            for cell in cells {
+                let corners = cell.map(|node| {
+                    let [x, y] = self.pixels[node as usize];
+                    ([x - low[0], y - low[1]], places[node as usize])
+                });
+                shade::triangle(&mut scratch.as_mut(), corners, reach, &|place| {
+                    self.scalars.map.colour(place)
+                });
+            }
+        }
+        let shift = Transform::from_translate(low[0], low[1]);
+        let shader = Pattern::new(
+            scratch.as_ref(),
+            SpreadMode::Pad,
+            FilterQuality::Nearest,
+            1.0,
+            shift,
+        );
+        let paint = Paint {
+            shader,
+            anti_alias: true,
+            ..Paint::default()
+        };
+        match outline {
+            Some(outline) => canvas.fill(outline, &paint),
+            None => {
+                let all = tiny_skia::Rect::from_ltrb(low[0], low[1], high[0], high[1])
+                    .map(PathBuilder::from_rect);
+                all.iter().for_each(|path| canvas.fill(path, &paint));
+            }
+        }
+    }
+
+    /// Draws the edges of cells where they are large enough to be told apart.
+    fn cell_edges(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
+        let spacing = self.size / (cells.len().max(1) as f32).sqrt();
+        if spacing < 7.0 {
+            return;
+        }
+        let mut edges: Vec<[u32; 2]> = cells
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        self.lines(canvas, &edges, 0.6 * self.unit, [255; 3], 0.38);
+    }
+
+    /// Draws springs, where they are long enough to be seen.
+    fn segments(&self, canvas: &mut Canvas, filled: bool) {
+        let segments = &self.body.segments;
+        if segments.is_empty() || self.size < 6.0 {
+            return;
+        }
+        let spacing = self.size / (segments.len() as f32).sqrt();
+        let width = (0.09 * spacing).clamp(0.35, 1.3) * self.unit;
+        if self.body.scalar.is_empty() || filled {
+            self.lines(
+                canvas,
+                segments,
+                width,
+                darker(self.base),
+                if filled { 0.45 } else { 1.0 },
+            );
+            return;
+        }
+        for &[a, b] in segments {
+            let colour = self
+                .scalars
+                .colour(Scalars::mean(self.body, [a, b].into_iter()));
+            let points = [self.pixels[a as usize], self.pixels[b as usize]];
+            canvas.line(&points, 1.5 * width, colour, 1.0);
+        }
+    }
+
+    /// Draws many lines of one colour at once.
+    fn lines(
+        &self,
+        canvas: &mut Canvas,
+        lines: &[[u32; 2]],
+        width: f32,
+        colour: [u8; 3],
+        opacity: f64,
+    ) {
+        for part in lines.chunks(512) {
+            let mut builder = PathBuilder::new();
+            for &[a, b] in part {
+                let (from, to) = (self.pixels[a as usize], self.pixels[b as usize]);
+                builder.move_to(from[0], from[1]);
+                builder.line_to(to[0], to[1]);
+            }
+            if let Some(path) = builder.finish() {
+                canvas.stroke(&path, width, &paint(colour, opacity));
+            }
+        }
+    }
+
+    /// Draws an outline whose colour runs from node to node, with a dark rim.
+    fn coloured_outline(&self, canvas: &mut Canvas, loops: &[Loop], path: &Path) {
+        let width = (0.045 * self.size).clamp(1.0, 5.0 * self.unit);
+        if self.size > 30.0 {
+            canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
+        }
+        for chain in loops {
+            let count = if chain.closed {
+                chain.nodes.len()
+            } else {
+                chain.nodes.len() - 1
+            };
+            for place in 0..count {
+                let ends = [
+                    chain.nodes[place],
+                    chain.nodes[(place + 1) % chain.nodes.len()],
+                ];
+                let colour = self
+                    .scalars
+                    .colour(Scalars::mean(self.body, ends.into_iter()));
+                canvas.line(
+                    &ends.map(|node| self.pixels[node as usize]),
+                    width,
+                    colour,
+                    1.0,
+                );
+            }
+        }
+    }
+
+    /// Draws the nodes, where they are wanted and far enough apart.
+    fn nodes(&self, canvas: &mut Canvas) {
+        let count = self.pixels.len();
+        let crowded = self.size * 12.0 < count as f32 * 2.0 * self.unit;
+        if !self.body.nodes_drawn || crowded || self.size < 24.0 {
+            return;
+        }
+        let radius = (3.0 * self.size / count as f32).clamp(1.2, 2.6) * self.unit;
+        for (node, &pixel) in self.pixels.iter().enumerate() {
+            let colour = self
+                .body
+                .scalar
+                .get(node)
+                .map_or(self.base, |&scalar| self.scalars.colour(scalar));
+            canvas.disc(pixel, radius + 0.9 * self.unit, darker(darker(colour)));
+            canvas.disc(pixel, radius, mix(colour, [255; 3], 0.25));
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Pictures in two dimensions.
+
+mod bodies;
+mod colliders;
+mod loops;
+mod shade;
+
+use crate::canvas::Canvas;
+use crate::error::DrawError;
+use crate::image::Image;
+use crate::layout::{Layout, Style};
+use crate::marks::draw_marks;
+use crate::picture::Picture;
+use crate::view::View;
+
+/// The free border between what must be seen and the frame, as a share of the larger side.
+const BORDER: f64 = 0.04;
+
+/// How points of the plane become pixels of the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projection {
+    /// The number of pixels in a metre.
+    pub(crate) scale: f64,
+    /// The point which is drawn in the middle [m].
+    center: [f64; 2],
+    /// The size of the scene in pixels.
+    pub(crate) size: [f32; 2],
+}
+
+impl Projection {
+    /// The projection which shows the whole view in a scene.
+    pub(crate) fn new(view: &View, width: u32, height: u32) -> Projection {
+        let border = BORDER * view.extent();
+        let wide = view.high[0] - view.low[0] + 2.0 * border;
+        let tall = view.high[1] - view.low[1] + 2.0 * border;
+        let center = view.center();
+        Projection {
+            scale: (f64::from(width) / wide).min(f64::from(height) / tall),
+            center: [center[0], center[1]],
+            size: [width as f32, height as f32],
+        }
+    }
+
+    /// The pixel of a point.
+    pub(crate) fn pixel(&self, point: [f64; 3]) -> [f32; 2] {
+        let far = 1e6;
+        let x = 0.5 * f64::from(self.size[0]) + self.scale * (point[0] - self.center[0]);
+        let y = 0.5 * f64::from(self.size[1]) - self.scale * (point[1] - self.center[1]);
+        [x.clamp(-far, far) as f32, y.clamp(-far, far) as f32]
+    }
+}
+
+/// Draws a picture in two dimensions.
+pub(crate) fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, DrawError> {
+    let mut image = Image::new(style.width, style.height, style.background)?;
+    let layout = Layout::new(picture, view, style);
+    let [left, top, width, height] = layout.scene;
+    let mut scene = Image::new(width, height, style.background)?;
+    let projection = Projection::new(view, width, height);
+    let mut canvas = Canvas::new(&mut scene);
+    let room = picture.colliders.iter().rev();
+    room.for_each(|collider| colliders::draw(&mut canvas, collider, &projection, layout.unit));
+    bodies::draw(&mut canvas, picture, view, &projection, layout.unit);
+    draw_marks(&mut canvas, picture, view, layout.unit, &|point| {
+        point
+            .iter()
+            .all(|value| value.is_finite())
+            .then(|| projection.pixel(point))
+    });
+    image.paste(&scene, left, top);
+    layout.annotate(
+        &mut Canvas::new(&mut image),
+        picture,
+        view,
+        style,
+        Some(projection.scale),
+    );
+    Ok(image)
+}

@@ -1,0 +1,270 @@
+//! Where the scene lies within an image, and what is written around it.
+
+use crate::canvas::{Anchor, Canvas, text_width};
+use crate::colour::{FRAME, INK, SOFT_INK};
+use crate::marks::{arrow_colour, arrow_name};
+use crate::picture::{Legend, Picture};
+use crate::ticks::{format_tick, format_value, nice_length, nice_ticks};
+use crate::view::View;
+
+/// The size of an image and what is written around the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Style {
+    /// The width in pixels.
+    pub width: u32,
+    /// The height in pixels.
+    pub height: u32,
+    /// The colour around and behind the scene.
+    pub background: [u8; 3],
+    /// Whether the title and the time are written above the scene.
+    pub header: bool,
+    /// Whether the length scale and the names of the arrows are written below the scene.
+    pub footer: bool,
+    /// Whether the colours of the scalars are explained at the right.
+    pub legend: bool,
+}
+
+impl Default for Style {
+    fn default() -> Style {
+        Style {
+            width: 800,
+            height: 600,
+            background: [255; 3],
+            header: true,
+            footer: true,
+            legend: true,
+        }
+    }
+}
+
+/// The place of each part of an image, in pixels.
+pub(crate) struct Layout {
+    /// The left, the top, the width and the height of the scene.
+    pub(crate) scene: [u32; 4],
+    /// The size of everything that does not belong to the scene, relative to an image of 600 pixels.
+    pub(crate) unit: f32,
+}
+
+impl Layout {
+    /// Divides an image into its parts.
+    pub(crate) fn new(picture: &Picture, view: &View, style: &Style) -> Layout {
+        let unit = Layout::unit(style);
+        let margin = 14.0 * unit;
+        let top = if style.header { 38.0 * unit } else { margin };
+        let bottom = if style.footer { 40.0 * unit } else { margin };
+        let right = match &picture.legend {
+            Some(legend) if style.legend => {
+                margin + legend_width(legend, view.range(picture), unit)
+            }
+            _ => margin,
+        };
+        let (width, height) = (style.width as f32, style.height as f32);
+        let scene = [
+            margin,
+            top,
+            (width - margin - right).max(8.0),
+            (height - top - bottom).max(8.0),
+        ];
+        Layout {
+            scene: scene.map(|value| value.round() as u32),
+            unit,
+        }
+    }
+
+    /// The size of texts and lines, relative to an image of 600 pixels.
+    pub(crate) fn unit(style: &Style) -> f32 {
+        (style.width.min(style.height) as f32 / 600.0).clamp(0.7, 8.0)
+    }
+
+    /// Writes everything around the scene; `scale` is the number of pixels in a metre, where it is the same everywhere.
+    pub(crate) fn annotate(
+        &self,
+        canvas: &mut Canvas,
+        picture: &Picture,
+        view: &View,
+        style: &Style,
+        scale: Option<f64>,
+    ) {
+        let [left, top, width, height] = self.scene.map(|value| value as f32);
+        let unit = self.unit;
+        canvas.frame([left - 1.0, top - 1.0, width + 2.0, height + 2.0], FRAME);
+        if style.header {
+            let base = top - 12.0 * unit;
+            let time = time_text(picture.time);
+            canvas.text(&time, [left + width, base], 15.0 * unit, Anchor::End, INK);
+            let room = width - text_width(&time, 15.0 * unit) - 20.0 * unit;
+            let wish = 15.0 * unit;
+            let size = wish * (room / text_width(&picture.title, wish).max(1.0)).clamp(0.5, 1.0);
+            canvas.text(&picture.title, [left, base], size, Anchor::Start, INK);
+        }
+        if style.footer {
+            let base = top + height + 26.0 * unit;
+            let end = scale.map_or(left, |scale| {
+                self.scale_bar(canvas, [left, base], width, scale)
+            });
+            self.arrow_names(
+                canvas,
+                picture,
+                view,
+                [end + 24.0 * unit, left + width],
+                base,
+            );
+        }
+        if let (Some(legend), true) = (&picture.legend, style.legend) {
+            self.legend(canvas, legend, view.range(picture));
+        }
+    }
+
+    /// Draws a bar of a round length, and gives the place where its text ends.
+    fn scale_bar(
+        &self,
+        canvas: &mut Canvas,
+        [left, base]: [f32; 2],
+        width: f32,
+        scale: f64,
+    ) -> f32 {
+        let unit = self.unit;
+        let length = nice_length(0.24 * f64::from(width) / scale);
+        let bar = (length * scale) as f32;
+        let middle = base - 5.0 * unit;
+        let thick = (1.5 * unit).max(1.0);
+        canvas.rectangle([left, middle - 0.5 * thick, bar, thick], INK, 1.0);
+        for end in [left, left + bar - thick] {
+            canvas.rectangle([end, middle - 4.0 * unit, thick, 8.0 * unit], INK, 1.0);
+        }
+        let text = length_text(length);
+        canvas.text(
+            &text,
+            [left + bar + 8.0 * unit, base],
+            14.0 * unit,
+            Anchor::Start,
+            INK,
+        );
+        left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
+    }
+
+    /// Writes the names of the arrows in the picture, from the right.
+    fn arrow_names(
+        &self,
+        canvas: &mut Canvas,
+        picture: &Picture,
+        view: &View,
+        [from, to]: [f32; 2],
+        base: f32,
+    ) {
+        let unit = self.unit;
+        let size = 13.0 * unit;
+        let mut end = to;
+        for (&kind, _) in view.longest.iter().rev() {
+            if !picture.arrows.iter().any(|arrow| arrow.kind == kind) {
+                continue;
+            }
+            let name = arrow_name(kind);
+            let start = end - text_width(name, size) - 26.0 * unit;
+            if start < from {
+                break;
+            }
+            canvas.text(name, [end, base], size, Anchor::End, SOFT_INK);
+            let middle = base - 4.5 * unit;
+            let points = [[start, middle], [start + 20.0 * unit, middle]];
+            crate::marks::arrow(canvas, points, 1.8 * unit, arrow_colour(kind), false);
+            end = start - 18.0 * unit;
+        }
+    }
+
+    /// Draws the bar of colours with its values.
+    fn legend(&self, canvas: &mut Canvas, legend: &Legend, range: [f64; 2]) {
+        let unit = self.unit;
+        let [left, top, width, height] = self.scene.map(|value| value as f32);
+        let start = (left + width + 16.0 * unit).round();
+        let size = 13.0 * unit;
+        let lines = legend_lines(legend);
+        for (index, line) in lines.iter().enumerate() {
+            let base = top + 12.0 * unit + 17.0 * unit * index as f32;
+            canvas.text(line, [start, base], size, Anchor::Start, INK);
+        }
+        let bar_top = (top + 17.0 * unit * lines.len() as f32 + 10.0 * unit).round();
+        let bar = [
+            start,
+            bar_top,
+            (14.0 * unit).round(),
+            (top + height - bar_top).min(300.0 * unit).round(),
+        ];
+        let rows = bar[3] as u32;
+        for row in 0..rows {
+            let place = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
+            canvas.rectangle(
+                [bar[0], bar[1] + row as f32, bar[2], 1.0],
+                legend.map.colour(place),
+                1.0,
+            );
+        }
+        let ticks = nice_ticks(range[0], range[1], 5);
+        let step = if ticks.len() > 1 {
+            ticks[1] - ticks[0]
+        } else {
+            range[0].abs()
+        };
+        for tick in ticks {
+            let y = (bar[1] + bar[3] * (1.0 - View::place(range, tick) as f32))
+                .clamp(bar[1], bar[1] + bar[3] - 1.0);
+            canvas.rectangle(
+                [bar[0] + bar[2], y.round(), (4.0 * unit).round(), 1.0],
+                SOFT_INK,
+                1.0,
+            );
+            let point = [bar[0] + bar[2] + 7.0 * unit, y + 4.5 * unit];
+            canvas.text(
+                &format_tick(tick, step),
+                point,
+                12.0 * unit,
+                Anchor::Start,
+                INK,
+            );
+        }
+    }
+}
+
+/// The label and the unit of a legend, on one or two lines.
+fn legend_lines(legend: &Legend) -> Vec<String> {
+    let mut lines = vec![legend.label.clone()];
+    if !legend.unit.is_empty() {
+        lines.push(format!("[{}]", legend.unit));
+    }
+    lines
+}
+
+/// The width which a legend takes.
+fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
+    let ticks = nice_ticks(range[0], range[1], 5);
+    let step = if ticks.len() > 1 {
+        ticks[1] - ticks[0]
+    } else {
+        range[0].abs()
+    };
+    let values = ticks
+        .iter()
+        .map(|&tick| 21.0 * unit + text_width(&format_tick(tick, step), 12.0 * unit));
+    let lines = legend_lines(legend)
+        .into_iter()
+        .map(|line| text_width(&line, 13.0 * unit));
+    values.chain(lines).fold(0.0, f32::max) + 16.0 * unit
+}
+
+/// A time as text.
+pub(crate) fn time_text(time: f64) -> String {
+    if time.abs() >= 100.0 {
+        format!("t = {time:.1} s")
+    } else {
+        format!("t = {time:.3} s")
+    }
+}
+
+/// A length as text, in metres, or in millimetres where it is small.
+fn length_text(length: f64) -> String {
+    if length < 0.0099 {
+        format!("{} mm", format_value(length * 1e3))
+    } else {
+        format!("{} m", format_value(length))
+    }
+}

@@ -1,0 +1,152 @@
+//! Arrows, pins and the rubber lines of pointers, drawn over flat and solid scenes alike.
+
+use crate::canvas::{Canvas, paint};
+use crate::colour::{INK, OKABE_ITO, RUBBER};
+use crate::picture::{ArrowKind, Picture};
+use crate::view::View;
+use tiny_skia::PathBuilder;
+
+/// The number of pins of a body up to which each is drawn as a support.
+const SUPPORTS: usize = 40;
+
+/// The colour of a kind of arrow.
+pub(crate) fn arrow_colour(kind: ArrowKind) -> [u8; 3] {
+    match kind {
+        ArrowKind::Force => INK,
+        ArrowKind::Pressure => OKABE_ITO[0],
+        ArrowKind::Elastic => OKABE_ITO[2],
+        ArrowKind::Gravity => [120, 124, 132],
+        ArrowKind::Contact => OKABE_ITO[1],
+        ArrowKind::Pull => RUBBER,
+        ArrowKind::Velocity => [128, 72, 160],
+    }
+}
+
+/// The name of a kind of arrow.
+pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
+    match kind {
+        ArrowKind::Force => "force",
+        ArrowKind::Pressure => "pressure",
+        ArrowKind::Elastic => "elastic",
+        ArrowKind::Gravity => "gravity",
+        ArrowKind::Contact => "contact",
+        ArrowKind::Pull => "pull",
+        ArrowKind::Velocity => "velocity",
+    }
+}
+
+/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point.
+pub(crate) fn draw_marks(
+    canvas: &mut Canvas,
+    picture: &Picture,
+    view: &View,
+    unit: f32,
+    project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+) {
+    for body in &picture.bodies {
+        let few = body.pinned.len() <= SUPPORTS;
+        for &node in &body.pinned {
+            if let Some(point) = project(body.positions[node as usize]) {
+                if few {
+                    support(canvas, point, unit)
+                } else {
+                    canvas.disc(point, 2.2 * unit, INK)
+                }
+            }
+        }
+    }
+    for mark in &picture.arrows {
+        let scale = view.arrow_scale(mark.kind);
+        let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
+        if let (Some(from), Some(to)) = (project(mark.from), project(to)) {
+            arrow(
+                canvas,
+                [from, to],
+                1.8 * unit,
+                arrow_colour(mark.kind),
+                true,
+            );
+        }
+    }
+    for pull in &picture.pulls {
+        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
+            rubber_line(canvas, node, pointer, unit);
+        }
+    }
+}
+
+/// Draws an arrow with a filled head, and a light rim where it lies over a scene.
+pub(crate) fn arrow(
+    canvas: &mut Canvas,
+    [from, to]: [[f32; 2]; 2],
+    width: f32,
+    colour: [u8; 3],
+    rim: bool,
+) {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
+    if !length.is_finite() || length < 1.5 {
+        return;
+    }
+    let direction = [along[0] / length, along[1] / length];
+    let head = (4.6 * width).min(0.6 * length);
+    let half = 0.38 * head;
+    let neck = [to[0] - head * direction[0], to[1] - head * direction[1]];
+    let left = [neck[0] - half * direction[1], neck[1] + half * direction[0]];
+    let right = [neck[0] + half * direction[1], neck[1] - half * direction[0]];
+    let inner = [
+        neck[0] + 0.2 * head * direction[0],
+        neck[1] + 0.2 * head * direction[1],
+    ];
+    if rim {
+        canvas.line(&[from, neck], width + 2.4, [255; 3], 0.75);
+        canvas.line(&[to, left, right, to], 2.4, [255; 3], 0.75);
+    }
+    canvas.line(&[from, inner], width.min(0.35 * length), colour, 1.0);
+    canvas.polygon(&[to, left, inner, right], colour, 1.0);
+}
+
+/// Draws the sign of a support under a pinned node.
+fn support(canvas: &mut Canvas, point: [f32; 2], unit: f32) {
+    let (half, tall) = (5.5 * unit, 9.0 * unit);
+    let corners = [
+        point,
+        [point[0] - half, point[1] + tall],
+        [point[0] + half, point[1] + tall],
+    ];
+    canvas.polygon(&corners, [255; 3], 1.0);
+    canvas.line(
+        &[corners[0], corners[1], corners[2], corners[0]],
+        1.3 * unit,
+        INK,
+        1.0,
+    );
+    canvas.line(
+        &[
+            [point[0] - 1.5 * half, point[1] + tall],
+            [point[0] + 1.5 * half, point[1] + tall],
+        ],
+        1.6 * unit,
+        INK,
+        1.0,
+    );
+    canvas.disc(point, 2.2 * unit, INK);
+}
+
+/// Draws the rubber line from a node to a pointer.
+fn rubber_line(canvas: &mut Canvas, node: [f32; 2], pointer: [f32; 2], unit: f32) {
+    canvas.line(&[node, pointer], 3.4 * unit, [255; 3], 0.8);
+    if let Some(path) = crate::canvas::path_of(&[node, pointer], false) {
+        canvas.stroke_dashed(
+            &path,
+            1.8 * unit,
+            &[6.0 * unit, 3.5 * unit],
+            &paint(RUBBER, 1.0),
+        );
+    }
+    canvas.disc(node, 3.0 * unit, RUBBER);
+    canvas.disc(pointer, 6.5 * unit, RUBBER);
+    if let Some(path) = PathBuilder::from_circle(pointer[0], pointer[1], 4.4 * unit) {
+        canvas.fill(&path, &paint([255; 3], 1.0));
+    }
+}

@@ -1,0 +1,116 @@
+//! Files that are never half written, checkpoints that are never half read, tables.
+
+use opruga_io::checkpoint::{Checkpoint, CheckpointError};
+use opruga_io::safe_write::{Existing, Failing, OutputFolder, safe_write, safe_write_through};
+use opruga_io::tables::{FinalBody, NumberTable, Summary, write_final};
+use std::io::Write;
+use std::path::PathBuf;
+
+fn folder(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("opruga-io-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir(&path).expect("a folder for the test");
+    path
+}
+
+/// Row 83: wherever the disk fails, the old file is whole and nothing else is left.
+#[test]
+fn a_failing_disk_leaves_the_old_file_whole() {
+    let folder = folder("failing");
+    let path = folder.join("summary.json");
+    safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
+    let new: Vec<u8> = (0..=255).collect();
+    for k in 0..new.len() as u64 {
+        let error = safe_write_through(&path, true, |file| Failing::after(k, file), |w| w.write_all(&new)).expect_err("the disk is full");
+        assert_eq!((error.code, error.bytes, error.exit_code(), &error.path), ("write.failed", k, 4, &path));
+        assert_eq!(std::fs::read(&path).expect("still there"), b"old");
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
+    }
+    assert_eq!(safe_write_through(&path, true, |file| Failing::after(256, file), |w| w.write_all(&new)).expect("just enough"), 256);
+    assert_eq!(std::fs::read(&path).expect("there"), new);
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Rows 84 to 86.
+#[test]
+fn output_folders() {
+    let folder = folder("output");
+    let out = folder.join("out");
+    let code = |path: &PathBuf, existing| OutputFolder::open(path, existing).map(|_| ()).expect_err("refused").code;
+
+    let first = OutputFolder::open(&out, Existing::Refuse).expect("new");
+    assert_eq!(code(&out, Existing::Replace), "write.locked");
+    first.write("final.csv", false, |w| w.write_all(b"x")).expect("written");
+    assert_eq!(first.write("final.csv", false, |w| w.write_all(b"y")).expect_err("there").code, "write.exists");
+    drop(first);
+    assert_eq!(code(&out, Existing::Refuse), "write.exists");
+    let again = OutputFolder::open(&out, Existing::Replace).expect("replaced");
+    again.write("final.csv", false, |w| w.write_all(b"y")).expect("replaced");
+    drop(again);
+    OutputFolder::open(&out, Existing::Continue).expect("continued");
+
+    assert_eq!(code(&folder.join("missing/out"), Existing::Refuse), "write.folder");
+    assert_eq!(code(&out.join("final.csv"), Existing::Refuse), "write.folder");
+    assert_eq!(code(&folder.join("x".repeat(300)), Existing::Refuse), "write.folder");
+    assert_eq!(safe_write(&folder, true, |_| Ok(())).expect_err("a folder").code, "write.failed");
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Row 82: every flipped byte, every truncation and every addition is refused.
+#[test]
+fn damaged_checkpoints() {
+    let checkpoint = Checkpoint { scene: "format = \"opruga-1\"\n".into(), payload: (0..100u8).collect() };
+    let mut bytes = Vec::new();
+    checkpoint.write(&mut bytes).expect("memory does not fail");
+    assert_eq!(Checkpoint::read(&bytes).expect("whole"), checkpoint);
+    for k in 0..bytes.len() {
+        for bit in 0..8 {
+            let mut flipped = bytes.clone();
+            flipped[k] ^= 1 << bit;
+            assert!(Checkpoint::read(&flipped).is_err(), "byte {k}, bit {bit}");
+        }
+        assert!(Checkpoint::read(&bytes[..k]).is_err(), "{k} bytes");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert_eq!(Checkpoint::read(&longer), Err(CheckpointError::TooLong { extra: 1 }));
+    let mut newer = bytes.clone();
+    newer[8] = 9;
+    assert_eq!(Checkpoint::read(&newer), Err(CheckpointError::Version { found: 9 }));
+    assert_eq!(Checkpoint::read(b"PK\x03\x04"), Err(CheckpointError::NotOne));
+    // A head that promises more than memory holds.
+    let mut huge = bytes;
+    huge[20..28].copy_from_slice(&u64::MAX.to_le_bytes());
+    let sum = crc32fast::hash(&huge[..28]).to_le_bytes();
+    huge[28..32].copy_from_slice(&sum);
+    assert!(matches!(Checkpoint::read(&huge), Err(CheckpointError::CutOff { .. })));
+    // More than one piece.
+    let large = Checkpoint { scene: String::new(), payload: vec![7; (1 << 21) + 5] };
+    let mut bytes = Vec::new();
+    large.write(&mut bytes).expect("memory does not fail");
+    assert_eq!(Checkpoint::read(&bytes).expect("whole"), large);
+}
+
+#[test]
+fn tables_keep_every_bit() {
+    let mut out = Vec::new();
+    let body = FinalBody { name: "a", positions: &[[0.1, -2.0]], velocities: &[[1.0 / 3.0, 0.0]] };
+    write_final(&mut out, [body].into_iter()).expect("memory does not fail");
+    let text = String::from_utf8(out).expect("text");
+    assert_eq!(text, "body,node,x,y,vx,vy\na,0,1.0000000000000001e-1,-2.0000000000000000e0,3.3333333333333331e-1,0.0000000000000000e0\n");
+
+    let mut table = NumberTable::new(vec!["time".into(), "a,b".into()]);
+    table.push(&[0.0, 1e300]);
+    let mut out = Vec::new();
+    table.write(&mut out).expect("memory does not fail");
+    assert_eq!(String::from_utf8(out).expect("text"), "time,\"a,b\"\n0.0000000000000000e0,1.0000000000000001e300\n");
+
+    let json = Summary { scene: "ball".into(), dimension: 2, h: f64::NAN, ..Summary::default() }.to_json();
+    assert_eq!((&json["schema"], &json["scene"], &json["h"]), (&1.into(), &"ball".into(), &serde_json::Value::Null));
+    for key in ["energy", "momentum", "state_hash", "warnings", "files", "nanoseconds_per_node_step", "reproducibility"] {
+        assert!(json.get(key).is_some(), "{key}");
+    }
+    let mut out = Vec::new();
+    Summary::default().write(&mut out as &mut dyn Write).expect("memory does not fail");
+    assert!(out.starts_with(b"{"));
+}

@@ -1,0 +1,201 @@
+//! What scenes mean: the full scene, copies, selectors, overrides, commands.
+
+mod common;
+use common::*;
+use opruga_core::spec::Value;
+use opruga_io::scene::{Limits, Options};
+use opruga_io::{overrides, reference, schema, template};
+use opruga_world::blueprint::{Action, AnyBlueprint, LoadKind, Mass, Selector};
+use std::sync::Arc;
+
+#[test]
+fn the_full_scene_has_all_its_parts() {
+    let scene = plane(FULL);
+    assert_eq!(scene.name, "scene");
+    assert_eq!(scene.title, "Everything");
+    assert_eq!(scene.seed, 7);
+    assert_eq!(scene.time.substeps, 16);
+    assert_eq!(scene.surroundings.gravity, [0.0, -9.81]);
+    assert_eq!(scene.surroundings.largest_force, Some(1e6));
+    assert_eq!(scene.integrator.kind(), "newton");
+    assert_eq!(scene.integrator.integer("iterations"), Some(12));
+    assert_eq!(scene.bodies.len(), 1 + 6 + 1);
+    let ball = &scene.bodies[0];
+    assert_eq!((ball.mass, ball.mesh.nodes(), ball.angular_velocity.as_slice()), (Mass::Total(1.0), 36, &[0.5][..]));
+    assert_eq!(ball.models[1].rows("temperature"), [[0.0, 1.0], [2.0, 1.5]]);
+    assert_eq!(ball.pins[0].motion[1], [1.0, 0.5, 0.0]);
+    assert_eq!(scene.bodies[7].pins[0].select, Selector::All);
+    assert_eq!(scene.loads[1].body, 4);
+    assert_eq!(scene.loads[2].kind, LoadKind::Pressure(10.0));
+    // Commands come in the order of time.
+    assert_eq!(scene.commands.iter().map(|c| c.at).collect::<Vec<_>>(), [1.0, 1.0, 2.0, 2.5, 3.0, 5.0]);
+    assert_eq!(scene.commands[2].action, Action::Set { path: "body.ball.models.pressure.nRT".into(), value: Value::Number(50.0) });
+}
+
+#[test]
+fn copies_share_their_mesh_and_jitter_by_the_seed() {
+    let scene = plane(FULL);
+    let row = &scene.bodies[1..7];
+    assert!(row.iter().all(|b| Arc::ptr_eq(&b.mesh, &row[0].mesh)));
+    assert_eq!(row[4].name, "row[4]");
+    for (k, body) in row.iter().enumerate() {
+        let at = [5.5 + 2.0 * (k % 3) as f64, 2.0 * (k / 3) as f64];
+        for a in 0..2 {
+            let moved = body.translation[a] - at[a];
+            assert!(moved != 0.0 && moved.abs() <= 0.1, "copy {k} is moved by {moved}");
+        }
+    }
+    assert_eq!(scene.bodies, plane(FULL).bodies);
+    assert_ne!(scene.bodies, plane(&FULL.replace("seed = 7", "seed = 8")).bodies);
+    // Places in selectors move along with every copy.
+    let text = format!("{HEAD}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 1, vertices = 4 }}\n\
+        pin = [{{ select = {{ ball = {{ center = [1, 0], radius = 0.1 }} }} }}]\ncopies = {{ count = [3], spacing = [10, 0] }}\n");
+    for body in plane(&text).bodies {
+        assert_eq!(body.pins[0].select.resolve(&body.mesh, &body.translation), [0]);
+    }
+}
+
+#[test]
+fn selectors_select() {
+    let cases = [
+        ("{ all = true }", vec![0, 1, 2, 3, 4, 5, 6, 7, 8]),
+        ("{ boundary = true }", vec![0, 1, 2, 3, 5, 6, 7, 8]),
+        ("{ side = \"top\" }", vec![6, 7, 8]),
+        ("{ group = \"left\" }", vec![0, 3, 6]),
+        ("{ box = [[0.4, 0.4], [2, 2]] }", vec![4, 5, 7, 8]),
+        ("{ box = [[2, 2], [0.4, 0.4]] }", vec![4, 5, 7, 8]),
+        ("{ ball = { center = [0, 0], radius = 0.5 } }", vec![0, 1, 3]),
+        ("{ half_space = { point = [0.5, 0], normal = [2, 0] } }", vec![1, 2, 4, 5, 7, 8]),
+        ("{ and = [ { side = \"top\" }, { side = \"left\" } ] }", vec![6]),
+        ("{ or = [ { node = 4 }, { nodes = [1, 2, 2] } ] }", vec![1, 2, 4]),
+        ("{ not = { boundary = true } }", vec![4]),
+    ];
+    for (select, nodes) in cases {
+        let text = format!("{HEAD}[[body]]\nname = \"g\"\nmass = 1\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2] }}\npin = [{{ select = {select} }}]\n");
+        let scene = plane(&text);
+        assert_eq!(scene.bodies[0].pins[0].select.resolve(&scene.bodies[0].mesh, &[0.0; 2]), nodes, "{select}");
+    }
+}
+
+#[test]
+fn every_shape_is_made_with_as_many_nodes_as_estimated() {
+    let plane_shapes = [
+        "{ kind = \"ring\", radius = 1, vertices = 12, center = [1, 2], start_angle = 0.5 }",
+        "{ kind = \"regular_polygon\", sides = 5, radius = 1, vertices_per_side = 3 }",
+        "{ kind = \"polygon\", points = [[0, 0], [1, 0], [0, 1]] }",
+        "{ kind = \"line\", from = [0, 0], to = [1, 0], segments = 4 }",
+        "{ kind = \"polyline\", points = [[0, 0], [1, 0], [1, 1]], closed = true }",
+        "{ kind = \"grid\", size = [1, 2], cells = [3, 4] }",
+    ];
+    let space_shapes = [
+        "{ kind = \"grid\", size = [1, 2, 3], cells = [3, 4, 5] }",
+        "{ kind = \"sheet\", u = [1, 0, 0], v = [0, 0, 1], cells = [3, 4] }",
+        "{ kind = \"box\", size = [1, 1, 1], cells = [3, 2, 4] }",
+        "{ kind = \"icosphere\", radius = 1, subdivisions = 2, center = [0, 0, 3] }",
+        "{ kind = \"torus\", radius = 1, tube_radius = 0.2, nodes_around = 20, nodes_of_tube = 8 }",
+        "{ kind = \"line\", from = [0, 0, 0], to = [1, 0, 0], segments = 4 }",
+    ];
+    let limits = |nodes: usize| Options { limits: Limits { nodes: nodes as u64, ..Limits::default() }, ..Options::default() };
+    for shape in plane_shapes {
+        let text = format!("{HEAD}[[body]]\nname = \"s\"\nmass = 1\nshape = {shape}\nrotation = 0.3\nscale = 2\n");
+        let nodes = plane(&text).bodies[0].mesh.nodes();
+        assert!(read_with(&text, &limits(nodes)).is_ok(), "{shape}");
+        assert!(read_with(&text, &limits(nodes - 1)).is_err(), "{shape}");
+    }
+    for shape in space_shapes {
+        let text = format!("{HEAD}[[body]]\nname = \"s\"\nmass = 1\nshape = {shape}\nrotation = [0.3, 0, 1]\nscale = 2\n").replace("dimension = 2", "dimension = 3");
+        let nodes = space(&text).bodies[0].mesh.nodes();
+        assert!(read_with(&text, &limits(nodes)).is_ok(), "{shape}");
+        assert!(read_with(&text, &limits(nodes - 1)).is_err(), "{shape}");
+    }
+}
+
+fn overridden(text: &str, arguments: &[&str]) -> Result<AnyBlueprint, String> {
+    let overrides = arguments.iter().map(|a| overrides::split(a).expect("PATH=VALUE")).collect();
+    let options = Options { overrides, ..Options::default() };
+    read_with(text, &options).map(|r| r.0).map_err(|e| e.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+}
+
+#[test]
+fn overrides_reach_every_parameter() {
+    let arguments = [
+        "seed=3",
+        "time.substeps=4",
+        "world.gravity=[0, -1]",
+        "integrator.iterations=5",
+        "body.ball.mass=2.5",
+        "body.1.density=7",
+        "body.ball.models.mass_spring.stiffness=10",
+        "body.0.models.0.edges=boundary",
+        "collider.half_space.friction=0.9",
+        "body.row.copies.count=[1]",
+        "load.traction.body=row[0]",
+    ];
+    let Ok(AnyBlueprint::Plane(scene)) = overridden(FULL, &arguments) else { panic!("{:?}", overridden(FULL, &arguments)) };
+    assert_eq!((scene.seed, scene.time.substeps, scene.surroundings.gravity), (3, 4, [0.0, -1.0]));
+    assert_eq!(scene.integrator.integer("iterations"), Some(5));
+    assert_eq!((scene.bodies[0].mass, scene.bodies[1].mass), (Mass::Total(2.5), Mass::Density(7.0)));
+    assert_eq!(scene.bodies[0].models[0].number("stiffness"), Some(10.0));
+    assert_eq!(scene.bodies[0].models[0].text("edges"), Some("boundary"));
+    assert_eq!(scene.colliders[0].values.number("friction"), Some(0.9));
+    assert_eq!(scene.bodies.len(), 3);
+    // The sections that the file lacks are made.
+    assert!(overridden(HEAD, &["world.drag=1", "time.frame=0.5"]).is_ok());
+}
+
+#[test]
+fn wrong_overrides_are_explained() {
+    let cases = [
+        ("body.bal.mass=1", "--set body.bal.mass=1: error[set.path]: `body` has no entry `bal`\n  = allowed: ball, row, wall\n  = hint: did you mean `ball`?"),
+        ("body.9.mass=1", "--set body.9.mass=1: error[set.path]: `body` has no entry 9\n  = allowed: numbers from 0 to 2"),
+        ("body.ball.mas=1", "--set body.ball.mas=1: error[scene.unknown_field]: there is no field `mas` in `body`"),
+        ("time.substeps=0", "--set time.substeps=0: error[scene.range]: `substeps` is 0\n  = allowed: a whole number from 1 to 1000000"),
+        ("seed.x=1", "--set seed.x=1: error[set.path]: `seed` is a whole number, it has no fields"),
+        ("world.gravity=[1", "--set world.gravity=[1: error[set.value]: the value is no TOML"),
+        ("body.ball.mass=nan", "--set body.ball.mass=nan: error[scene.not_finite]: `mass` is not finite\n  = allowed: a number > 0"),
+    ];
+    for (argument, expected) in cases {
+        let text = overridden(FULL, &[argument]).expect_err(argument);
+        assert!(text.starts_with(expected), "{argument}\n{text}");
+    }
+    assert_eq!(overrides::split("mass").expect_err("no value").code, "set.syntax");
+}
+
+#[test]
+fn the_template_is_a_scene() {
+    let scene = plane(&template::commented("my \"scene\"\n"));
+    assert_eq!(scene.title, "my scene");
+    assert_eq!((scene.bodies.len(), scene.colliders.len(), scene.commands.len(), scene.probes.len()), (1, 1, 1, 1));
+}
+
+#[test]
+fn the_reference_and_the_json_schema_name_every_field() {
+    let page = reference::markdown(&catalogue());
+    let json = schema::json_schema(&catalogue()).to_string();
+    for word in ["seconds", "largest_force", "node_mass", "jitter", "motion", "stiffness", "iterations", "subdivisions", "nearest_facet", "record", "half_space", "traction", "curve"] {
+        assert!(page.contains(word), "{word} is missing in the page");
+        assert!(json.contains(word), "{word} is missing in the schema");
+    }
+    assert!(page.contains("| `mass` | kg | a number > 0 |  | Mass of the whole body. |"), "{page}");
+    assert!(schema::json_schema(&catalogue())["properties"]["time"]["required"] == serde_json::json!(["seconds"]));
+}
+
+#[test]
+fn a_scene_without_bodies_is_a_scene() {
+    assert!(plane(HEAD).bodies.is_empty());
+    assert!(plane(&format!("\u{feff}{HEAD}")).bodies.is_empty());
+    assert!(plane(&HEAD.replace('\n', "\r\n")).bodies.is_empty());
+}
+
+#[test]
+fn lenient_and_strict() {
+    let text = format!("{HEAD}{BALL}colour = \"red\"\n");
+    assert!(read_text(&text).is_err());
+    let lenient = Options { lenient: true, ..Options::default() };
+    let (_, notices) = read_with(&text, &lenient).expect("lenient");
+    assert_eq!((notices.len(), notices[0].about.code), (1, "scene.unknown_field"));
+    // A clockwise polygon is turned, and it is said.
+    let text = format!("{HEAD}[[body]]\nname = \"p\"\nmass = 1\nshape = {{ kind = \"polygon\", points = [[0, 0], [0, 1], [1, 0]] }}\n");
+    assert_eq!(read_text(&text).expect("turned").1[0].about.code, "shape.flipped");
+    assert!(read_with(&text, &Options { strict: true, ..Options::default() }).is_err());
+}

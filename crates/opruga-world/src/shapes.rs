@@ -1,0 +1,281 @@
+//! The shapes that a scene can name: their parameters, how many nodes they have, and their meshes.
+
+use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
+use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
+use std::any::Any;
+
+const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+    Field { name, range, unit, default, documentation }
+}
+
+const fn count(least: i64) -> Allowed {
+    Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
+}
+
+const CENTER: Field = field("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
+const CORNER: Field = field("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
+const START_ANGLE: Field = field("start_angle", Allowed::ANY, "rad", Default::Number(0.0), "The direction of node 0 from the centre, counter-clockwise from the x axis.");
+
+static RING: Spec = Spec {
+    kind: "ring",
+    summary: "a round outline",
+    documentation: "Vertices on a circle, counter-clockwise; edge i runs from node i to node i + 1.",
+    dimensions: &[2],
+    fields: &[
+        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
+        field("vertices", count(3), "", Default::Required, "How many vertices."),
+        CENTER,
+        START_ANGLE,
+    ],
+};
+
+static REGULAR_POLYGON: Spec = Spec {
+    kind: "regular_polygon",
+    summary: "an outline of equal sides",
+    documentation: "Corners on a circle, counter-clockwise; each side in equal edges.",
+    dimensions: &[2],
+    fields: &[
+        field("sides", count(3), "", Default::Required, "How many sides."),
+        field("radius", Allowed::POSITIVE, "m", Default::Required, "The distance of the corners from the centre."),
+        field("vertices_per_side", count(1), "", Default::Integer(1), "How many edges a side has."),
+        CENTER,
+        START_ANGLE,
+    ],
+};
+
+static POLYGON: Spec = Spec {
+    kind: "polygon",
+    summary: "an outline through points",
+    documentation: "Node i is point i. The points may run either way; edges run counter-clockwise. Edges must not cross or touch.",
+    dimensions: &[2],
+    fields: &[field("points", Allowed::Points, "m", Default::Required, "The corners; the first may be repeated at the end.")],
+};
+
+static LINE: Spec = Spec {
+    kind: "line",
+    summary: "a straight chain",
+    documentation: "Equal edges from one point to another; it encloses nothing.",
+    dimensions: &[2, 3],
+    fields: &[
+        field("from", Allowed::Vector, "m", Default::Required, "Its first node."),
+        field("to", Allowed::Vector, "m", Default::Required, "Its last node."),
+        field("segments", count(1), "", Default::Required, "How many edges."),
+    ],
+};
+
+static POLYLINE: Spec = Spec {
+    kind: "polyline",
+    summary: "a chain through points",
+    documentation: "Node i is point i; it encloses nothing, even where it is closed.",
+    dimensions: &[2, 3],
+    fields: &[
+        field("points", Allowed::Points, "m", Default::Required, "The nodes."),
+        field("closed", Allowed::Boolean, "", Default::Boolean(false), "Whether the last node is joined to the first."),
+    ],
+};
+
+static GRID: Spec = Spec {
+    kind: "grid",
+    summary: "a filled rectangle or box of equal cells",
+    documentation: "Node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, in space back and front.",
+    dimensions: &[2, 3],
+    fields: &[
+        field("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        field("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        CORNER,
+    ],
+};
+
+static SHEET: Spec = Spec {
+    kind: "sheet",
+    summary: "an open flat surface: cloth",
+    documentation: "A parallelogram of triangles with alternating diagonals. Node (i, j) has number i + (nu+1)·j. Groups: left, right (along u), bottom, top (along v).",
+    dimensions: &[3],
+    fields: &[
+        CORNER,
+        field("u", Allowed::Vector, "m", Default::Required, "Its first side, from the corner."),
+        field("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
+        field("cells", Allowed::Integers, "", Default::Required, "How many cells along u and along v."),
+    ],
+};
+
+static BOX: Spec = Spec {
+    kind: "box",
+    summary: "the closed surface of a box",
+    documentation: "Two triangles per cell of each face. Groups: left, right, bottom, top, back, front. Filled boxes are grids.",
+    dimensions: &[3],
+    fields: &[
+        field("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        field("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        CORNER,
+    ],
+};
+
+static ICOSPHERE: Spec = Spec {
+    kind: "icosphere",
+    summary: "a closed ball surface of nearly equal triangles",
+    documentation: "10·4^s + 2 nodes: an icosahedron whose faces are cut in four s times.",
+    dimensions: &[3],
+    fields: &[
+        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
+        field(
+            "subdivisions",
+            Allowed::Integer { least: 0, greatest: MAXIMUM_SUBDIVISIONS as i64 },
+            "",
+            Default::Required,
+            "How often each face is cut in four.",
+        ),
+        CENTER,
+    ],
+};
+
+static TORUS: Spec = Spec {
+    kind: "torus",
+    summary: "a closed tube around a circle",
+    documentation: "Its axis is the z axis. Node (i, j) has number i·(nodes around the tube) + j.",
+    dimensions: &[3],
+    fields: &[
+        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
+        field("tube_radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the tube, less than that of the circle."),
+        field("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
+        field("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
+        CENTER,
+    ],
+};
+
+/// All shapes.
+pub fn all() -> Vec<&'static Spec> {
+    vec![&RING, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS]
+}
+
+/// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
+pub fn node_count(shape: &Values, dimension: usize) -> u64 {
+    let whole = |name: &str| shape.integer(name).and_then(|n| u64::try_from(n).ok()).unwrap_or(0);
+    let product = |cells: &[u32], more: u64| cells.iter().fold(1u64, |n, c| n.saturating_mul(u64::from(*c) + more));
+    match shape.kind() {
+        "ring" => whole("vertices"),
+        "regular_polygon" => whole("sides").saturating_mul(whole("vertices_per_side")),
+        "polygon" | "polyline" => shape.rows("points").len() as u64,
+        "line" => whole("segments").saturating_add(1),
+        "grid" | "sheet" => product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1),
+        "box" => {
+            let n = |a: usize| shape.integers("cells").get(a).map_or(0, |c| u64::from(*c));
+            let pair = |a: usize, b: usize| n(a).saturating_mul(n(b));
+            pair(0, 1).saturating_add(pair(1, 2)).saturating_add(pair(2, 0)).saturating_mul(2).saturating_add(2)
+        }
+        "icosphere" => u32::try_from(whole("subdivisions")).ok().and_then(|s| 4u64.checked_pow(s)).unwrap_or(u64::MAX).saturating_mul(10).saturating_add(2),
+        "torus" => whole("nodes_around").saturating_mul(whole("nodes_of_tube")),
+        _ => 0,
+    }
+}
+
+/// What is done to a shape before it is moved to the place of its body.
+#[derive(Clone, Copy, Debug)]
+pub struct Transform<'a> {
+    /// A factor on all lengths.
+    pub scale: f64,
+    /// An angle in 2D, an axis times its angle in 3D [rad].
+    pub rotation: &'a [f64],
+}
+
+/// A shape that was made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Made<const D: usize> {
+    /// Its mesh.
+    pub mesh: Mesh<D>,
+    /// Whether its points ran clockwise, so that its edges run against them.
+    pub flipped: bool,
+}
+
+/// Makes the mesh of a shape, scaled and turned about the origin of its own coordinates.
+///
+/// # Errors
+/// What the generator refuses: crossing edges, too few points, a tube as wide as its circle …
+pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result<Made<D>, MeshError> {
+    let made: Box<dyn Any> = if D == 2 { Box::new(plane(shape, transform)?) } else { Box::new(space(shape, transform)?) };
+    match made.downcast::<Made<D>>() {
+        Ok(made) => Ok(*made),
+        Err(_) => Err(MeshError::Size { what: "dimension", value: D as f64, must: "2 or 3" }),
+    }
+}
+
+/// The whole number of a field, as a count.
+fn number(shape: &Values, name: &str) -> u32 {
+    shape.integer(name).and_then(|n| u32::try_from(n).ok()).unwrap_or(0)
+}
+
+/// Exactly as many counts as there are axes.
+fn cells<const N: usize>(shape: &Values) -> Result<[u32; N], MeshError> {
+    let given = shape.integers("cells");
+    <[u32; N]>::try_from(given).map_err(|_| MeshError::Count { what: "length of `cells`", value: given.len() as u64, least: N as u64, most: N as u64 })
+}
+
+/// The rows of `points`.
+fn points<const D: usize>(shape: &Values) -> Vec<[f64; D]> {
+    shape.rows("points").iter().map(|row| core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))).collect()
+}
+
+fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError> {
+    let (radius, start) = (shape.number("radius").unwrap_or(0.0), shape.number("start_angle").unwrap_or(0.0));
+    let mut flipped = false;
+    let mut mesh = match shape.kind() {
+        "ring" => Mesh::ring(radius, number(shape, "vertices"), shape.vector("center"), start)?,
+        "regular_polygon" => Mesh::regular_polygon(number(shape, "sides"), radius, number(shape, "vertices_per_side"), shape.vector("center"), start)?,
+        "polygon" => {
+            let polygon = Mesh::polygon(&points(shape))?;
+            flipped = polygon.flipped;
+            polygon.mesh
+        }
+        _ => either(shape)?,
+    };
+    scale(&mut mesh, transform)?;
+    match transform.rotation.first() {
+        Some(angle) if *angle != 0.0 => mesh.rotate(*angle, [0.0; 2])?,
+        _ => {}
+    }
+    Ok(Made { mesh, flipped })
+}
+
+fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError> {
+    let radius = shape.number("radius").unwrap_or(0.0);
+    let center: [f64; 3] = shape.vector("center");
+    let mut mesh = match shape.kind() {
+        "sheet" => Mesh::sheet(shape.vector("corner"), [shape.vector("u"), shape.vector("v")], cells(shape)?)?,
+        "box" => Mesh::box_surface(shape.vector("corner"), shape.vector("size"), cells(shape)?)?,
+        "icosphere" => moved(Mesh::icosphere(radius, number(shape, "subdivisions"))?, center),
+        "torus" => {
+            let counts = [number(shape, "nodes_around"), number(shape, "nodes_of_tube")];
+            moved(Mesh::torus(radius, shape.number("tube_radius").unwrap_or(0.0), counts)?, center)
+        }
+        _ => either(shape)?,
+    };
+    scale(&mut mesh, transform)?;
+    if let [x, y, z] = transform.rotation {
+        let angle = (x * x + y * y + z * z).sqrt();
+        if angle > 0.0 {
+            mesh.rotate([*x, *y, *z], angle, [0.0; 3])?;
+        }
+    }
+    Ok(Made { mesh, flipped: false })
+}
+
+/// The shapes of both dimensions.
+fn either<const D: usize>(shape: &Values) -> Result<Mesh<D>, MeshError> {
+    match shape.kind() {
+        "line" => Mesh::line(shape.vector("from"), shape.vector("to"), number(shape, "segments")),
+        "polyline" => Mesh::polyline(&points(shape), shape.flag("closed")),
+        _ => Mesh::grid(shape.vector("corner"), shape.vector("size"), cells(shape)?),
+    }
+}
+
+fn moved(mut mesh: Mesh<3>, by: [f64; 3]) -> Mesh<3> {
+    mesh.translate(by);
+    mesh
+}
+
+fn scale<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> Result<(), MeshError> {
+    if transform.scale != 1.0 {
+        mesh.scale([transform.scale; D], [0.0; D])?;
+    }
+    Ok(())
+}

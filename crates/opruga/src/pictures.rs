@@ -1,0 +1,170 @@
+//! From a world to what the renderer sees.
+
+use crate::collide::Placed;
+use crate::draw::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture};
+use crate::{World, mesh::EdgeSet};
+
+/// What stays the same from picture to picture: outlines, springs, rest lengths.
+#[derive(Clone, Debug)]
+pub struct Scenery {
+    dimension: u8,
+    title: String,
+    bodies: Vec<Fixed>,
+}
+
+#[derive(Clone, Debug)]
+struct Fixed {
+    body: usize,
+    nodes: usize,
+    facets: Facets,
+    cells: Vec<[u32; 3]>,
+    segments: Vec<[u32; 2]>,
+    /// Edges and their rest lengths, for colouring by strain.
+    edges: Vec<([u32; 2], f64)>,
+    pinned: Vec<u32>,
+    nodes_drawn: bool,
+}
+
+/// What changes from picture to picture, kept small.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// Time [s].
+    pub time: f64,
+    /// Coordinates of all nodes of all bodies, body by body [m].
+    coordinates: Vec<f32>,
+    /// Bodies that are there.
+    bodies: Vec<usize>,
+    pulls: Vec<PullPicture>,
+    colliders: Vec<ColliderPicture>,
+    arrows: Vec<ArrowPicture>,
+}
+
+fn three<const D: usize>(x: [f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(&x);
+    out
+}
+
+impl Scenery {
+    /// Looks at the bodies of a world.
+    pub fn new<const D: usize>(world: &World<D>) -> Scenery {
+        let many = world.blueprint().bodies.len() > 64;
+        let fixed = |body: usize| {
+            let blueprint = &world.blueprint().bodies[body];
+            let mesh = &blueprint.mesh;
+            let edges = mesh.edges(EdgeSet::All);
+            let length = |e: &[u32; 2]| {
+                let (a, b) = (mesh.positions[e[0] as usize], mesh.positions[e[1] as usize]);
+                a.iter().zip(&b).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
+            };
+            let mut pinned: Vec<u32> =
+                blueprint.pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
+            pinned.sort_unstable();
+            pinned.dedup();
+            let surface: Vec<[u32; 3]> = if D == 3 {
+                mesh.facets.iter().map(|f| [f[0], f[1], f[D - 1]]).chain(mesh.sheets.iter().copied()).collect()
+            } else {
+                Vec::new()
+            };
+            let mut cells = mesh.cells.triangles.clone();
+            for q in &mesh.cells.quadrilaterals {
+                cells.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+            }
+            Fixed {
+                body,
+                nodes: mesh.nodes(),
+                facets: if D == 2 {
+                    Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())
+                } else {
+                    Facets::Triangles(surface)
+                },
+                segments: if many || D == 3 && !mesh.facets.is_empty() { mesh.wires.clone() } else { edges.clone() },
+                cells: if D == 2 { cells } else { Vec::new() },
+                edges: edges.iter().map(|e| (*e, length(e))).collect(),
+                nodes_drawn: !many && mesh.nodes() <= 64,
+                pinned,
+            }
+        };
+        Scenery {
+            dimension: D as u8,
+            title: world.blueprint().title.clone(),
+            bodies: (0..world.blueprint().bodies.len()).map(fixed).collect(),
+        }
+    }
+
+    /// Keeps what a world looks like now.
+    pub fn capture<const D: usize>(&self, world: &World<D>, arrows: bool) -> Moment {
+        let mut coordinates = Vec::new();
+        let bodies: Vec<usize> = world.bodies().filter(|b| *b < self.bodies.len()).collect();
+        for &body in &bodies {
+            for node in 0..self.bodies[body].nodes as u32 {
+                coordinates.extend(world.position(body, node).map(|c| c as f32));
+            }
+        }
+        let pulls: Vec<PullPicture> = world
+            .pulls()
+            .into_iter()
+            .map(|(node, pointer, _)| PullPicture { node: three(node), pointer: three(pointer) })
+            .collect();
+        let mut drawn = Vec::new();
+        if arrows {
+            for (node, _, force) in world.pulls() {
+                drawn.push(ArrowPicture { kind: ArrowKind::Pull, from: three(node), vector: three(force) });
+            }
+        }
+        let colliders = world.colliders().map_or_else(Vec::new, |c| {
+            c.placed(world.time()).into_iter().map(|p| collider(p)).collect()
+        });
+        Moment { time: world.time(), coordinates, bodies, pulls, colliders, arrows: drawn }
+    }
+
+    /// The picture of a moment, coloured by the mean strain of the edges at each node.
+    pub fn picture(&self, moment: &Moment) -> Picture {
+        let mut bodies = Vec::new();
+        let mut coordinates = moment.coordinates.chunks_exact(usize::from(self.dimension));
+        for &body in &moment.bodies {
+            let fixed = &self.bodies[body];
+            let positions: Vec<[f64; 3]> = coordinates
+                .by_ref()
+                .take(fixed.nodes)
+                .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
+                .collect();
+            bodies.push(BodyPicture {
+                scalar: strain(fixed, &positions),
+                positions,
+                facets: fixed.facets.clone(),
+                cells: fixed.cells.clone(),
+                segments: fixed.segments.clone(),
+                colour: None,
+                nodes_drawn: fixed.nodes_drawn,
+                pinned: fixed.pinned.clone(),
+            });
+        }
+        Picture {
+            dimension: self.dimension,
+            time: moment.time,
+            title: self.title.clone(),
+            bodies,
+            colliders: moment.colliders.clone(),
+            arrows: moment.arrows.clone(),
+            pulls: moment.pulls.clone(),
+            legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
+        }
+    }
+}
+
+/// Mean elongation of the edges at each node [%].
+fn strain(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
+    let mut sum = vec![0.0; fixed.nodes];
+    let mut count = vec![0.0; fixed.nodes];
+    for ([a, b], rest) in &fixed.edges {
+        let (p, q) = (positions[*a as usize], positions[*b as usize]);
+        let length = p.iter().zip(&q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
+        let stretch = if *rest > 0.0 { 100.0 * (length / rest - 1.0) } else { 0.0 };
+        for node in [*a as usize, *b as usize] {
+            sum[node] += stretch;
+            count[node] += 1.0;
+        }
+    }
+    sum.iter().zip(&count).map(|(s, c)| if *c > 0.0 { s / c } else { 0.0 }).collect()
+}

@@ -1,0 +1,38 @@
+//! The scenes that come with the library.
+
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        const SCENES: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/", $name, ".toml")))),*];
+    };
+}
+
+scenes![
+    "ball",
+    "ball-as-published",
+    "pressures",
+    "integrators",
+    "thousand-balls",
+    "million-vertices",
+    "giant-ring",
+    "leaking-tyre",
+    "two-chambers",
+    "hanging-net",
+    "cloth-over-ball",
+    "balloons",
+];
+
+/// The names of the scenes, in the order of the documentation.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SCENES.iter().map(|s| s.0)
+}
+
+/// The text of a scene.
+pub fn find(name: &str) -> Option<&'static str> {
+    SCENES.iter().find(|s| s.0 == name).map(|s| s.1)
+}
+
+/// The title of a scene: the line `title = "…"` of its text.
+pub fn title(text: &str) -> &str {
+    text.lines().find_map(|l| l.strip_prefix("title = \"")?.strip_suffix('"')).unwrap_or("")
+}
