@@ -192,3 +192,35 @@ fn calibration(simd: Simd) -> f64 {
     }
     best
 }
+
+/// The rows as a table for people.
+pub(crate) fn table(rows: &[Row]) -> String {
+    use std::fmt::Write as _;
+    let mut text = String::from("  bodies  vertices  threads  simd     ns per vertex and step      steps/s     frames/s (16 steps)\n");
+    for row in rows {
+        let _ = writeln!(
+            text,
+            "{:>8} {:>9} {:>8}  {:<8} {:>22.3} {:>12.1} {:>12.1}{}",
+            row.bodies,
+            row.vertices,
+            row.threads,
+            row.simd,
+            row.nanoseconds_per_vertex_step,
+            row.steps_per_second,
+            row.frames_per_second,
+            if row.frames_per_second >= 40.0 { "" } else { "   below the thesis's 40 FPS" },
+        );
+    }
+    text
+}
+
+impl Row {
+    /// All vertices, and frames a second.
+    pub(crate) fn point(&self) -> (f64, f64) {
+        ((self.bodies * self.vertices) as f64, self.frames_per_second)
+    }
+    /// Bodies.
+    pub(crate) fn bodies(&self) -> usize {
+        self.bodies
+    }
+}

@@ -4,12 +4,13 @@ use crate::collider::{Collider, Law, Part, Reach};
 use crate::facets::Facets;
 use crate::motion::{Carry, Pose};
 use crate::picture::{Picture, picture};
-use crate::response::{Meeting, Surface, respond};
+use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
 use crate::shape::{Shape, entry};
 use crate::vector::{dot, subtract};
 use opruga_core::contacts::{Contacts, Moved};
 use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
+use opruga_core::tile::TILE;
 use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
 use std::sync::Arc;
 
@@ -68,8 +69,9 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
             return;
         }
         let simple = self.is_simple();
-        // Twice, since one collider may push a node into another.
-        for _ in 0..2 {
+        let mut held = Held([0; TILE / WIDTH]);
+        // More than once, since one collider may push a node into another.
+        for _ in 0..ROUNDS {
             let space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
             let mut touched = false;
             for collider in self.0.iter() {
@@ -82,11 +84,40 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                         continue;
                     }
                     let frame = frame.get_or_insert_with(|| Frame::new(collider, moved.time, moved.h));
-                    touched |= hold_back(simd, part, collider, frame, &reach, moved, used);
+                    touched |= hold_back(simd, part, collider, frame, &reach, moved, &mut held, used);
                 }
             }
             if simple || !touched {
                 break;
+            }
+        }
+    }
+}
+
+/// How often the colliders act at most in a step.
+const ROUNDS: usize = 4;
+
+/// Which nodes of a tile have been held back in this step: a bit each.
+struct Held([u8; TILE / WIDTH]);
+
+impl Held {
+    /// The eight nodes from `k` on: 1 if held, else 0.
+    #[inline(always)]
+    fn pack<P: Pack>(&self, k: usize) -> P {
+        let bits = self.0.get(k / WIDTH).copied().unwrap_or(0);
+        let mut out = [0.0; WIDTH];
+        for l in 0..WIDTH {
+            out[l] = f64::from(bits >> l & 1);
+        }
+        P::from_array(out)
+    }
+    /// Notes the nodes for which `hit` is above 0.
+    #[inline(always)]
+    fn note<P: Pack>(&mut self, k: usize, hit: P) {
+        let hit = hit.to_array();
+        if let Some(bits) = self.0.get_mut(k / WIDTH) {
+            for l in 0..WIDTH {
+                *bits |= u8::from(hit[l] > 0.0) << l;
             }
         }
     }
@@ -107,6 +138,7 @@ impl<const D: usize> Frame<D> {
 }
 
 /// Lets one part of a collider hold back the nodes of a tile; says whether it touched any.
+#[allow(clippy::too_many_arguments)]
 fn hold_back<const D: usize>(
     simd: Simd,
     part: &Part<D>,
@@ -114,15 +146,16 @@ fn hold_back<const D: usize>(
     frame: &Frame<D>,
     reach: &Reach<D>,
     moved: &mut Moved<D>,
+    held: &mut Held,
     used: usize,
 ) -> bool {
     let (law, Frame { pose, carry }) = (&collider.law, frame);
     match part {
-        Part::HalfSpace(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
-        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
-        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
-        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, used }),
-        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, reach.bend, moved, used),
+        Part::HalfSpace(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
+        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
+        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
+        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
+        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, reach.bend, moved, held, used),
     }
 }
 
@@ -190,6 +223,7 @@ struct Pass<'a, 'm, T, const D: usize> {
     pose: &'a Pose<D>,
     carry: &'a Carry<D>,
     moved: &'a mut Moved<'m, D>,
+    held: &'a mut Held,
     used: usize,
 }
 
@@ -232,7 +266,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
                 most = P::select(P::first(used - k), dot(&way, &way), most).larger(most);
             }
         }
-        if !P::any(least.less(thickness)) && !(has_far_side && P::any(far.less(most))) {
+        if !P::any(least.less(P::splat(law.thickness + largest_rounding(law)))) && !(has_far_side && P::any(far.less(most))) {
             return false;
         }
 
@@ -241,29 +275,33 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         for k in (0..used).step_by(WIDTH) {
             let x = lanes!(P, d => tile.x.load::<P>(d, k));
             let nodes = P::first(used - k);
-            let hit = P::both((shape.gap(&x) - thickness).less(P::zero()), nodes);
+            let close = P::both((shape.gap(&x) - thickness).less(P::splat(largest_rounding(law))), nodes);
             let before = self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k)));
             let way = subtract(&x, &before);
             let fast = P::both(far.less(dot(&way, &way)), nodes);
-            if !P::any(hit) && !(has_far_side && P::any(fast)) {
+            let any_fast = has_far_side && P::any(fast);
+            if !P::any(close) && !any_fast {
                 continue;
             }
-            let (gap, normal) = shape.gap_and_normal(&x);
-            let mut found = Found { hit: P::select(hit, P::one(), P::zero()), gap: gap - thickness, normal };
-            if has_far_side && P::any(fast) {
-                let mut entered = found.to_array();
-                look_for_entries(shape, law.thickness, &arrays(&x), &arrays(&before), &P::select(fast, P::one(), P::zero()).to_array(), &mut entered);
-                found = Found::from_array(&entered);
+            let (mut gap, mut normal) = shape.gap_and_normal(&x);
+            gap = gap - thickness;
+            if any_fast {
+                let mut found = Found { gap: gap.to_array(), normal: arrays(&normal) };
+                let fast = P::select(fast, P::one(), P::zero()).to_array();
+                look_for_entries(shape, law.thickness, &arrays(&x), &arrays(&before), &fast, &mut found);
+                gap = P::from_array(found.gap);
+                normal = lanes!(P, d => P::from_array(found.normal[d]));
             }
-            let hit = P::zero().less(found.hit);
+            let v = lanes!(P, d => tile.v.load::<P>(d, k));
+            let mass = tile.mass.load::<P>(k);
+            let obstacle = self.pose.velocity_at(&x);
+            let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, held: self.held.pack(k), h: P::splat(*h) };
+            let hit = P::both(meets(law, &meeting), nodes);
             if !P::any(hit) {
                 continue;
             }
             touched = true;
-            let v = lanes!(P, d => tile.v.load::<P>(d, k));
-            let mass = tile.mass.load::<P>(k);
-            let obstacle = self.pose.velocity_at(&x);
-            let meeting = Meeting { x, v, before, mass, gap: found.gap, normal: found.normal, obstacle, h: P::splat(*h) };
+            self.held.note(k, P::select(hit, P::one(), P::zero()));
             let parting = respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting);
             for d in 0..D {
                 tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
@@ -280,22 +318,10 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
     }
 }
 
-/// Which nodes of a pack touch (above 0: yes), their gaps and normals.
-struct Found<S, const D: usize> {
-    hit: S,
-    gap: S,
-    normal: [S; D],
-}
-
-impl<P: Pack, const D: usize> Found<P, D> {
-    #[inline(always)]
-    fn to_array(&self) -> Found<[f64; WIDTH], D> {
-        Found { hit: self.hit.to_array(), gap: self.gap.to_array(), normal: arrays(&self.normal) }
-    }
-    #[inline(always)]
-    fn from_array(from: &Found<[f64; WIDTH], D>) -> Self {
-        Found { hit: P::from_array(from.hit), gap: P::from_array(from.gap), normal: lanes!(P, d => P::from_array(from.normal[d])) }
-    }
+/// The gaps and normals of the nodes of a pack.
+struct Found<const D: usize> {
+    gap: [f64; WIDTH],
+    normal: [[f64; WIDTH]; D],
 }
 
 /// The numbers of packs.
@@ -316,7 +342,7 @@ fn look_for_entries<T: Shape<D>, const D: usize>(
     x: &[[f64; WIDTH]; D],
     before: &[[f64; WIDTH]; D],
     fast: &[f64; WIDTH],
-    found: &mut Found<[f64; WIDTH], D>,
+    found: &mut Found<D>,
 ) {
     for l in 0..WIDTH {
         if fast[l] == 0.0 {
@@ -324,7 +350,6 @@ fn look_for_entries<T: Shape<D>, const D: usize>(
         }
         let (a, b): ([f64; D], [f64; D]) = (lanes!(f64, d => before[d][l]), lanes!(f64, d => x[d][l]));
         if let Some((gap, normal)) = entry(shape, margin, &a, &b) {
-            found.hit[l] = 1.0;
             found.gap[l] = gap;
             for d in 0..D {
                 found.normal[d][l] = normal[d];
@@ -349,7 +374,7 @@ impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
 }
 
 /// Facets against the nodes of a tile, one node at a time.
-fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, bend: f64, moved: &mut Moved<D>, used: usize) -> bool {
+fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, bend: f64, moved: &mut Moved<D>, held: &mut Held, used: usize) -> bool {
     let mut touched = false;
     for k in 0..used {
         let place = moved.range.start + k;
@@ -360,14 +385,22 @@ fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &C
         if !finite || !surface.facets.near(&from, &to, surface.margin + bend) {
             continue;
         }
-        let (gap, normal) = surface.find(&x, &before, 0.0);
-        if !(gap < 0.0) {
+        let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
+        if gap == f64::INFINITY {
+            continue;
+        }
+        let mass = moved.mass.at(place);
+        let obstacle = surface.pose.velocity_at(&x);
+        let bit = 1u8 << (k % WIDTH);
+        let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+        let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
+        if !meets(law, &meeting) {
             continue;
         }
         touched = true;
-        let mass = moved.mass.at(place);
-        let obstacle = surface.pose.velocity_at(&x);
-        let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, h: moved.h };
+        if let Some(bits) = held.0.get_mut(k / WIDTH) {
+            *bits |= bit;
+        }
         let mut parting = respond(surface, law, true, &meeting);
         // Pushed out of one facet and through another: the motion of this step is undone.
         if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {

@@ -31,7 +31,7 @@
 //! where the node was (in the frame of the collider) to where it is, is cut with them, and a node that would
 //! nevertheless end on the other side (in a narrow groove) stays where it was.
 //!
-//! **Order.** Colliders act in the order of the scene, twice, so that a node in a corner obeys both of its walls.
+//! **Order.** Colliders act in the order of the scene, up to four times, so that a node in a corner obeys all of its walls.
 //! What a node does depends on nothing but the node: not on the tile, the layout or the vector instructions.
 //!
 //! **Limits.** Nodes meet colliders; edges and facets between nodes do not: an obstacle finer than the mesh can poke

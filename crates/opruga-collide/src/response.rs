@@ -27,6 +27,8 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) normal: [S; D],
     /// Velocity of the collider at the node [m/s].
     pub(crate) obstacle: [S; D],
+    /// Whether another contact has already acted in this step: above 0.
+    pub(crate) held: S,
     /// The substep [s].
     pub(crate) h: S,
 }
@@ -45,6 +47,36 @@ pub(crate) struct Parting<S, const D: usize> {
     pub(crate) work: S,
 }
 
+/// The distance [m] below which a gap is nothing but rounding.
+///
+/// It has an upper bound that does not depend on the node, so that a whole tile can be passed over by one comparison.
+#[inline(always)]
+pub(crate) fn rounding<S: Lane, const D: usize>(law: &Law, x: &[S; D]) -> S {
+    if law.rest_speed == 0.0 {
+        return S::zero();
+    }
+    let mut size = S::splat(law.extent);
+    for d in 0..D {
+        size += x[d].abs();
+    }
+    (size * S::splat(1e-12)).smaller(S::splat(largest_rounding(law)))
+}
+/// The upper bound of [`rounding`] [m].
+#[inline(always)]
+pub(crate) fn largest_rounding(law: &Law) -> f64 {
+    if law.rest_speed == 0.0 { 0.0 } else { 1e-6 * (law.extent + 1.0) }
+}
+
+/// Where there is contact: the node is inside, or on the surface and coming, in both cases by more than rounding.
+///
+/// So a node that reaches the surface exactly meets it in this step and not as one at rest in the next.
+#[inline(always)]
+pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
+    let small = rounding(law, &node.x);
+    let coming = -dot(&subtract(&node.v, &node.obstacle), &node.normal) * node.h;
+    node.gap.less(S::select(small.less(coming), small, -small))
+}
+
 /// Holds back a node where `hit` holds (what comes out elsewhere has no meaning but is finite if what comes in is).
 #[inline(always)]
 pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(surface: &T, law: &Law, hit: S::Mask, node: &Meeting<S, D>) -> Parting<S, D> {
@@ -57,16 +89,12 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(surface: &T, la
     // A fraction e of the speed returns at an impact. A node that began the step on the surface, or comes slower than
     // the speed of rest, is no impact: what it has was given to it within the step, by weight or by the body behind it.
     let mut e = zero;
-    let mut rounding = S::splat(law.extent);
-    for d in 0..D {
-        rounding += node.before[d].abs();
-    }
-    rounding = rounding * S::splat(1e-12);
+    let small = rounding(law, &node.before);
     if law.restitution > 0.0 {
         let mut bounces = S::splat(law.rest_speed).less(speed);
         if law.rest_speed > 0.0 {
-            let (gap, _) = surface.find(&node.before, &node.before, rounding);
-            bounces = S::both(bounces, rounding.less(gap));
+            let (gap, _) = surface.find(&node.before, &node.before, small);
+            bounces = S::both(bounces, small.less(gap));
         }
         e = S::select(bounces, S::splat(law.restitution), zero);
     }
@@ -88,9 +116,12 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(surface: &T, la
         v = lanes!(S, d => (node.obstacle[d] + slide_after[d]) + back * node.normal[d]);
 
         // A node that rests or slides goes where the new velocity takes it from where it was, and then onto the surface:
-        // the tangential part of the free step is undone, so that what sticks does not creep.
-        let path = add(&node.before, &scaled(&slide_after, node.h));
-        let near = node.h * (speed + speed) + rounding;
+        // the tangential part of the free step is undone, so that what sticks does not creep. If another contact has put
+        // the node where it is, only what this one takes from the velocity is undone.
+        let stopped = scaled(&subtract(&slide_after, &slide), node.h);
+        let fresh = add(&node.before, &scaled(&slide_after, node.h));
+        let path = choose(zero.less(node.held), &add(&x, &stopped), &fresh);
+        let near = node.h * (speed + speed) + small;
         let (gap, normal) = surface.find(&path, &node.before, near);
         let onto = choose(gap.less(near), &subtract(&path, &scaled(&normal, gap)), &path);
         let rests = S::both(closing, e.less_or_equal(zero));

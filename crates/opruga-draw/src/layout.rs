@@ -71,6 +71,14 @@ impl Layout {
         }
     }
 
+    /// The width which the legend takes, if there is one and it is wanted.
+    pub(crate) fn legend_space(picture: &Picture, view: &View, unit: f32, wanted: bool) -> f32 {
+        match &picture.legend {
+            Some(legend) if wanted => legend_width(legend, view.range(picture), unit),
+            _ => 0.0,
+        }
+    }
+
     /// The size of texts and lines, relative to an image of 600 pixels.
     pub(crate) fn unit(style: &Style) -> f32 {
         (style.width.min(style.height) as f32 / 600.0).clamp(0.7, 8.0)
@@ -104,7 +112,7 @@ impl Layout {
             });
             self.arrow_names(
                 canvas,
-                picture,
+                &[picture],
                 view,
                 [end + 24.0 * unit, left + width],
                 base,
@@ -116,7 +124,7 @@ impl Layout {
     }
 
     /// Draws a bar of a round length, and gives the place where its text ends.
-    fn scale_bar(
+    pub(crate) fn scale_bar(
         &self,
         canvas: &mut Canvas,
         [left, base]: [f32; 2],
@@ -143,11 +151,11 @@ impl Layout {
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
     }
 
-    /// Writes the names of the arrows in the picture, from the right.
-    fn arrow_names(
+    /// Writes the names of the arrows in the pictures, from the right.
+    pub(crate) fn arrow_names(
         &self,
         canvas: &mut Canvas,
-        picture: &Picture,
+        pictures: &[&Picture],
         view: &View,
         [from, to]: [f32; 2],
         base: f32,
@@ -156,7 +164,10 @@ impl Layout {
         let size = 13.0 * unit;
         let mut end = to;
         for (&kind, _) in view.longest.iter().rev() {
-            if !picture.arrows.iter().any(|arrow| arrow.kind == kind) {
+            if !pictures
+                .iter()
+                .any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind))
+            {
                 continue;
             }
             let name = arrow_name(kind);
@@ -173,7 +184,7 @@ impl Layout {
     }
 
     /// Draws the bar of colours with its values.
-    fn legend(&self, canvas: &mut Canvas, legend: &Legend, range: [f64; 2]) {
+    pub(crate) fn legend(&self, canvas: &mut Canvas, legend: &Legend, range: [f64; 2]) {
         let unit = self.unit;
         let [left, top, width, height] = self.scene.map(|value| value as f32);
         let start = (left + width + 16.0 * unit).round();

@@ -13,6 +13,8 @@ mod image;
 mod layout;
 mod marks;
 mod picture;
+mod plot;
+mod strip;
 mod ticks;
 mod view;
 
@@ -23,6 +25,8 @@ pub use layout::Style;
 pub use picture::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
 };
+pub use plot::{Axis, Chart, Level, Line, Marker, Panel};
+pub use strip::{StripStyle, spread, strip};
 pub use ticks::{
     decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific,
 };
@@ -30,6 +34,36 @@ pub use view::View;
 
 /// Draws a picture as it is seen in a view.
 pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, DrawError> {
+    let mut image = Image::new(style.width, style.height, style.background)?;
+    let layout = layout::Layout::new(picture, view, style);
+    let [left, top, width, height] = layout.scene;
+    let (scene, scale) = scene(
+        picture,
+        view,
+        style.background,
+        [width, height],
+        layout.unit,
+    )?;
+    image.paste(&scene, left, top);
+    layout.annotate(
+        &mut canvas::Canvas::new(&mut image),
+        picture,
+        view,
+        style,
+        scale,
+    );
+    Ok(image)
+}
+
+/// Draws a picture without anything around it, and gives the number of pixels in a metre where it is the same everywhere.
+fn scene(
+    picture: &Picture,
+    view: &View,
+    background: [u8; 3],
+    size: [u32; 2],
+    unit: f32,
+) -> Result<(Image, Option<f64>), DrawError> {
     picture.check()?;
-    flat::draw(picture, view, style)
+    let (image, scale) = flat::scene(picture, view, background, size, unit)?;
+    Ok((image, Some(scale)))
 }

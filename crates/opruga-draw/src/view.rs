@@ -81,11 +81,12 @@ impl Bounds {
 impl View {
     /// The view which shows everything in all pictures of a run.
     pub fn fit<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> Result<View, DrawError> {
+        let pictures: Vec<&Picture> = pictures.into_iter().collect();
         let mut bounds = Bounds::empty();
         let mut scalars = [f64::INFINITY, f64::NEG_INFINITY];
         let mut longest = BTreeMap::new();
         let mut planes: Vec<([f64; 3], [f64; 3])> = Vec::new();
-        for picture in pictures {
+        for picture in &pictures {
             for body in &picture.bodies {
                 body.positions
                     .iter()
@@ -133,14 +134,31 @@ impl View {
                 );
             }
         }
+        let view = View::of(&bounds, scalars, longest);
+        for arrow in pictures.iter().flat_map(|picture| &picture.arrows) {
+            let scale = view.arrow_scale(arrow.kind);
+            bounds.add(
+                std::array::from_fn(|axis| arrow.from[axis] + scale * arrow.vector[axis]),
+                0.0,
+            );
+        }
         Ok(View {
+            low: bounds.low,
+            high: bounds.high,
+            ..view
+        })
+    }
+
+    /// The view of a box, from a little above and aside.
+    fn of(bounds: &Bounds, scalars: [f64; 2], longest: BTreeMap<ArrowKind, f64>) -> View {
+        View {
             low: bounds.low,
             high: bounds.high,
             scalars: (scalars[0] <= scalars[1]).then_some(scalars),
             longest,
             azimuth: 32.0,
             elevation: 20.0,
-        })
+        }
     }
 
     /// The larger side of the view [m].

@@ -143,7 +143,8 @@ impl Checkpoint {
             let size = PIECE.min(payload_bytes as usize - payload.len());
             payload.extend_from_slice(checked(bytes, &mut at, size)?);
         }
-        let scene = String::from_utf8(scene).map_err(|_| CheckpointError::Damaged { from: HEAD as u64, to: HEAD as u64 + scene_bytes })?;
+        let scene = String::from_utf8(scene)
+            .map_err(|_| CheckpointError::Damaged { from: HEAD as u64, to: HEAD as u64 + scene_bytes })?;
         Ok(Checkpoint { scene, payload })
     }
 }

@@ -1,6 +1,7 @@
 //! A parsed scene as a tree of values, each of which knows where it was written.
 
 use crate::problem::{SceneError, visible};
+use crate::scene::MOST_ERRORS;
 use crate::source::Source;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -97,15 +98,22 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let root = table_node(table.into_inner(), Place::Bytes(0, end.min(1)));
     let mut errors: Vec<SceneError> = Vec::new();
     let mut broken = false;
-    for problem in &problems {
+    for problem in problems.iter().take(MOST_ERRORS) {
         let span = problem.span().unwrap_or(0..0);
         if problem.message() == "duplicate key" {
             errors.push(duplicate(source, &root, span.start, span.end));
             continue;
         }
         // One error a line: the rest follows from the first.
-        let message = problem.message().replace(", expected nothing", "");
-        let error = source.mark(SceneError::new("scene.syntax", format!("the text is no TOML: {message}")), span.start, span.end);
+        let empty = span.is_empty()
+            && source.text.get(..span.start).is_some_and(|t| t.trim_end_matches([' ', '\t']).ends_with('='));
+        let message =
+            if empty { "a value is missing".to_string() } else { problem.message().replace(", expected nothing", "") };
+        let error = source.mark(
+            SceneError::new("scene.syntax", format!("the text is no TOML: {message}")),
+            span.start,
+            span.end,
+        );
         if !errors.iter().any(|e| e.line == error.line && e.code == "scene.syntax") {
             errors.push(error);
         }
@@ -194,7 +202,10 @@ pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, String> {
     let (parsed, errors) = DeValue::parse_recoverable(trimmed);
     let mut value = if errors.is_empty() {
         node(parsed)
-    } else if !trimmed.is_empty() && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./[]".contains(c)) && trimmed.starts_with(char::is_alphabetic) {
+    } else if !trimmed.is_empty()
+        && trimmed.chars().all(|c| c.is_alphanumeric() || "_-./[]".contains(c))
+        && trimmed.starts_with(char::is_alphabetic)
+    {
         Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
     } else {
         return Err(errors.first().map(|e| e.message().to_string()).unwrap_or_default());

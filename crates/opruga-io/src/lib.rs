@@ -1,6 +1,8 @@
 //! What Opruga reads and writes: scene files with all their errors at once, their reference page and JSON Schema,
 //! tables, checkpoints, and files that are never half written.
 
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
+
 pub mod catalogue;
 pub mod checkpoint;
 mod document;

@@ -34,11 +34,16 @@ pub(crate) fn apply_all(root: &mut Node, overrides: &[(String, String)]) -> Resu
 
 fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), SceneError> {
     let value = document::parse_value(value, number).map_err(|why| {
-        SceneError::new("set.value", format!("the value is no TOML: {why}")).path(path).value(visible(value)).hint("texts with spaces need quotes")
+        SceneError::new("set.value", format!("the value is no TOML: {why}"))
+            .path(path)
+            .value(visible(value))
+            .hint("texts with spaces need quotes")
     })?;
     let parts: Vec<&str> = path.split('.').collect();
     if parts.len() > 32 || parts.iter().any(|p| p.is_empty()) {
-        return Err(SceneError::new("set.path", format!("`{}` is no path", visible(path))).path(visible(path)).allowed("names separated by single dots"));
+        return Err(SceneError::new("set.path", format!("`{}` is no path", visible(path)))
+            .path(visible(path))
+            .allowed("names separated by single dots"));
     }
     set(root, &parts, "", value, number)
 }
@@ -62,7 +67,13 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
             set(&mut entries[k].value, rest, &here, value, number)
         }
         Data::Array(items) => {
-            let label = |item: &Node| item.get("name").or_else(|| item.get("kind")).or_else(|| item.get("do")).and_then(Node::text).map(str::to_string);
+            let label = |item: &Node| {
+                item.get("name")
+                    .or_else(|| item.get("kind"))
+                    .or_else(|| item.get("do"))
+                    .and_then(Node::text)
+                    .map(str::to_string)
+            };
             if let Ok(k) = head.parse::<usize>() {
                 let count = items.len();
                 return match items.get_mut(k) {
@@ -70,10 +81,15 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
                     None => Err(SceneError::new("set.path", format!("`{}` has no entry {k}", visible(walked)))
                         .path(shown)
                         .value(k.to_string())
-                        .allowed(if count == 0 { "it is empty".to_string() } else { format!("numbers from 0 to {}", count - 1) })),
+                        .allowed(if count == 0 {
+                            "it is empty".to_string()
+                        } else {
+                            format!("numbers from 0 to {}", count - 1)
+                        })),
                 };
             }
-            let matching: Vec<usize> = (0..items.len()).filter(|k| label(&items[*k]).as_deref() == Some(*head)).collect();
+            let matching: Vec<usize> =
+                (0..items.len()).filter(|k| label(&items[*k]).as_deref() == Some(*head)).collect();
             match matching.as_slice() {
                 [k] => set(&mut items[*k], rest, &here, value, number),
                 [] => {
@@ -85,12 +101,17 @@ fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize
                         .allowed(if allowed.is_empty() { "it is empty".to_string() } else { allowed })
                         .nearest(nearest(head, labels.iter().map(String::as_str))))
                 }
-                several => Err(SceneError::new("set.path", format!("`{}` has {} entries `{}`", visible(walked), several.len(), visible(head)))
-                    .path(shown)
-                    .value(visible(head))
-                    .allowed(format!("their numbers: {several:?}"))),
+                several => Err(SceneError::new(
+                    "set.path",
+                    format!("`{}` has {} entries `{}`", visible(walked), several.len(), visible(head)),
+                )
+                .path(shown)
+                .value(visible(head))
+                .allowed(format!("their numbers: {several:?}"))),
             }
         }
-        _ => Err(SceneError::new("set.path", format!("`{}` is {}, it has no fields", visible(walked), node.kind())).path(shown).value(visible(head))),
+        _ => Err(SceneError::new("set.path", format!("`{}` is {}, it has no fields", visible(walked), node.kind()))
+            .path(shown)
+            .value(visible(head))),
     }
 }

@@ -89,11 +89,20 @@ fn rows(out: &mut String, section: &Section, tag: Option<&str>) {
     }
     out.push_str("| field | unit | allowed | default | meaning |\n|---|---|---|---|---|\n");
     for field in section.spec.fields {
-        let _ = writeln!(out, "| `{}` | {} | {} | {} | {} |", field.name, field.unit, escape(&allowed(&field.range)), default(field), escape(field.documentation));
+        let _ = writeln!(
+            out,
+            "| `{}` | {} | {} | {} | {} |",
+            field.name,
+            field.unit,
+            escape(&allowed(&field.range)),
+            default(field),
+            escape(field.documentation)
+        );
     }
     for child in section.children {
         let default = if child.required { "required" } else { "" };
-        let _ = writeln!(out, "| `{}` | | {} | {default} | {} |", child.name, holds(child), escape(child.documentation));
+        let _ =
+            writeln!(out, "| `{}` | | {} | {default} | {} |", child.name, holds(child), escape(child.documentation));
     }
     out.push('\n');
 }
@@ -129,7 +138,9 @@ fn default(field: &Field) -> String {
 fn holds(child: &Child) -> String {
     match child.holds {
         Holds::Table(_) | Holds::Integrator => "a table, see below".into(),
-        Holds::List(_) | Holds::Tagged { .. } | Holds::Models | Holds::Colliders => "a list of tables, see below".into(),
+        Holds::List(_) | Holds::Tagged { .. } | Holds::Models | Holds::Colliders => {
+            "a list of tables, see below".into()
+        }
         Holds::Shape => "a table, see Shapes".into(),
         Holds::Selector => "a selector, see below".into(),
         Holds::Turn => "a number in 2D, an axis times its angle in 3D".into(),

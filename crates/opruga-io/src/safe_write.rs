@@ -24,7 +24,14 @@ impl WriteError {
         WriteError { code, message: message.into(), path: path.to_path_buf(), bytes: 0, hint: None }
     }
     fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
-        WriteError { bytes, ..WriteError::new("write.failed", path, format!("writing stopped after {bytes} bytes: {}", crate::scene::reason(error))) }
+        WriteError {
+            bytes,
+            ..WriteError::new(
+                "write.failed",
+                path,
+                format!("writing stopped after {bytes} bytes: {}", crate::scene::reason(error)),
+            )
+        }
     }
     /// The exit code of a program that stops because of this error.
     pub fn exit_code(&self) -> i32 {
@@ -58,7 +65,11 @@ impl std::error::Error for WriteError {}
 /// # Errors
 /// `write.exists` where the file is there and `force` is not given; `write.failed` with the number of bytes written so
 /// far. In both cases the old file is whole and nothing is left behind.
-pub fn safe_write(path: &Path, force: bool, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, WriteError> {
+pub fn safe_write(
+    path: &Path,
+    force: bool,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<u64, WriteError> {
     safe_write_through(path, force, |file| file, fill)
 }
 
@@ -82,7 +93,9 @@ pub fn safe_write_through<W: Write>(
     if !force && path.exists() {
         return Err(exists());
     }
-    let Some(name) = path.file_name() else { return Err(WriteError::new("write.failed", path, "this is no name of a file")) };
+    let Some(name) = path.file_name() else {
+        return Err(WriteError::new("write.failed", path, "this is no name of a file"));
+    };
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -94,7 +107,8 @@ pub fn safe_write_through<W: Write>(
 
     // What a killed process of the same number left behind is in nobody's use.
     let _ = fs::remove_file(&aside);
-    let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| WriteError::failed(path, 0, &e))?;
+    let file =
+        OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| WriteError::failed(path, 0, &e))?;
     let result = fill_and_sync(&file, wrap, fill).map_err(|(bytes, e)| WriteError::failed(path, bytes, &e));
     drop(file);
     let result = result.and_then(|bytes| {
@@ -112,7 +126,11 @@ pub fn safe_write_through<W: Write>(
 }
 
 /// Everything up to the renaming; an error comes with the number of bytes that reached the file.
-fn fill_and_sync<W: Write>(file: &File, wrap: impl FnOnce(File) -> W, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, (u64, io::Error)> {
+fn fill_and_sync<W: Write>(
+    file: &File,
+    wrap: impl FnOnce(File) -> W,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<u64, (u64, io::Error)> {
     let inner = wrap(file.try_clone().map_err(|e| (0, e))?);
     let mut writer = BufWriter::with_capacity(1 << 16, Counted { inner, bytes: 0 });
     let filled = fill(&mut writer).and_then(|()| writer.flush());
@@ -203,22 +221,36 @@ impl OutputFolder {
     /// `write.folder` where it cannot be made or written, `write.locked` where another process writes into it,
     /// `write.exists` where it holds other files and `existing` refuses them.
     pub fn open(path: &Path, existing: Existing) -> Result<OutputFolder, WriteError> {
-        let cannot = |what: &str, e: &io::Error| WriteError::new("write.folder", path, format!("the folder cannot be {what}: {}", crate::scene::reason(e)));
+        let cannot = |what: &str, e: &io::Error| {
+            WriteError::new("write.folder", path, format!("the folder cannot be {what}: {}", crate::scene::reason(e)))
+        };
         if path.exists() && !path.is_dir() {
             return Err(WriteError::new("write.folder", path, "this is a file, no folder"));
         }
         if !path.exists() {
             fs::create_dir(path).map_err(|e| {
                 let error = cannot("made", &e);
-                if e.kind() == io::ErrorKind::NotFound { WriteError { hint: Some("the folder around it is missing".into()), ..error } } else { error }
+                if e.kind() == io::ErrorKind::NotFound {
+                    WriteError { hint: Some("the folder around it is missing".into()), ..error }
+                } else {
+                    error
+                }
             })?;
         }
-        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK)).map_err(|e| cannot("written", &e))?;
+        let lock = OpenOptions::new()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(path.join(LOCK))
+            .map_err(|e| cannot("written", &e))?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(fs::TryLockError::WouldBlock) => {
                 let error = WriteError::new("write.locked", path, "another process writes into this folder");
-                return Err(WriteError { hint: Some("wait for it, or choose another folder with --out".into()), ..error });
+                return Err(WriteError {
+                    hint: Some("wait for it, or choose another folder with --out".into()),
+                    ..error
+                });
             }
             // A file system without locks: the folder can still be used.
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
@@ -232,9 +264,20 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
-                let message = format!("the folder already holds {} files, among them {}", names.len(), crate::problem::visible(first));
-                let message = if names.len() == 1 { format!("the folder already holds {}", crate::problem::visible(first)) } else { message };
-                return Err(WriteError { hint: Some("--force replaces them, --out chooses another folder".into()), ..WriteError::new("write.exists", path, message) });
+                let message = format!(
+                    "the folder already holds {} files, among them {}",
+                    names.len(),
+                    crate::problem::visible(first)
+                );
+                let message = if names.len() == 1 {
+                    format!("the folder already holds {}", crate::problem::visible(first))
+                } else {
+                    message
+                };
+                return Err(WriteError {
+                    hint: Some("--force replaces them, --out chooses another folder".into()),
+                    ..WriteError::new("write.exists", path, message)
+                });
             }
         }
         let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, _lock: lock };
@@ -254,7 +297,12 @@ impl OutputFolder {
     ///
     /// # Errors
     /// As [`safe_write`].
-    pub fn write(&self, name: &str, force: bool, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, WriteError> {
+    pub fn write(
+        &self,
+        name: &str,
+        force: bool,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<u64, WriteError> {
         safe_write(&self.path(name), force || self.force, fill)
     }
 }

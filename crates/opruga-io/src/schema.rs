@@ -46,12 +46,17 @@ fn section(section: &Section, tag: Option<&str>, catalogue: &Catalogue) -> Value
 }
 
 fn describe(spec: &Spec) -> String {
-    if spec.documentation.is_empty() { spec.summary.to_string() } else { format!("{}\n\n{}", spec.summary, spec.documentation) }
+    if spec.documentation.is_empty() {
+        spec.summary.to_string()
+    } else {
+        format!("{}\n\n{}", spec.summary, spec.documentation)
+    }
 }
 
 /// Tables of which `kind` chooses one.
 fn kinds(specs: &[&'static Spec], catalogue: &Catalogue) -> Value {
-    let tables: Vec<Value> = specs.iter().map(|spec| section(&Section { spec, children: &[] }, Some("kind"), catalogue)).collect();
+    let tables: Vec<Value> =
+        specs.iter().map(|spec| section(&Section { spec, children: &[] }, Some("kind"), catalogue)).collect();
     json!({ "oneOf": tables })
 }
 
@@ -69,11 +74,19 @@ fn structured(child: &Child, catalogue: &Catalogue) -> Value {
         Holds::Models => list(kinds(&catalogue.models, catalogue)),
         Holds::Colliders => list(kinds(&catalogue.colliders, catalogue)),
         Holds::Selector => json!({ "$ref": "#/$defs/selector" }),
-        Holds::Turn => json!({ "oneOf": [{ "type": "number" }, { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }] }),
+        Holds::Turn => {
+            json!({ "oneOf": [{ "type": "number" }, { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }] })
+        }
         Holds::BodyReference => json!({ "oneOf": [{ "type": "string" }, { "type": "integer", "minimum": 0 }] }),
-        Holds::Node => json!({ "oneOf": [{ "type": "integer", "minimum": 0 }, { "enum": ["nearest", "nearest_facet"] }] }),
-        Holds::Words(words) => json!({ "type": "array", "items": { "enum": words }, "minItems": 1, "uniqueItems": true }),
-        Holds::Counts => json!({ "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 1, "maxItems": 3 }),
+        Holds::Node => {
+            json!({ "oneOf": [{ "type": "integer", "minimum": 0 }, { "enum": ["nearest", "nearest_facet"] }] })
+        }
+        Holds::Words(words) => {
+            json!({ "type": "array", "items": { "enum": words }, "minItems": 1, "uniqueItems": true })
+        }
+        Holds::Counts => {
+            json!({ "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 1, "maxItems": 3 })
+        }
         Holds::AnyValue => json!({}),
     };
     schema["description"] = child.documentation.into();
@@ -128,9 +141,7 @@ fn allowed(range: &Allowed) -> Value {
 fn selector() -> Value {
     let vector = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 3 });
     let sets = json!({ "type": "array", "items": { "$ref": "#/$defs/selector" } });
-    let table = |a: &str, va: Value, b: &str, vb: Value| {
-        json!({ "type": "object", "properties": { a: va, b: vb }, "required": [a, b], "additionalProperties": false })
-    };
+    let table = |a: &str, va: Value, b: &str, vb: Value| json!({ "type": "object", "properties": { a: va, b: vb }, "required": [a, b], "additionalProperties": false });
     json!({
         "type": "object",
         "description": "A set of nodes of a body.",

@@ -22,7 +22,10 @@ impl<'a> Source<'a> {
         let zeros = |k: usize| bytes.iter().skip(k).step_by(2).take(32).filter(|b| **b == 0).count();
         let wide = bytes.starts_with(&[0xff, 0xfe])
             || bytes.starts_with(&[0xfe, 0xff])
-            || (bytes.len() >= 4 && (zeros(0) > 0 || zeros(1) > 0) && (zeros(0) * 4 >= bytes.len().div_ceil(2).min(32) || zeros(1) * 4 >= bytes.len().div_ceil(2).min(32)));
+            || (bytes.len() >= 4
+                && (zeros(0) > 0 || zeros(1) > 0)
+                && (zeros(0) * 4 >= bytes.len().div_ceil(2).min(32)
+                    || zeros(1) * 4 >= bytes.len().div_ceil(2).min(32)));
         if wide {
             return Err(Source { file, text: "" }
                 .mark(error("scene.encoding", "the scene is written in UTF-16 or UTF-32".into()), 0, 0)
@@ -68,7 +71,11 @@ impl<'a> Source<'a> {
         let line_start = self.text[..start].rfind('\n').map_or(0, |k| k + 1);
         let line_end = self.text[start..].find('\n').map_or(self.text.len(), |k| start + k);
         // A long line is shown from 40 characters before the marked part.
-        let shown_from = self.text[line_start..start].char_indices().rev().nth(39).map_or(line_start, |(k, _)| line_start + k);
+        let mut before = self.text[line_start..start].char_indices().rev();
+        let shown_from = match before.nth(39) {
+            Some((k, _)) if before.nth(39).is_some() => line_start + k,
+            _ => line_start,
+        };
         let mut excerpt = Excerpt { line: String::new(), start: 0, length: 0 };
         let mut count = 0;
         for (k, c) in self.text[shown_from..line_end].trim_end_matches('\r').char_indices() {
@@ -79,9 +86,13 @@ impl<'a> Source<'a> {
             } else if here < end {
                 excerpt.length += width;
             }
-            if unprintable(c) { excerpt.line.extend(c.escape_unicode()) } else { excerpt.line.push(c) }
+            if unprintable(c) {
+                excerpt.line.extend(c.escape_unicode())
+            } else {
+                excerpt.line.push(c)
+            }
             count += 1;
-            if count == 100 {
+            if count == 120 {
                 break;
             }
         }
@@ -105,8 +116,12 @@ impl<'a> Source<'a> {
     /// dots in keys) and how many values there are, before a parser allocates or recurses.
     fn check_nesting(&self, limits: &Limits) -> Result<(), SceneError> {
         let too_deep = |at: usize| {
-            self.mark(SceneError::new("scene.depth", format!("tables and arrays are nested more than {} deep", limits.depth)), at, at + 1)
-                .allowed(format!("at most {} levels", limits.depth))
+            self.mark(
+                SceneError::new("scene.depth", format!("tables and arrays are nested more than {} deep", limits.depth)),
+                at,
+                at + 1,
+            )
+            .allowed(format!("at most {} levels", limits.depth))
         };
         let bytes = self.text.as_bytes();
         // An open bracket: whether it is an inline table, and how deep the key before it was.
@@ -134,7 +149,8 @@ impl<'a> Source<'a> {
                     let end = end_of_header(bytes, at + 1);
                     header = 1 + bytes[at..end].iter().filter(|b| **b == b'.').count();
                     items += 1;
-                    if header > limits.depth || bytes[at + 1..end].iter().filter(|b| **b == b'[').count() > limits.depth {
+                    if header > limits.depth || bytes[at + 1..end].iter().filter(|b| **b == b'[').count() > limits.depth
+                    {
                         return Err(too_deep(at));
                     }
                     at = end.max(at + 1) - 1;
@@ -173,7 +189,11 @@ impl<'a> Source<'a> {
             }
             if items > limits.values {
                 return Err(self
-                    .mark(SceneError::new("scene.too_large", format!("the scene has more than {} values", limits.values)), at, at + 1)
+                    .mark(
+                        SceneError::new("scene.too_large", format!("the scene has more than {} values", limits.values)),
+                        at,
+                        at + 1,
+                    )
                     .allowed(format!("at most {} values", limits.values))
                     .hint("large shapes belong in mesh files"));
             }

@@ -18,9 +18,13 @@ pub struct FinalBody<'a, const D: usize> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_final<'a, const D: usize>(out: &mut dyn Write, bodies: impl Iterator<Item = FinalBody<'a, D>>) -> io::Result<()> {
+pub fn write_final<'a, const D: usize>(
+    out: &mut dyn Write,
+    bodies: impl Iterator<Item = FinalBody<'a, D>>,
+) -> io::Result<()> {
     let axes = &["x", "y", "z"][..D];
-    let columns: Vec<String> = axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}"))).collect();
+    let columns: Vec<String> =
+        axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}"))).collect();
     writeln!(out, "body,node,{}", columns.join(","))?;
     for body in bodies {
         let name = cell(body.name);

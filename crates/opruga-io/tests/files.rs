@@ -21,12 +21,16 @@ fn a_failing_disk_leaves_the_old_file_whole() {
     safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
     let new: Vec<u8> = (0..=255).collect();
     for k in 0..new.len() as u64 {
-        let error = safe_write_through(&path, true, |file| Failing::after(k, file), |w| w.write_all(&new)).expect_err("the disk is full");
+        let error = safe_write_through(&path, true, |file| Failing::after(k, file), |w| w.write_all(&new))
+            .expect_err("the disk is full");
         assert_eq!((error.code, error.bytes, error.exit_code(), &error.path), ("write.failed", k, 4, &path));
         assert_eq!(std::fs::read(&path).expect("still there"), b"old");
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
     }
-    assert_eq!(safe_write_through(&path, true, |file| Failing::after(256, file), |w| w.write_all(&new)).expect("just enough"), 256);
+    assert_eq!(
+        safe_write_through(&path, true, |file| Failing::after(256, file), |w| w.write_all(&new)).expect("just enough"),
+        256
+    );
     assert_eq!(std::fs::read(&path).expect("there"), new);
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
@@ -97,7 +101,10 @@ fn tables_keep_every_bit() {
     let body = FinalBody { name: "a", positions: &[[0.1, -2.0]], velocities: &[[1.0 / 3.0, 0.0]] };
     write_final(&mut out, [body].into_iter()).expect("memory does not fail");
     let text = String::from_utf8(out).expect("text");
-    assert_eq!(text, "body,node,x,y,vx,vy\na,0,1.0000000000000001e-1,-2.0000000000000000e0,3.3333333333333331e-1,0.0000000000000000e0\n");
+    assert_eq!(
+        text,
+        "body,node,x,y,vx,vy\na,0,1.0000000000000001e-1,-2.0000000000000000e0,3.3333333333333331e-1,0.0000000000000000e0\n"
+    );
 
     let mut table = NumberTable::new(vec!["time".into(), "a,b".into()]);
     table.push(&[0.0, 1e300]);
@@ -107,7 +114,8 @@ fn tables_keep_every_bit() {
 
     let json = Summary { scene: "ball".into(), dimension: 2, h: f64::NAN, ..Summary::default() }.to_json();
     assert_eq!((&json["schema"], &json["scene"], &json["h"]), (&1.into(), &"ball".into(), &serde_json::Value::Null));
-    for key in ["energy", "momentum", "state_hash", "warnings", "files", "nanoseconds_per_node_step", "reproducibility"] {
+    for key in ["energy", "momentum", "state_hash", "warnings", "files", "nanoseconds_per_node_step", "reproducibility"]
+    {
         assert!(json.get(key).is_some(), "{key}");
     }
     let mut out = Vec::new();

@@ -7,7 +7,10 @@ use proptest::prelude::*;
 
 fn options() -> Options {
     // Small limits: a mutation may ask for a billion nodes.
-    Options { limits: Limits { nodes: 20_000, bodies: 2_000, memory_bytes: 64 << 20, ..Limits::default() }, ..Options::default() }
+    Options {
+        limits: Limits { nodes: 20_000, bodies: 2_000, memory_bytes: 64 << 20, ..Limits::default() },
+        ..Options::default()
+    }
 }
 
 fn survives(bytes: &[u8]) {
@@ -21,8 +24,30 @@ fn survives(bytes: &[u8]) {
 
 /// Words that a mutation may insert.
 const WORDS: [&str; 24] = [
-    "[", "]", "{", "}", "=", ",", ".", "\"", "'", "\n", "#", "nan", "-1", "1e308", "9223372036854775807", "[[body]]\n", "\"\"\"", "true", "\u{202e}", "body = \"row\"", "select = { all = true }",
-    "[0]", "\u{0}", "0",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ",",
+    ".",
+    "\"",
+    "'",
+    "\n",
+    "#",
+    "nan",
+    "-1",
+    "1e308",
+    "9223372036854775807",
+    "[[body]]\n",
+    "\"\"\"",
+    "true",
+    "\u{202e}",
+    "body = \"row\"",
+    "select = { all = true }",
+    "[0]",
+    "\u{0}",
+    "0",
 ];
 
 proptest! {

@@ -29,7 +29,10 @@ fn the_full_scene_has_all_its_parts() {
     assert_eq!(scene.loads[2].kind, LoadKind::Pressure(10.0));
     // Commands come in the order of time.
     assert_eq!(scene.commands.iter().map(|c| c.at).collect::<Vec<_>>(), [1.0, 1.0, 2.0, 2.5, 3.0, 5.0]);
-    assert_eq!(scene.commands[2].action, Action::Set { path: "body.ball.models.pressure.nRT".into(), value: Value::Number(50.0) });
+    assert_eq!(
+        scene.commands[2].action,
+        Action::Set { path: "body.ball.models.pressure.nRT".into(), value: Value::Number(50.0) }
+    );
 }
 
 #[test]
@@ -48,8 +51,10 @@ fn copies_share_their_mesh_and_jitter_by_the_seed() {
     assert_eq!(scene.bodies, plane(FULL).bodies);
     assert_ne!(scene.bodies, plane(&FULL.replace("seed = 7", "seed = 8")).bodies);
     // Places in selectors move along with every copy.
-    let text = format!("{HEAD}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 1, vertices = 4 }}\n\
-        pin = [{{ select = {{ ball = {{ center = [1, 0], radius = 0.1 }} }} }}]\ncopies = {{ count = [3], spacing = [10, 0] }}\n");
+    let text = format!(
+        "{HEAD}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 1, vertices = 4 }}\n\
+        pin = [{{ select = {{ ball = {{ center = [1, 0], radius = 0.1 }} }} }}]\ncopies = {{ count = [3], spacing = [10, 0] }}\n"
+    );
     for body in plane(&text).bodies {
         assert_eq!(body.pins[0].select.resolve(&body.mesh, &body.translation), [0]);
     }
@@ -71,7 +76,9 @@ fn selectors_select() {
         ("{ not = { boundary = true } }", vec![4]),
     ];
     for (select, nodes) in cases {
-        let text = format!("{HEAD}[[body]]\nname = \"g\"\nmass = 1\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2] }}\npin = [{{ select = {select} }}]\n");
+        let text = format!(
+            "{HEAD}[[body]]\nname = \"g\"\nmass = 1\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2] }}\npin = [{{ select = {select} }}]\n"
+        );
         let scene = plane(&text);
         assert_eq!(scene.bodies[0].pins[0].select.resolve(&scene.bodies[0].mesh, &[0.0; 2]), nodes, "{select}");
     }
@@ -95,7 +102,8 @@ fn every_shape_is_made_with_as_many_nodes_as_estimated() {
         "{ kind = \"torus\", radius = 1, tube_radius = 0.2, nodes_around = 20, nodes_of_tube = 8 }",
         "{ kind = \"line\", from = [0, 0, 0], to = [1, 0, 0], segments = 4 }",
     ];
-    let limits = |nodes: usize| Options { limits: Limits { nodes: nodes as u64, ..Limits::default() }, ..Options::default() };
+    let limits =
+        |nodes: usize| Options { limits: Limits { nodes: nodes as u64, ..Limits::default() }, ..Options::default() };
     for shape in plane_shapes {
         let text = format!("{HEAD}[[body]]\nname = \"s\"\nmass = 1\nshape = {shape}\nrotation = 0.3\nscale = 2\n");
         let nodes = plane(&text).bodies[0].mesh.nodes();
@@ -103,7 +111,9 @@ fn every_shape_is_made_with_as_many_nodes_as_estimated() {
         assert!(read_with(&text, &limits(nodes - 1)).is_err(), "{shape}");
     }
     for shape in space_shapes {
-        let text = format!("{HEAD}[[body]]\nname = \"s\"\nmass = 1\nshape = {shape}\nrotation = [0.3, 0, 1]\nscale = 2\n").replace("dimension = 2", "dimension = 3");
+        let text =
+            format!("{HEAD}[[body]]\nname = \"s\"\nmass = 1\nshape = {shape}\nrotation = [0.3, 0, 1]\nscale = 2\n")
+                .replace("dimension = 2", "dimension = 3");
         let nodes = space(&text).bodies[0].mesh.nodes();
         assert!(read_with(&text, &limits(nodes)).is_ok(), "{shape}");
         assert!(read_with(&text, &limits(nodes - 1)).is_err(), "{shape}");
@@ -131,7 +141,9 @@ fn overrides_reach_every_parameter() {
         "body.row.copies.count=[1]",
         "load.traction.body=row[0]",
     ];
-    let Ok(AnyBlueprint::Plane(scene)) = overridden(FULL, &arguments) else { panic!("{:?}", overridden(FULL, &arguments)) };
+    let Ok(AnyBlueprint::Plane(scene)) = overridden(FULL, &arguments) else {
+        panic!("{:?}", overridden(FULL, &arguments))
+    };
     assert_eq!((scene.seed, scene.time.substeps, scene.surroundings.gravity), (3, 4, [0.0, -1.0]));
     assert_eq!(scene.integrator.integer("iterations"), Some(5));
     assert_eq!((scene.bodies[0].mass, scene.bodies[1].mass), (Mass::Total(2.5), Mass::Density(7.0)));
@@ -146,13 +158,25 @@ fn overrides_reach_every_parameter() {
 #[test]
 fn wrong_overrides_are_explained() {
     let cases = [
-        ("body.bal.mass=1", "--set body.bal.mass=1: error[set.path]: `body` has no entry `bal`\n  = allowed: ball, row, wall\n  = hint: did you mean `ball`?"),
-        ("body.9.mass=1", "--set body.9.mass=1: error[set.path]: `body` has no entry 9\n  = allowed: numbers from 0 to 2"),
+        (
+            "body.bal.mass=1",
+            "--set body.bal.mass=1: error[set.path]: `body` has no entry `bal`\n  = allowed: ball, row, wall\n  = hint: did you mean `ball`?",
+        ),
+        (
+            "body.9.mass=1",
+            "--set body.9.mass=1: error[set.path]: `body` has no entry 9\n  = allowed: numbers from 0 to 2",
+        ),
         ("body.ball.mas=1", "--set body.ball.mas=1: error[scene.unknown_field]: there is no field `mas` in `body`"),
-        ("time.substeps=0", "--set time.substeps=0: error[scene.range]: `substeps` is 0\n  = allowed: a whole number from 1 to 1000000"),
+        (
+            "time.substeps=0",
+            "--set time.substeps=0: error[scene.range]: `substeps` is 0\n  = allowed: a whole number from 1 to 1000000",
+        ),
         ("seed.x=1", "--set seed.x=1: error[set.path]: `seed` is a whole number, it has no fields"),
         ("world.gravity=[1", "--set world.gravity=[1: error[set.value]: the value is no TOML"),
-        ("body.ball.mass=nan", "--set body.ball.mass=nan: error[scene.not_finite]: `mass` is not finite\n  = allowed: a number > 0"),
+        (
+            "body.ball.mass=nan",
+            "--set body.ball.mass=nan: error[scene.not_finite]: `mass` is not finite\n  = allowed: a number > 0",
+        ),
     ];
     for (argument, expected) in cases {
         let text = overridden(FULL, &[argument]).expect_err(argument);
@@ -172,7 +196,21 @@ fn the_template_is_a_scene() {
 fn the_reference_and_the_json_schema_name_every_field() {
     let page = reference::markdown(&catalogue());
     let json = schema::json_schema(&catalogue()).to_string();
-    for word in ["seconds", "largest_force", "node_mass", "jitter", "motion", "stiffness", "iterations", "subdivisions", "nearest_facet", "record", "half_space", "traction", "curve"] {
+    for word in [
+        "seconds",
+        "largest_force",
+        "node_mass",
+        "jitter",
+        "motion",
+        "stiffness",
+        "iterations",
+        "subdivisions",
+        "nearest_facet",
+        "record",
+        "half_space",
+        "traction",
+        "curve",
+    ] {
         assert!(page.contains(word), "{word} is missing in the page");
         assert!(json.contains(word), "{word} is missing in the schema");
     }
@@ -195,7 +233,9 @@ fn lenient_and_strict() {
     let (_, notices) = read_with(&text, &lenient).expect("lenient");
     assert_eq!((notices.len(), notices[0].about.code), (1, "scene.unknown_field"));
     // A clockwise polygon is turned, and it is said.
-    let text = format!("{HEAD}[[body]]\nname = \"p\"\nmass = 1\nshape = {{ kind = \"polygon\", points = [[0, 0], [0, 1], [1, 0]] }}\n");
+    let text = format!(
+        "{HEAD}[[body]]\nname = \"p\"\nmass = 1\nshape = {{ kind = \"polygon\", points = [[0, 0], [0, 1], [1, 0]] }}\n"
+    );
     assert_eq!(read_text(&text).expect("turned").1[0].about.code, "shape.flipped");
     assert!(read_with(&text, &Options { strict: true, ..Options::default() }).is_err());
 }

@@ -99,7 +99,11 @@ fn too_large() {
 
 #[test]
 fn files_that_are_none() {
-    for (path, code) in [("/nowhere/at/all.toml", "read.failed"), ("/dev/zero", "read.not_regular_file"), ("/", "read.not_regular_file")] {
+    for (path, code) in [
+        ("/nowhere/at/all.toml", "read.failed"),
+        ("/dev/zero", "read.not_regular_file"),
+        ("/", "read.not_regular_file"),
+    ] {
         let errors = read_file(path.as_ref(), &catalogue(), &Options::default()).expect_err(path);
         assert_eq!((errors[0].code, errors[0].exit_code(), errors[0].file.as_str()), (code, 4, path));
     }
@@ -108,7 +112,9 @@ fn files_that_are_none() {
 /// Rows 5 to 11, 16, and those of section 3 that are about parameters: what is added to a good scene, and its errors.
 #[test]
 fn one_error_each() {
-    let body = |more: &str| format!("{HEAD}[[body]]\nname = \"b\"\nshape = {{ kind = \"ring\", radius = 1, vertices = 8 }}\n{more}\n");
+    let body = |more: &str| {
+        format!("{HEAD}[[body]]\nname = \"b\"\nshape = {{ kind = \"ring\", radius = 1, vertices = 8 }}\n{more}\n")
+    };
     let model = |fields: &str| format!("{HEAD}{}", BALL.replace("stiffness = 10", fields));
     let time = |line: &str| HEAD.replace("seconds = 1", line);
     let cases: Vec<(String, &str)> = vec![
@@ -170,8 +176,20 @@ fn one_error_each() {
         (format!("{HEAD}{}", BALL.replace("ball", &"x".repeat(1 << 20))), "scene.range"),
         // 18: costs
         (format!("{HEAD}{}copies = {{ count = [4000000, 4000000], spacing = [1, 1] }}\n", BALL), "limit.bodies"),
-        (format!("{HEAD}{}copies = {{ count = [1000, 1000], spacing = [1, 1] }}\n", BALL.replace("vertices = 8", "vertices = 1000000")), "limit.nodes"),
-        (format!("{HEAD}{}copies = {{ count = [1000], spacing = [1, 1] }}\n", BALL.replace("vertices = 8", "vertices = 100000")), "limit.memory"),
+        (
+            format!(
+                "{HEAD}{}copies = {{ count = [1000, 1000], spacing = [1, 1] }}\n",
+                BALL.replace("vertices = 8", "vertices = 1000000")
+            ),
+            "limit.nodes",
+        ),
+        (
+            format!(
+                "{HEAD}{}copies = {{ count = [1000], spacing = [1, 1] }}\n",
+                BALL.replace("vertices = 8", "vertices = 100000")
+            ),
+            "limit.memory",
+        ),
         // 44: mass
         (body("mass = 0"), "scene.range"),
         (body("mass = -1"), "scene.range"),
@@ -183,8 +201,14 @@ fn one_error_each() {
         (model("damping = -1"), "scene.range"),
         (body("mass = 1\nthickness = 0"), "scene.range"),
         (body("mass = 1\nscale = 0"), "scene.range"),
-        (format!("{HEAD}[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = -1\n"), "scene.range"),
-        (format!("{HEAD}[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nrestitution = 1.5\n"), "scene.range"),
+        (
+            format!("{HEAD}[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = -1\n"),
+            "scene.range",
+        ),
+        (
+            format!("{HEAD}[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nrestitution = 1.5\n"),
+            "scene.range",
+        ),
         // 49: time
         (time("seconds = 1\nframe = 0"), "scene.range"),
         (time("seconds = 1\nframe = -1"), "scene.range"),
@@ -210,22 +234,50 @@ fn one_error_each() {
         (format!("{HEAD}{BALL}pin = [{{ select = {{ side = \"front\" }} }}]\n"), "scene.unknown_word"),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = true, node = 1 }} }}]\n"), "scene.selector"),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = false }} }}]\n"), "scene.selector"),
-        (format!("{HEAD}{BALL}pin = [{{ select = {{ and = [] }} }}, {{ select = {{ or = [] }} }}]\n"), "scene.selects_nothing"),
+        (
+            format!("{HEAD}{BALL}pin = [{{ select = {{ and = [] }} }}, {{ select = {{ or = [] }} }}]\n"),
+            "scene.selects_nothing",
+        ),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = true }}, axes = \"xz\" }}]\n"), "scene.range"),
         (format!("{HEAD}{BALL}pin = {{ select = {{ all = true }} }}\n"), "scene.type"),
         (HEAD.replace("symplectic_euler", "symplectic"), "scene.unknown_kind"),
         (format!("{HEAD}{}", BALL.replace("\"ring\"", "\"icosphere\"")), "scene.dimension"),
         (format!("{HEAD}{}", BALL.replace("mass_spring", "mass_springs")), "scene.unknown_kind"),
         (format!("{HEAD}[body]\nname = \"b\"\n"), "scene.type"),
-        (body("mass = 1").replace("kind = \"ring\", radius = 1, vertices = 8", "kind = \"polygon\", points = [[0, 0], [1, 1], [1, 0], [0, 1]]"), "scene.shape"),
+        (
+            body("mass = 1").replace(
+                "kind = \"ring\", radius = 1, vertices = 8",
+                "kind = \"polygon\", points = [[0, 0], [1, 1], [1, 0], [0, 1]]",
+            ),
+            "scene.shape",
+        ),
         // commands and probes
-        (format!("{HEAD}{BALL}[[command]]\ndo = \"push\"\nat = 2\nuntil = 1\nbody = \"ball\"\nforce = [0, 0]\n"), "scene.range"),
-        (format!("{HEAD}{BALL}[[command]]\ndo = \"set\"\nat = 2\npath = \"body.ball.models.mass_spring.stifness\"\nvalue = 1\n"), "scene.unknown_parameter"),
+        (
+            format!("{HEAD}{BALL}[[command]]\ndo = \"push\"\nat = 2\nuntil = 1\nbody = \"ball\"\nforce = [0, 0]\n"),
+            "scene.range",
+        ),
+        (
+            format!(
+                "{HEAD}{BALL}[[command]]\ndo = \"set\"\nat = 2\npath = \"body.ball.models.mass_spring.stifness\"\nvalue = 1\n"
+            ),
+            "scene.unknown_parameter",
+        ),
         (format!("{HEAD}{BALL}[[command]]\ndo = \"set\"\nat = 2\npath = \"world.drag\"\nvalue = -1\n"), "scene.range"),
-        (format!("{HEAD}{BALL}[[command]]\ndo = \"drag\"\nat = 2\nbody = \"ball\"\nnode = 9\npath = [[2, 0, 0]]\n"), "scene.range"),
-        (format!("{HEAD}{BALL}[[command]]\ndo = \"drag\"\nat = 2\nbody = \"ball\"\nnode = \"near\"\npath = [[2, 0, 0]]\n"), "scene.unknown_word"),
+        (
+            format!("{HEAD}{BALL}[[command]]\ndo = \"drag\"\nat = 2\nbody = \"ball\"\nnode = 9\npath = [[2, 0, 0]]\n"),
+            "scene.range",
+        ),
+        (
+            format!(
+                "{HEAD}{BALL}[[command]]\ndo = \"drag\"\nat = 2\nbody = \"ball\"\nnode = \"near\"\npath = [[2, 0, 0]]\n"
+            ),
+            "scene.unknown_word",
+        ),
         (format!("{HEAD}{BALL}[[probe]]\nname = \"p\"\nbody = \"ball\"\nrecord = []\n"), "scene.length"),
-        (format!("{HEAD}{BALL}[[probe]]\nname = \"p\"\nbody = \"ball\"\nrecord = [\"positions\"]\n"), "scene.unknown_word"),
+        (
+            format!("{HEAD}{BALL}[[probe]]\nname = \"p\"\nbody = \"ball\"\nrecord = [\"positions\"]\n"),
+            "scene.unknown_word",
+        ),
     ];
     for (text, code) in cases {
         let short: String = text.chars().take(600).collect();
@@ -245,7 +297,15 @@ fn one_error_each() {
 /// Row 8: what may be written.
 #[test]
 fn numbers_that_are_fine() {
-    for (text, value) in [("-0.0", 0.0), ("0", 0.0), ("5e-324", 5e-324), ("1", 1.0), ("9007199254740992", 9_007_199_254_740_992.0), ("1_000.5", 1000.5), ("0x10", 16.0)] {
+    for (text, value) in [
+        ("-0.0", 0.0),
+        ("0", 0.0),
+        ("5e-324", 5e-324),
+        ("1", 1.0),
+        ("9007199254740992", 9_007_199_254_740_992.0),
+        ("1_000.5", 1000.5),
+        ("0x10", 16.0),
+    ] {
         let scene = plane(&format!("{HEAD}{}", BALL.replace("stiffness = 10", &format!("stiffness = {text}"))));
         let number = scene.bodies[0].models[0].number("stiffness").expect("given");
         assert_eq!(number.to_bits(), f64::to_bits(value), "{text}");
@@ -257,8 +317,10 @@ fn numbers_that_are_fine() {
 /// All errors at once, in the order of their lines.
 #[test]
 fn all_errors_at_once() {
-    let text = format!("{HEAD}tolerance = 1\n[world]\ngravity = [0]\n{BALL}pin = [{{ select = {{ node = 99 }} }}]\n[[body]]\nname = \"c\"\nmass = -1\nshape = {{ kind = \"rng\" }}\n\
-        [[probe]]\nname = \"p\"\nbody = \"c\"\nrecord = [\"speed\"]\n[[load]]\nkind = \"force\"\nbody = \"d\"\n");
+    let text = format!(
+        "{HEAD}tolerance = 1\n[world]\ngravity = [0]\n{BALL}pin = [{{ select = {{ node = 99 }} }}]\n[[body]]\nname = \"c\"\nmass = -1\nshape = {{ kind = \"rng\" }}\n\
+        [[probe]]\nname = \"p\"\nbody = \"c\"\nrecord = [\"speed\"]\n[[load]]\nkind = \"force\"\nbody = \"d\"\n"
+    );
     let found: Vec<(&str, usize)> = errors(&text).iter().map(|e| (e.code, e.line.unwrap_or(0))).collect();
     assert_eq!(
         found,

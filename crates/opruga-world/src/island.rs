@@ -171,7 +171,7 @@ impl<const D: usize> Island<D> {
     fn reaches(&self, plan: &FramePlan<D>) -> bool {
         let Some(colliders) = plan.colliders else { return false };
         let Some((low, high)) = self.swept(plan) else { return true };
-        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, low, high)
+        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &low, &high)
     }
 
     /// Bytes on the heap.

@@ -70,11 +70,22 @@ pub enum Holds {
 pub const ANY_DIMENSION: &[usize] = &[2, 3];
 const POSITIVE_FINITE: Allowed = Allowed::POSITIVE;
 
-const fn section(kind: &'static str, summary: &'static str, documentation: &'static str, fields: &'static [Field]) -> Spec {
+const fn section(
+    kind: &'static str,
+    summary: &'static str,
+    documentation: &'static str,
+    fields: &'static [Field],
+) -> Spec {
     Spec { kind, summary, documentation, dimensions: ANY_DIMENSION, fields }
 }
 
-const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+const fn field(
+    name: &'static str,
+    range: Allowed,
+    unit: &'static str,
+    default: Default,
+    documentation: &'static str,
+) -> Field {
     Field { name, range, unit, default, documentation }
 }
 
@@ -96,7 +107,13 @@ pub const SCENE: Section = Section {
         "Every scene begins with its format and its number of dimensions.",
         &[
             field("format", Allowed::Text, "", Default::Required, "The version of the format: `opruga-1`."),
-            field("dimension", Allowed::Integer { least: 2, greatest: 3 }, "", Default::Required, "2 for the plane, 3 for space."),
+            field(
+                "dimension",
+                Allowed::Integer { least: 2, greatest: 3 },
+                "",
+                Default::Required,
+                "2 for the plane, 3 for space.",
+            ),
             field(
                 "seed",
                 Allowed::Integer { least: 0, greatest: LARGEST_WHOLE },
@@ -114,7 +131,12 @@ pub const SCENE: Section = Section {
         child("body", Holds::List(&BODY), false, "The deformable bodies."),
         child("collider", Holds::Colliders, false, "The rigid obstacles."),
         child("load", Holds::Tagged { tag: "kind", sections: LOADS }, false, "Forces from outside."),
-        child("command", Holds::Tagged { tag: "do", sections: COMMANDS }, false, "What is done to the bodies while they move."),
+        child(
+            "command",
+            Holds::Tagged { tag: "do", sections: COMMANDS },
+            false,
+            "What is done to the bodies while they move.",
+        ),
         child("probe", Holds::List(&PROBE), false, "Columns of `diagnostics.csv` that follow nodes."),
     ],
 };
@@ -127,7 +149,13 @@ pub const TIME: Section = Section {
         "A frame is divided into substeps of h = frame / substeps.",
         &[
             field("seconds", Allowed::NOT_NEGATIVE, "s", Default::Required, "How long the scene lasts."),
-            field("frame", Allowed::POSITIVE, "s", Default::Number(1.0 / 60.0), "The time from one picture to the next."),
+            field(
+                "frame",
+                Allowed::POSITIVE,
+                "s",
+                Default::Number(1.0 / 60.0),
+                "The time from one picture to the next.",
+            ),
             field(
                 "substeps",
                 Allowed::Integer { least: 1, greatest: 1_000_000 },
@@ -148,7 +176,13 @@ pub const WORLD: Section = Section {
         "Gravity and drag act on every node. The largest force and velocity are stabilisers: off unless given, and every time they act is counted.",
         &[
             field("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
-            field("drag", Allowed::NOT_NEGATIVE, "1/s", Default::Number(0.0), "Drag per unit of mass, a = −drag·v; it brakes rigid motion too."),
+            field(
+                "drag",
+                Allowed::NOT_NEGATIVE,
+                "1/s",
+                Default::Number(0.0),
+                "Drag per unit of mass, a = −drag·v; it brakes rigid motion too.",
+            ),
             field("largest_force", POSITIVE_FINITE, "N", Default::Absent, "The largest force on a node."),
             field("largest_velocity", POSITIVE_FINITE, "m/s", Default::Absent, "The largest speed of a node."),
         ],
@@ -167,9 +201,27 @@ pub const BODY: Section = Section {
             field("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
             field("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
             field("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
-            field("fixed", Allowed::Boolean, "", Default::Boolean(false), "All nodes are pinned; then no mass need be given."),
-            field("thickness", Allowed::POSITIVE, "m", Default::Number(1.0), "Thickness out of the plane in 2D, of a sheet in 3D."),
-            field("position", Allowed::Vector, "m", Default::Origin, "Where the origin of its shape lies at the start."),
+            field(
+                "fixed",
+                Allowed::Boolean,
+                "",
+                Default::Boolean(false),
+                "All nodes are pinned; then no mass need be given.",
+            ),
+            field(
+                "thickness",
+                Allowed::POSITIVE,
+                "m",
+                Default::Number(1.0),
+                "Thickness out of the plane in 2D, of a sheet in 3D.",
+            ),
+            field(
+                "position",
+                Allowed::Vector,
+                "m",
+                Default::Origin,
+                "Where the origin of its shape lies at the start.",
+            ),
             field("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
             field("velocity", Allowed::Vector, "m/s", Default::Origin, "Velocity at the start."),
         ],
@@ -177,10 +229,20 @@ pub const BODY: Section = Section {
     children: &[
         child("shape", Holds::Shape, true, "Its shape at rest."),
         child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad]."),
-        child("angular_velocity", Holds::Turn, false, "Angular velocity at the start about the centre of mass [rad/s]."),
+        child(
+            "angular_velocity",
+            Holds::Turn,
+            false,
+            "Angular velocity at the start about the centre of mass [rad/s].",
+        ),
         child("models", Holds::Models, false, "What its material does."),
         child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
-        child("copies", Holds::Table(&COPIES), false, "Rows, columns and layers of the same body, called `name[0]`, `name[1]`, …"),
+        child(
+            "copies",
+            Holds::Table(&COPIES),
+            false,
+            "Rows, columns and layers of the same body, called `name[0]`, `name[1]`, …",
+        ),
     ],
 };
 
@@ -191,7 +253,13 @@ pub const PIN: Section = Section {
         "Nodes held at their place, or moved in a prescribed way",
         "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant.",
         &[
-            field("axes", Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]), "", Default::Absent, "The axes that are held; all where the scene is silent."),
+            field(
+                "axes",
+                Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
+                "",
+                Default::Absent,
+                "The axes that are held; all where the scene is silent.",
+            ),
             field("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
         ],
     ),
@@ -205,15 +273,33 @@ pub const COPIES: Section = Section {
         "Rows, columns and layers of the same body",
         "Copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. Copies share one mesh.",
         &[
-            field("spacing", Allowed::Vector, "m", Default::Required, "The distance from copy to copy along every axis."),
+            field(
+                "spacing",
+                Allowed::Vector,
+                "m",
+                Default::Required,
+                "The distance from copy to copy along every axis.",
+            ),
             field("first", Allowed::Vector, "m", Default::Origin, "An offset of all copies."),
-            field("jitter", Allowed::NOT_NEGATIVE, "m", Default::Number(0.0), "Each coordinate is moved at random, evenly in ±jitter, by the seed of the scene."),
+            field(
+                "jitter",
+                Allowed::NOT_NEGATIVE,
+                "m",
+                Default::Number(0.0),
+                "Each coordinate is moved at random, evenly in ±jitter, by the seed of the scene.",
+            ),
         ],
     ),
     children: &[child("count", Holds::Counts, true, "How many along every axis.")],
 };
 
-const CURVE: Field = field("curve", Allowed::Curve, "s, 1", Default::Absent, "A factor over time, linear between its rows; 1 where the scene is silent.");
+const CURVE: Field = field(
+    "curve",
+    Allowed::Curve,
+    "s, 1",
+    Default::Absent,
+    "A factor over time, linear between its rows; 1 where the scene is silent.",
+);
 const LOAD_CHILDREN: &[Child] = &[
     child("body", Holds::BodyReference, true, "The body."),
     child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
@@ -222,7 +308,12 @@ const LOAD_CHILDREN: &[Child] = &[
 /// `[[load]]`, by `kind`.
 pub const LOADS: &[Section] = &[
     Section {
-        spec: &section("force", "The same force on every selected node", "", &[field("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE]),
+        spec: &section(
+            "force",
+            "The same force on every selected node",
+            "",
+            &[field("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE],
+        ),
         children: LOAD_CHILDREN,
     },
     Section {
@@ -257,19 +348,47 @@ pub const COMMANDS: &[Section] = &[
             "",
             &[
                 AT,
-                field("until", Allowed::NOT_NEGATIVE, "s", Default::Absent, "When it ends; the end of the path where the scene is silent."),
+                field(
+                    "until",
+                    Allowed::NOT_NEGATIVE,
+                    "s",
+                    Default::Absent,
+                    "When it ends; the end of the path where the scene is silent.",
+                ),
                 field("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
-                field("stiffness", Allowed::POSITIVE, "N/m", Default::Absent, "Stiffness of the spring; chosen from the body where the scene is silent."),
-                field("largest_force", Allowed::POSITIVE, "N", Default::Absent, "The largest force; every time it acts is counted."),
+                field(
+                    "stiffness",
+                    Allowed::POSITIVE,
+                    "N/m",
+                    Default::Absent,
+                    "Stiffness of the spring; chosen from the body where the scene is silent.",
+                ),
+                field(
+                    "largest_force",
+                    Allowed::POSITIVE,
+                    "N",
+                    Default::Absent,
+                    "The largest force; every time it acts is counted.",
+                ),
             ],
         ),
         children: &[
             child("body", Holds::BodyReference, true, "The body."),
-            child("node", Holds::Node, false, "What is held: a node, the node nearest to the pointer at the beginning (so too where the scene is silent), or the nearest point of a facet."),
+            child(
+                "node",
+                Holds::Node,
+                false,
+                "What is held: a node, the node nearest to the pointer at the beginning (so too where the scene is silent), or the nearest point of a facet.",
+            ),
         ],
     },
     Section {
-        spec: &section("push", "A force on nodes", "", &[AT, UNTIL, field("force", Allowed::Vector, "N", Default::Required, "The force on every node.")]),
+        spec: &section(
+            "push",
+            "A force on nodes",
+            "",
+            &[AT, UNTIL, field("force", Allowed::Vector, "N", Default::Required, "The force on every node.")],
+        ),
         children: LOAD_CHILDREN,
     },
     Section {
@@ -277,12 +396,36 @@ pub const COMMANDS: &[Section] = &[
             "pin",
             "Hold nodes where they are at the beginning",
             "",
-            &[AT, UNTIL, field("axes", Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]), "", Default::Absent, "The axes that are held; all where the scene is silent.")],
+            &[
+                AT,
+                UNTIL,
+                field(
+                    "axes",
+                    Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
+                    "",
+                    Default::Absent,
+                    "The axes that are held; all where the scene is silent.",
+                ),
+            ],
         ),
         children: LOAD_CHILDREN,
     },
     Section {
-        spec: &section("set", "Change a parameter", "", &[AT, field("path", Allowed::Text, "", Default::Required, "The parameter: `body.NAME.models.KIND.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.")]),
+        spec: &section(
+            "set",
+            "Change a parameter",
+            "",
+            &[
+                AT,
+                field(
+                    "path",
+                    Allowed::Text,
+                    "",
+                    Default::Required,
+                    "The parameter: `body.NAME.models.KIND.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                ),
+            ],
+        ),
         children: &[child("value", Holds::AnyValue, true, "Its new value.")],
     },
     Section {
@@ -290,7 +433,21 @@ pub const COMMANDS: &[Section] = &[
         children: &[child("body", Holds::Table(&BODY), true, "The body, as in `[[body]]`, without copies.")],
     },
     Section {
-        spec: &section("remove", "Take a body away", "", &[AT, field("body", Allowed::Text, "", Default::Required, "The name of the body, of the scene or added before.")]),
+        spec: &section(
+            "remove",
+            "Take a body away",
+            "",
+            &[
+                AT,
+                field(
+                    "body",
+                    Allowed::Text,
+                    "",
+                    Default::Required,
+                    "The name of the body, of the scene or added before.",
+                ),
+            ],
+        ),
         children: &[],
     },
 ];
@@ -301,7 +458,13 @@ pub const PROBE: Section = Section {
         "probe",
         "Columns of diagnostics.csv that follow nodes",
         "Of positions and velocities the mean over the nodes is written, of reactions the sum.",
-        &[field("name", Allowed::Text, "", Default::Required, "The first part of the names of its columns, unique in the scene.")],
+        &[field(
+            "name",
+            Allowed::Text,
+            "",
+            Default::Required,
+            "The first part of the names of its columns, unique in the scene.",
+        )],
     ),
     children: &[
         child("body", Holds::BodyReference, true, "The body."),
@@ -312,7 +475,12 @@ pub const PROBE: Section = Section {
 
 /// The selectors, by their key.
 pub const SELECTORS: &[Spec] = &[
-    section("box", "Nodes in a box between two corners", "`{ box = [[x, y], [x, y]] }` [m]: at the start, the surface of the box included.", &[]),
+    section(
+        "box",
+        "Nodes in a box between two corners",
+        "`{ box = [[x, y], [x, y]] }` [m]: at the start, the surface of the box included.",
+        &[],
+    ),
     section(
         "ball",
         "Nodes at most a radius from a centre",
@@ -331,7 +499,12 @@ pub const SELECTORS: &[Spec] = &[
             field("normal", Allowed::Vector, "", Default::Required, "The normal, of any length but zero."),
         ],
     ),
-    section("side", "Nodes on one side of the body's bounding box", "`{ side = \"left\" }`: left, right (x), bottom, top (y), back, front (z).", &[]),
+    section(
+        "side",
+        "Nodes on one side of the body's bounding box",
+        "`{ side = \"left\" }`: left, right (x), bottom, top (y), back, front (z).",
+        &[],
+    ),
     section("node", "One node by number", "`{ node = 0 }`", &[]),
     section("nodes", "Nodes by number", "`{ nodes = [0, 1, 2] }`", &[]),
     section("group", "A named group of the mesh", "`{ group = \"clamped\" }`", &[]),

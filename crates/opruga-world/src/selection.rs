@@ -28,7 +28,9 @@ impl<const D: usize> Selector<D> {
             Selector::And(sets) => Selector::And(sets.iter().map(|s| s.moved(by)).collect()),
             Selector::Or(sets) => Selector::Or(sets.iter().map(|s| s.moved(by)).collect()),
             Selector::Not(set) => Selector::Not(Box::new(set.moved(by))),
-            Selector::Side(_) | Selector::Nodes(_) | Selector::Group(_) | Selector::Boundary | Selector::All => self.clone(),
+            Selector::Side(_) | Selector::Nodes(_) | Selector::Group(_) | Selector::Boundary | Selector::All => {
+                self.clone()
+            }
         }
     }
 
@@ -66,20 +68,29 @@ impl<const D: usize> Selector<D> {
                 if axis >= D {
                     return vec![false; count];
                 }
-                mesh.positions.iter().map(|x| if upper { x[axis] >= high[axis] - reach } else { x[axis] <= low[axis] + reach }).collect()
+                mesh.positions
+                    .iter()
+                    .map(|x| if upper { x[axis] >= high[axis] - reach } else { x[axis] <= low[axis] + reach })
+                    .collect()
             }
             Selector::Nodes(nodes) => numbered(&mut nodes.iter().copied()),
             Selector::Group(name) => numbered(&mut group(mesh, name).iter().copied()),
             Selector::Boundary => numbered(&mut boundary(mesh).into_iter()),
             Selector::All => vec![true; count],
-            Selector::And(sets) => sets.iter().map(|s| s.mask(mesh, translation, low, high, reach)).fold(vec![true; count], |mut all, one| {
-                all.iter_mut().zip(one).for_each(|(a, b)| *a &= b);
-                all
-            }),
-            Selector::Or(sets) => sets.iter().map(|s| s.mask(mesh, translation, low, high, reach)).fold(vec![false; count], |mut any, one| {
-                any.iter_mut().zip(one).for_each(|(a, b)| *a |= b);
-                any
-            }),
+            Selector::And(sets) => sets.iter().map(|s| s.mask(mesh, translation, low, high, reach)).fold(
+                vec![true; count],
+                |mut all, one| {
+                    all.iter_mut().zip(one).for_each(|(a, b)| *a &= b);
+                    all
+                },
+            ),
+            Selector::Or(sets) => sets.iter().map(|s| s.mask(mesh, translation, low, high, reach)).fold(
+                vec![false; count],
+                |mut any, one| {
+                    any.iter_mut().zip(one).for_each(|(a, b)| *a |= b);
+                    any
+                },
+            ),
             Selector::Not(set) => set.mask(mesh, translation, low, high, reach).into_iter().map(|b| !b).collect(),
         }
     }
@@ -102,8 +113,12 @@ pub fn side_of(name: &str) -> Option<(usize, bool)> {
 /// free ends.
 fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
-    let mut edges: Vec<[u32; 2]> =
-        mesh.sheets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| if a < b { [a, b] } else { [b, a] }).collect();
+    let mut edges: Vec<[u32; 2]> = mesh
+        .sheets
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|[a, b]| if a < b { [a, b] } else { [b, a] })
+        .collect();
     edges.sort_unstable();
     nodes.extend(edges.chunk_by(|p, q| p == q).filter(|same| same.len() == 1).flat_map(|same| same[0]));
     let mut ends: Vec<u32> = mesh.wires.iter().flatten().copied().collect();

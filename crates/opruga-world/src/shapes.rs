@@ -4,7 +4,13 @@ use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
 use std::any::Any;
 
-const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+const fn field(
+    name: &'static str,
+    range: Allowed,
+    unit: &'static str,
+    default: Default,
+    documentation: &'static str,
+) -> Field {
     Field { name, range, unit, default, documentation }
 }
 
@@ -14,7 +20,13 @@ const fn count(least: i64) -> Allowed {
 
 const CENTER: Field = field("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
 const CORNER: Field = field("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
-const START_ANGLE: Field = field("start_angle", Allowed::ANY, "rad", Default::Number(0.0), "The direction of node 0 from the centre, counter-clockwise from the x axis.");
+const START_ANGLE: Field = field(
+    "start_angle",
+    Allowed::ANY,
+    "rad",
+    Default::Number(0.0),
+    "The direction of node 0 from the centre, counter-clockwise from the x axis.",
+);
 
 static RING: Spec = Spec {
     kind: "ring",
@@ -48,7 +60,13 @@ static POLYGON: Spec = Spec {
     summary: "an outline through points",
     documentation: "Node i is point i. The points may run either way; edges run counter-clockwise. Edges must not cross or touch.",
     dimensions: &[2],
-    fields: &[field("points", Allowed::Points, "m", Default::Required, "The corners; the first may be repeated at the end.")],
+    fields: &[field(
+        "points",
+        Allowed::Points,
+        "m",
+        Default::Required,
+        "The corners; the first may be repeated at the end.",
+    )],
 };
 
 static LINE: Spec = Spec {
@@ -136,7 +154,13 @@ static TORUS: Spec = Spec {
     dimensions: &[3],
     fields: &[
         field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
-        field("tube_radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the tube, less than that of the circle."),
+        field(
+            "tube_radius",
+            Allowed::POSITIVE,
+            "m",
+            Default::Required,
+            "The radius of the tube, less than that of the circle.",
+        ),
         field("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
         field("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
         CENTER,
@@ -163,7 +187,12 @@ pub fn node_count(shape: &Values, dimension: usize) -> u64 {
             let pair = |a: usize, b: usize| n(a).saturating_mul(n(b));
             pair(0, 1).saturating_add(pair(1, 2)).saturating_add(pair(2, 0)).saturating_mul(2).saturating_add(2)
         }
-        "icosphere" => u32::try_from(whole("subdivisions")).ok().and_then(|s| 4u64.checked_pow(s)).unwrap_or(u64::MAX).saturating_mul(10).saturating_add(2),
+        "icosphere" => u32::try_from(whole("subdivisions"))
+            .ok()
+            .and_then(|s| 4u64.checked_pow(s))
+            .unwrap_or(u64::MAX)
+            .saturating_mul(10)
+            .saturating_add(2),
         "torus" => whole("nodes_around").saturating_mul(whole("nodes_of_tube")),
         _ => 0,
     }
@@ -192,7 +221,8 @@ pub struct Made<const D: usize> {
 /// # Errors
 /// What the generator refuses: crossing edges, too few points, a tube as wide as its circle …
 pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result<Made<D>, MeshError> {
-    let made: Box<dyn Any> = if D == 2 { Box::new(plane(shape, transform)?) } else { Box::new(space(shape, transform)?) };
+    let made: Box<dyn Any> =
+        if D == 2 { Box::new(plane(shape, transform)?) } else { Box::new(space(shape, transform)?) };
     match made.downcast::<Made<D>>() {
         Ok(made) => Ok(*made),
         Err(_) => Err(MeshError::Size { what: "dimension", value: D as f64, must: "2 or 3" }),
@@ -207,7 +237,12 @@ fn number(shape: &Values, name: &str) -> u32 {
 /// Exactly as many counts as there are axes.
 fn cells<const N: usize>(shape: &Values) -> Result<[u32; N], MeshError> {
     let given = shape.integers("cells");
-    <[u32; N]>::try_from(given).map_err(|_| MeshError::Count { what: "length of `cells`", value: given.len() as u64, least: N as u64, most: N as u64 })
+    <[u32; N]>::try_from(given).map_err(|_| MeshError::Count {
+        what: "length of `cells`",
+        value: given.len() as u64,
+        least: N as u64,
+        most: N as u64,
+    })
 }
 
 /// The rows of `points`.
@@ -220,7 +255,13 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
     let mut flipped = false;
     let mut mesh = match shape.kind() {
         "ring" => Mesh::ring(radius, number(shape, "vertices"), shape.vector("center"), start)?,
-        "regular_polygon" => Mesh::regular_polygon(number(shape, "sides"), radius, number(shape, "vertices_per_side"), shape.vector("center"), start)?,
+        "regular_polygon" => Mesh::regular_polygon(
+            number(shape, "sides"),
+            radius,
+            number(shape, "vertices_per_side"),
+            shape.vector("center"),
+            start,
+        )?,
         "polygon" => {
             let polygon = Mesh::polygon(&points(shape))?;
             flipped = polygon.flipped;

@@ -250,8 +250,8 @@ impl<const D: usize> World<D> {
                         body: name.clone(),
                         h,
                         limit,
-                        omega: stability.omega,
-                        damping: stability.damping,
+                        omega: stability.spectrum.omega,
+                        damping: stability.spectrum.damping,
                         substeps: (self.blueprint.time.frame / limit).ceil() as u32,
                     };
                     if !self.options.allow_unstable {
@@ -260,11 +260,11 @@ impl<const D: usize> World<D> {
                     self.warnings.push(Warning { code: "step.unstable".into(), message: error.to_string(), count: 1 });
                 }
                 None => {
-                    let growth = stability.growth_per_second(&*self.integrator, h);
+                    let growth = stability.spectrum.growth_per_second(&*self.integrator, h);
                     let message = format!(
                         "`{}` has no stable step for body `{name}` (ω = {:.4e} rad/s): its fastest motion grows as exp({growth:.4e} t)",
                         self.integrator.name(),
-                        stability.omega,
+                        stability.spectrum.omega,
                     );
                     match self.warnings.iter_mut().find(|w| w.code == "step.no_stable_step") {
                         Some(warning) => warning.count += 1,

@@ -1,6 +1,8 @@
 //! From a world to what the renderer sees.
+// Pictures are no physics: a last bit may differ.
+#![allow(clippy::disallowed_methods)]
 
-use crate::collide::Placed;
+use crate::collide::Picture as Placed;
 use crate::draw::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture};
 use crate::{World, mesh::EdgeSet};
 
@@ -113,7 +115,7 @@ impl Scenery {
             }
         }
         let colliders = world.colliders().map_or_else(Vec::new, |c| {
-            c.placed(world.time()).into_iter().map(|p| collider(p)).collect()
+            c.pictures(world.time()).into_iter().map(collider).collect()
         });
         Moment { time: world.time(), coordinates, bodies, pulls, colliders, arrows: drawn }
     }
@@ -149,6 +151,51 @@ impl Scenery {
             arrows: moment.arrows.clone(),
             pulls: moment.pulls.clone(),
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
+        }
+    }
+}
+
+/// An obstacle as the renderer knows it. A box that is turned is drawn by its outline or faces.
+fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
+    let points = |points: Vec<[f64; D]>| -> Vec<[f64; 3]> { points.into_iter().map(three).collect() };
+    match placed {
+        Placed::HalfSpace { point, normal } => ColliderPicture::HalfSpace { point: three(point), normal: three(normal) },
+        Placed::Ball { center, radius, .. } => ColliderPicture::Ball { center: three(center), radius },
+        Placed::Capsule { a, b, radius } => ColliderPicture::Capsule { a: three(a), b: three(b), radius },
+        Placed::Polygon { points: p } => ColliderPicture::Polygon(points(p)),
+        Placed::Polyline { points: p, closed } => {
+            let mut p = points(p);
+            if closed && let Some(first) = p.first().copied() {
+                p.push(first);
+            }
+            ColliderPicture::Polyline(p)
+        }
+        Placed::Triangles { points: p, triangles, .. } => ColliderPicture::Mesh { positions: points(p), triangles },
+        Placed::Box { corners, inside } => {
+            let corners = points(corners);
+            let (mut min, mut max) = (corners[0], corners[0]);
+            for corner in &corners {
+                for d in 0..3 {
+                    min[d] = min[d].min(corner[d]);
+                    max[d] = max[d].max(corner[d]);
+                }
+            }
+            let straight = corners.iter().all(|c| (0..3).all(|d| c[d] == min[d] || c[d] == max[d]));
+            if straight || inside {
+                return ColliderPicture::Box { min, max, inside };
+            }
+            if D == 2 {
+                return ColliderPicture::Polygon(vec![corners[0], corners[1], corners[3], corners[2]]);
+            }
+            // Corner k lies on the upper side of axis d where bit d of k is set.
+            let mut triangles = Vec::new();
+            for axis in 0..3u32 {
+                let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+                for side in [0, 1 << axis] {
+                    triangles.extend([[side, side + u, side + u + v], [side, side + u + v, side + v]]);
+                }
+            }
+            ColliderPicture::Mesh { positions: corners, triangles }
         }
     }
 }

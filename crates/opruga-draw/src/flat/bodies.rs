@@ -78,7 +78,9 @@ pub(crate) fn draw(
         if outside || low[0] > high[0] {
             continue;
         }
-        let base = body.colour.unwrap_or(BODIES[index % BODIES.len()]);
+        let base = body
+            .colour
+            .unwrap_or(body_colour(index, picture.bodies.len()));
         let size = (high[0] - low[0]).max(high[1] - low[1]);
         Drawing {
             body,
@@ -92,6 +94,17 @@ pub(crate) fn draw(
         }
         .draw(canvas);
     }
+}
+
+/// The colour of a body without scalars; many bodies take colours without a visible order.
+pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
+    let shuffled = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
+    let place = if count <= 2 * BODIES.len() {
+        index
+    } else {
+        shuffled as usize
+    };
+    BODIES[place % BODIES.len()]
 }
 
 /// One body on its way to the canvas.
@@ -163,13 +176,26 @@ impl Drawing<'_> {
         self.segments(canvas, outline.is_some());
         if let (Some(path), true) = (&outline, self.size > 7.0) {
             let width = (0.03 * self.size).clamp(0.5, 1.7 * self.unit);
-            if coloured && cells.is_empty() {
+            if coloured && cells.is_empty() && !self.is_uniform() {
                 self.coloured_outline(canvas, &loops, path);
             } else {
                 canvas.stroke(path, width, &paint(darker(fill), 0.95));
             }
         }
         self.nodes(canvas);
+    }
+
+    /// Whether all scalars of the body have nearly the same colour.
+    fn is_uniform(&self) -> bool {
+        let places = self
+            .body
+            .scalar
+            .iter()
+            .map(|&scalar| self.scalars.place(scalar));
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+        high - low < 0.01
     }
 
     /// The path of the loops, without points which fall on the same pixel.

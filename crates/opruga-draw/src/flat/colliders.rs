@@ -148,7 +148,7 @@ fn half_space(
     if let [first, second] = surface[..] {
         // The free side is to the right of the line, and the solid to its left.
         let turn = (second[0] - first[0]) * up[1] - (second[1] - first[1]) * up[0];
-        let (from, to) = if turn < 0.0 {
+        let (from, to) = if turn > 0.0 {
             (first, second)
         } else {
             (second, first)

@@ -8,7 +8,6 @@ mod shade;
 use crate::canvas::Canvas;
 use crate::error::DrawError;
 use crate::image::Image;
-use crate::layout::{Layout, Style};
 use crate::marks::draw_marks;
 use crate::picture::Picture;
 use crate::view::View;
@@ -50,30 +49,26 @@ impl Projection {
     }
 }
 
-/// Draws a picture in two dimensions.
-pub(crate) fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, DrawError> {
-    let mut image = Image::new(style.width, style.height, style.background)?;
-    let layout = Layout::new(picture, view, style);
-    let [left, top, width, height] = layout.scene;
-    let mut scene = Image::new(width, height, style.background)?;
+/// Draws the scene of a picture in two dimensions, and gives the number of pixels in a metre.
+pub(crate) fn scene(
+    picture: &Picture,
+    view: &View,
+    background: [u8; 3],
+    [width, height]: [u32; 2],
+    unit: f32,
+) -> Result<(Image, f64), DrawError> {
+    let mut scene = Image::new(width, height, background)?;
     let projection = Projection::new(view, width, height);
     let mut canvas = Canvas::new(&mut scene);
-    let room = picture.colliders.iter().rev();
-    room.for_each(|collider| colliders::draw(&mut canvas, collider, &projection, layout.unit));
-    bodies::draw(&mut canvas, picture, view, &projection, layout.unit);
-    draw_marks(&mut canvas, picture, view, layout.unit, &|point| {
+    for collider in &picture.colliders {
+        colliders::draw(&mut canvas, collider, &projection, unit);
+    }
+    bodies::draw(&mut canvas, picture, view, &projection, unit);
+    draw_marks(&mut canvas, picture, view, unit, &|point| {
         point
             .iter()
             .all(|value| value.is_finite())
             .then(|| projection.pixel(point))
     });
-    image.paste(&scene, left, top);
-    layout.annotate(
-        &mut Canvas::new(&mut image),
-        picture,
-        view,
-        style,
-        Some(projection.scale),
-    );
-    Ok(image)
+    Ok((scene, projection.scale))
 }

@@ -6,12 +6,21 @@ use super::{parameters, place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Spec, Values, nearest};
-use opruga_world::blueprint::{Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded};
+use opruga_world::blueprint::{
+    Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded,
+};
 use opruga_world::schema::{self, Section};
 use std::collections::HashMap;
 
 /// The section that the tag of a table names, and its plain fields.
-fn tagged(reader: &mut Reader<'_>, node: &Node, path: &str, tag: &'static str, what: &str, sections: &'static [Section]) -> Option<Values> {
+fn tagged(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: &str,
+    tag: &'static str,
+    what: &str,
+    sections: &'static [Section],
+) -> Option<Values> {
     let words: Vec<&str> = sections.iter().map(|s| s.spec.kind).collect();
     let word = reader.tag(node, path, tag, what, &words)?;
     let section = sections.iter().find(|s| s.spec.kind == word)?;
@@ -57,7 +66,9 @@ pub(crate) fn commands<const D: usize>(
         let until = values.number("until").or(end_of_path).unwrap_or(at);
         if until < at {
             let key = if node.get("until").is_some() { "until" } else { "path" };
-            let error = SceneError::new("scene.range", format!("the command ends at {until} s, before it begins at {at} s")).path(join(path, key));
+            let error =
+                SceneError::new("scene.range", format!("the command ends at {until} s, before it begins at {at} s"))
+                    .path(join(path, key));
             reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time from {at}")));
         }
         commands.push(CommandBlueprint { at, until, action });
@@ -66,7 +77,13 @@ pub(crate) fn commands<const D: usize>(
     commands
 }
 
-fn action<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values, known: &parameters::Known<'_, D>) -> Option<Action<D>> {
+fn action<const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: &str,
+    values: &Values,
+    known: &parameters::Known<'_, D>,
+) -> Option<Action<D>> {
     let bodies = known.bodies;
     match values.kind() {
         "drag" => {
@@ -109,8 +126,12 @@ fn action<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, valu
             let body = bodies::single::<D>(reader, body_node, join(path, "body"))?;
             let twice = known.added.iter().filter(|n| **n == body.name).count() > 1;
             if bodies.knows(&body.name) || twice {
-                let error = SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
-                reader.report(place_of(body_node, "name"), error.path(join(path, "body.name")).value(visible(&body.name)));
+                let error =
+                    SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
+                reader.report(
+                    place_of(body_node, "name"),
+                    error.path(join(path, "body.name")).value(visible(&body.name)),
+                );
             }
             Some(Action::Add(Box::new(body)))
         }
@@ -134,8 +155,12 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
         Data::Text(word) if word == "nearest" => Some((None, false)),
         Data::Text(word) if word == "nearest_facet" => Some((None, true)),
         Data::Text(word) => {
-            let error = SceneError::new("scene.unknown_word", format!("`node` is {}", value.shown())).path(here).value(value.shown());
-            let error = error.allowed("the number of a node, \"nearest\" or \"nearest_facet\"").nearest(nearest(word, WORDS.into_iter()));
+            let error = SceneError::new("scene.unknown_word", format!("`node` is {}", value.shown()))
+                .path(here)
+                .value(value.shown());
+            let error = error
+                .allowed("the number of a node, \"nearest\" or \"nearest_facet\"")
+                .nearest(nearest(word, WORDS.into_iter()));
             reader.report(value.place, error);
             None
         }
@@ -148,16 +173,21 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
 }
 
 /// Columns of `diagnostics.csv`.
-pub(crate) fn probes<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Vec<ProbeBlueprint<D>> {
+pub(crate) fn probes<const D: usize>(
+    reader: &mut Reader<'_>,
+    root: &Node,
+    bodies: &Bodies<D>,
+) -> Vec<ProbeBlueprint<D>> {
     let mut probes = Vec::new();
     let mut seen: HashMap<String, Place> = HashMap::new();
     for (node, path) in reader.list(root, "", "probe") {
         let values = reader.fields(node, &path, &schema::PROBE, None);
         let name = values.text("name").unwrap_or("").to_string();
-        if let Some(at) = node.get("name").filter(|n| n.text().is_some()) {
+        if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
             bodies::check_name(reader, at, &join(&path, "name"), &name);
             if seen.contains_key(&name) {
-                let error = SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
+                let error =
+                    SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
                 reader.report(at.place, error.path(join(&path, "name")).value(visible(&name)));
             }
             seen.insert(name.clone(), at.place);
@@ -174,7 +204,8 @@ pub(crate) fn probes<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodie
 
 /// The words of `record`, each once and at least one.
 fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
-    const WORDS: [(&str, Recorded); 3] = [("position", Recorded::Position), ("velocity", Recorded::Velocity), ("reaction", Recorded::Reaction)];
+    const WORDS: [(&str, Recorded); 3] =
+        [("position", Recorded::Position), ("velocity", Recorded::Velocity), ("reaction", Recorded::Reaction)];
     let words = || WORDS.iter().map(|(w, _)| *w);
     let here = join(path, "record");
     let Some(value) = node.get("record") else { return Vec::new() };
@@ -183,19 +214,35 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
         return Vec::new();
     };
     if items.is_empty() {
-        reader.report(value.place, SceneError::new("scene.length", "`record` is empty").path(here.clone()).value("[]").allowed(listed(words())));
+        reader.report(
+            value.place,
+            SceneError::new("scene.length", "`record` is empty")
+                .path(here.clone())
+                .value("[]")
+                .allowed(listed(words())),
+        );
     }
     let mut out: Vec<Recorded> = Vec::new();
     for (k, item) in items.iter().enumerate() {
         let place = join(&here, &k.to_string());
         match item.text().and_then(|text| WORDS.iter().find(|(w, _)| *w == text)) {
             Some((word, recorded)) if out.contains(recorded) => {
-                reader.report(item.place, SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice")).path(place).value(*word));
+                reader.report(
+                    item.place,
+                    SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice"))
+                        .path(place)
+                        .value(*word),
+                );
             }
             Some((_, recorded)) => out.push(*recorded),
             None => {
-                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown())).path(place).value(item.shown());
-                reader.report(item.place, error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())));
+                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown()))
+                    .path(place)
+                    .value(item.shown());
+                reader.report(
+                    item.place,
+                    error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())),
+                );
             }
         }
     }

@@ -83,19 +83,25 @@ pub(crate) fn single<const D: usize>(reader: &mut Reader<'_>, node: &Node, path:
     build(reader, &drafts[0])
 }
 
-fn draft<'n, const D: usize>(reader: &mut Reader<'_>, node: &'n Node, path: String, may_copy: bool) -> Option<Draft<'n, D>> {
+fn draft<'n, const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &'n Node,
+    path: String,
+    may_copy: bool,
+) -> Option<Draft<'n, D>> {
     if !matches!(node.data, Data::Table(_)) {
         reader.wrong_type(node, &path, "a table");
         return None;
     }
-    let before = reader.errors.len();
+    let before = reader.count();
     let values = reader.fields(node, &path, &schema::BODY, None);
     let name = values.text("name").unwrap_or("").to_string();
-    if let Some(at) = node.get("name").filter(|n| n.text().is_some()) {
+    if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
         check_name(reader, at, &join(&path, "name"), &name);
     }
     let mass = mass(reader, node, &path, &values);
-    let shape = node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
+    let shape =
+        node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let kinds = reader.catalogue.models.clone();
@@ -113,14 +119,15 @@ fn draft<'n, const D: usize>(reader: &mut Reader<'_>, node: &'n Node, path: Stri
     }
     let copies = match node.get("copies") {
         Some(at) if !may_copy => {
-            let error = SceneError::new("scene.not_here", "a body that a command adds has no copies").path(join(&path, "copies"));
+            let error = SceneError::new("scene.not_here", "a body that a command adds has no copies")
+                .path(join(&path, "copies"));
             reader.report(at.place, error.hint("write one command for every body"));
             None
         }
         Some(at) => copies(reader, at, &join(&path, "copies")),
         None => None,
     };
-    let sound = reader.errors.len() == before;
+    let sound = reader.count() == before;
     Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, models, pins, copies, sound })
 }
 
@@ -129,8 +136,6 @@ pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name:
     let bad = name.chars().find(|c| unprintable(*c) || ".,[]\"'=".contains(*c));
     let why = if name.is_empty() {
         "the name is empty".to_string()
-    } else if name.len() > 256 {
-        return; // reported by its field
     } else if let Some(c) = bad {
         format!("the name contains `{}`", visible(&c.to_string()))
     } else if name.chars().all(|c| c.is_ascii_digit()) {
@@ -139,7 +144,10 @@ pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name:
         return;
     };
     let error = SceneError::new("scene.name", why).path(path).value(visible(name));
-    reader.report(node.place, error.allowed("1 to 256 bytes without control characters and . , [ ] = quotes; not only digits"));
+    reader.report(
+        node.place,
+        error.allowed("1 to 256 bytes without control characters and . , [ ] = quotes; not only digits"),
+    );
 }
 
 /// Exactly one of mass, density and node_mass.
@@ -157,7 +165,9 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
         }
         [] if values.flag("fixed") => Some(Mass::Node(1.0)),
         [] => {
-            let error = SceneError::new("scene.missing", "the body has no mass").path(join(path, "mass")).allowed("exactly one of mass, density, node_mass");
+            let error = SceneError::new("scene.missing", "the body has no mass")
+                .path(join(path, "mass"))
+                .allowed("exactly one of mass, density, node_mass");
             reader.report(node.place, error.hint("a body that never moves is `fixed = true`"));
             None
         }
@@ -174,7 +184,8 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
 pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
     let Some(letters) = values.text("axes") else { return [true; D] };
     if D == 2 && letters.contains('z') {
-        let error = SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
+        let error =
+            SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
         reader.report(place_of(node, "axes"), error.allowed("one of \"x\", \"y\", \"xy\"").hint("there is no z in 2D"));
     }
     core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
@@ -198,7 +209,9 @@ fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> O
         return None;
     };
     if items.is_empty() || items.len() > D {
-        let error = SceneError::new("scene.length", format!("`count` has {} numbers", items.len())).path(here).value(count.shown());
+        let error = SceneError::new("scene.length", format!("`count` has {} numbers", items.len()))
+            .path(here)
+            .value(count.shown());
         reader.report(count.place, error.allowed(format!("1 to {D} whole numbers from 1")));
         return None;
     }
@@ -229,9 +242,12 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
                     Place::Bytes(at, _) => format!(", first in line {}", reader.source.position(*at).0),
                     Place::Override(_) => String::new(),
                 };
-                let error = SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`{first}", visible(&draft.name)))
-                    .path(join(&draft.path, "name"))
-                    .value(visible(&draft.name));
+                let error = SceneError::new(
+                    "scene.duplicate_name",
+                    format!("two bodies are called `{}`{first}", visible(&draft.name)),
+                )
+                .path(join(&draft.path, "name"))
+                .value(visible(&draft.name));
                 reader.report(place, error.hint("every body needs a name of its own; many alike are `copies`"));
             }
             None => {
@@ -255,17 +271,33 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let each = size.saturating_mul(120 + 60 * D as u64 * models).saturating_add(1000 + 600 * models);
         bytes = bytes.saturating_add(size.saturating_mul(250 * D as u64)).saturating_add(each.saturating_mul(copies));
         let over = if bodies > limits.bodies {
-            Some(("limit.bodies", format!("the scene has {bodies} bodies or more"), bodies, format!("at most {} bodies", limits.bodies)))
+            Some((
+                "limit.bodies",
+                format!("the scene has {bodies} bodies or more"),
+                bodies,
+                format!("at most {} bodies", limits.bodies),
+            ))
         } else if nodes > limits.nodes || size > u64::from(u32::MAX) {
-            Some(("limit.nodes", format!("the scene has {nodes} nodes or more"), nodes, format!("at most {} nodes", limits.nodes)))
+            Some((
+                "limit.nodes",
+                format!("the scene has {nodes} nodes or more"),
+                nodes,
+                format!("at most {} nodes", limits.nodes),
+            ))
         } else if bytes > limits.memory_bytes {
-            Some(("limit.memory", format!("the scene would take about {bytes} bytes or more"), bytes, format!("at most {} bytes", limits.memory_bytes)))
+            Some((
+                "limit.memory",
+                format!("the scene would take about {bytes} bytes or more"),
+                bytes,
+                format!("at most {} bytes", limits.memory_bytes),
+            ))
         } else {
             None
         };
         if let Some((code, message, value, allowed)) = over {
             let path = if draft.copies.is_some() { join(&draft.path, "copies") } else { join(&draft.path, "shape") };
-            let place = if draft.copies.is_some() { place_of(draft.node, "copies") } else { place_of(draft.node, "shape") };
+            let place =
+                if draft.copies.is_some() { place_of(draft.node, "copies") } else { place_of(draft.node, "shape") };
             reader.report(place, SceneError::new(code, message).path(path).value(value.to_string()).allowed(allowed));
             return false;
         }
@@ -283,8 +315,12 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     let mesh: Mesh<D> = match shapes::mesh::<D>(shape, &transform) {
         Ok(made) => {
             if made.flipped {
-                let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(&draft.name)));
-                reader.notice(place_of(draft.node, "shape"), notice.path(join(&draft.path, "shape")).hint("its edges run against them"));
+                let notice =
+                    SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(&draft.name)));
+                reader.notice(
+                    place_of(draft.node, "shape"),
+                    notice.path(join(&draft.path, "shape")).hint("its edges run against them"),
+                );
             }
             made.mesh
         }
@@ -296,7 +332,8 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     };
     // Large factors may leave the range of numbers.
     if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
-        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}")).path(join(&draft.path, "shape"));
+        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}"))
+            .path(join(&draft.path, "shape"));
         reader.report(place_of(draft.node, "shape"), error.allowed("finite coordinates"));
         return None;
     }
@@ -318,7 +355,13 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
 }
 
 /// Adds a body and its copies to the list. Places in selectors move along with every copy.
-fn write_out<const D: usize>(bodies: &mut Bodies<D>, draft: &Draft<'_, D>, body: BodyBlueprint<D>, seed: u64, number: u64) {
+fn write_out<const D: usize>(
+    bodies: &mut Bodies<D>,
+    draft: &Draft<'_, D>,
+    body: BodyBlueprint<D>,
+    seed: u64,
+    number: u64,
+) {
     let Some(copies) = draft.copies else {
         bodies.names.entry(body.name.clone()).or_insert(bodies.list.len());
         bodies.list.push(body);
@@ -339,7 +382,11 @@ fn write_out<const D: usize>(bodies: &mut Bodies<D>, draft: &Draft<'_, D>, body:
         bodies.list.push(BodyBlueprint {
             name,
             translation: core::array::from_fn(|a| body.translation[a] + offset[a]),
-            pins: body.pins.iter().map(|pin| PinBlueprint { select: pin.select.moved(offset), ..pin.clone() }).collect(),
+            pins: body
+                .pins
+                .iter()
+                .map(|pin| PinBlueprint { select: pin.select.moved(offset), ..pin.clone() })
+                .collect(),
             ..body.clone()
         });
     }
@@ -372,7 +419,9 @@ impl<const D: usize> Bodies<D> {
                     return Some(k);
                 }
                 if self.broken.is_empty() {
-                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}")).path(here).value(k.to_string());
+                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}"))
+                        .path(here)
+                        .value(k.to_string());
                     reader.report(node.place, error.allowed(self.allowed()));
                 }
                 None
@@ -407,12 +456,17 @@ impl<const D: usize> Bodies<D> {
         if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
             return; // the body is there, but has errors of its own
         }
-        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name))).path(path).value(visible(name));
+        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name)))
+            .path(path)
+            .value(visible(name));
         error.allowed = Some(self.allowed());
         let base = name.split('[').next().unwrap_or(name);
         error = match self.copied.get(base) {
             Some(count) => error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1)),
-            None => error.nearest(nearest(name, self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()))),
+            None => error.nearest(nearest(
+                name,
+                self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()),
+            )),
         };
         reader.report(place, error);
     }

@@ -19,6 +19,7 @@ use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_world::blueprint::{AnyBlueprint, Blueprint, ColliderBlueprint, Surroundings, Time};
 use opruga_world::schema;
+pub(crate) use reader::MOST_ERRORS;
 use reader::Reader;
 use std::path::Path;
 
@@ -41,7 +42,14 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { file_bytes: 64 << 20, depth: 128, values: 4 << 20, bodies: 4_000_000, nodes: 200_000_000, memory_bytes: 8 << 30 }
+        Limits {
+            file_bytes: 64 << 20,
+            depth: 128,
+            values: 4 << 20,
+            bodies: 4_000_000,
+            nodes: 200_000_000,
+            memory_bytes: 8 << 30,
+        }
     }
 }
 
@@ -62,7 +70,12 @@ pub struct Options {
 ///
 /// # Errors
 /// All errors that can be found at once, in the order of their places.
-pub fn read(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
+pub fn read(
+    bytes: &[u8],
+    file: &str,
+    catalogue: &Catalogue,
+    options: &Options,
+) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
     let source = Source::new(file, bytes, &options.limits).map_err(|e| vec![e])?;
     let (document, mut errors) = document::parse(&source);
     let Some(mut document) = document else { return Err(errors) };
@@ -86,7 +99,11 @@ pub fn read(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) 
 ///
 /// # Errors
 /// As [`read`], and `read.failed` where the file cannot be read.
-pub fn read_file(path: &Path, catalogue: &Catalogue, options: &Options) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
+pub fn read_file(
+    path: &Path,
+    catalogue: &Catalogue,
+    options: &Options,
+) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
     let file = path.display().to_string();
     let bytes = bytes_of(path, &options.limits).map_err(|e| vec![SceneError { file: file.clone(), ..e }])?;
     read(&bytes, &file, catalogue, options)
@@ -100,7 +117,11 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     use std::io::Read as _;
     let failed = |e: std::io::Error| {
         let error = SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
-        if e.kind() == std::io::ErrorKind::NotFound { error.hint("`opruga list` shows the scenes that come with the program") } else { error }
+        if e.kind() == std::io::ErrorKind::NotFound {
+            error.hint("`opruga list` shows the scenes that come with the program")
+        } else {
+            error
+        }
     };
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
@@ -132,7 +153,8 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let time = time(reader, root);
     let surroundings = surroundings(reader, root);
     let integrators = reader.catalogue.integrators.clone();
-    let integrator = root.get("integrator").and_then(|node| reader.kind_table(node, "integrator", "integrator", &integrators));
+    let integrator =
+        root.get("integrator").and_then(|node| reader.kind_table(node, "integrator", "integrator", &integrators));
     let colliders = reader.catalogue.colliders.clone();
     let colliders: Vec<ColliderBlueprint> = reader
         .list(root, "", "collider")
@@ -166,21 +188,24 @@ fn scene_name(file: &str) -> String {
 
 fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
     let Some(node) = root.get("time") else { return Time { seconds: 0.0, frame: 1.0, substeps: 1 } };
-    let before = reader.errors.len();
+    let before = reader.count();
     let values = reader.fields(node, "time", &schema::TIME, None);
     let seconds = values.number("seconds").unwrap_or(0.0);
     let frame = values.number("frame").unwrap_or(1.0);
     let substeps = values.integer("substeps").unwrap_or(1);
     let h = frame / substeps as f64;
-    if reader.errors.len() == before && seconds > 0.0 {
+    if reader.count() == before && seconds > 0.0 {
         let at = node.get("frame").unwrap_or(node);
         if seconds + h == seconds {
             reader.report(
                 at.place,
-                SceneError::new("scene.range", format!("a step of {h:e} s is lost in {seconds} s: time would stand still"))
-                    .path("time.frame")
-                    .value(format!("{frame:e}"))
-                    .allowed("a step that changes the time"),
+                SceneError::new(
+                    "scene.range",
+                    format!("a step of {h:e} s is lost in {seconds} s: time would stand still"),
+                )
+                .path("time.frame")
+                .value(format!("{frame:e}"))
+                .allowed("a step that changes the time"),
             );
         } else if seconds / frame > 1e12 {
             reader.report(

@@ -27,16 +27,28 @@ struct Lost {
 }
 
 fn lost<'w>(what: &str, word: &str, words: impl Iterator<Item = &'w str> + Clone) -> Lost {
-    Lost { message: format!("there is no {what} `{}`", visible(word)), allowed: listed(words.clone()), nearest: nearest(word, words) }
+    Lost {
+        message: format!("there is no {what} `{}`", visible(word)),
+        allowed: listed(words.clone()),
+        nearest: nearest(word, words),
+    }
 }
 
 /// The value, fit for the parameter that the path names; or a report.
-pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, parameter: &str, value: Value, known: &Known<'_, D>) -> Option<Value> {
+pub(crate) fn check<const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: &str,
+    parameter: &str,
+    value: Value,
+    known: &Known<'_, D>,
+) -> Option<Value> {
     match field(reader, parameter, known) {
         Ok(Some(field)) => match field.range.accept(suited(value, &field.range), D) {
             Ok(value) => Some(value),
             Err((value, allowed)) => {
-                let error = SceneError::new("scene.range", format!("`{}` cannot be {value}", visible(parameter))).path(join(path, "value"));
+                let error = SceneError::new("scene.range", format!("`{}` cannot be {value}", visible(parameter)))
+                    .path(join(path, "value"));
                 reader.report(place_of(node, "value"), error.value(value).allowed(allowed));
                 None
             }
@@ -44,7 +56,9 @@ pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: 
         // A parameter of a body that is not there yet: checked when the command acts.
         Ok(None) => Some(value),
         Err(lost) => {
-            let error = SceneError::new("scene.unknown_parameter", lost.message).path(join(path, "path")).value(visible(parameter));
+            let error = SceneError::new("scene.unknown_parameter", lost.message)
+                .path(join(path, "path"))
+                .value(visible(parameter));
             reader.report(place_of(node, "path"), error.allowed(lost.allowed).nearest(lost.nearest));
             None
         }
@@ -54,14 +68,20 @@ pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: 
 /// A list of whole numbers is read as numbers at first.
 fn suited(value: Value, range: &Allowed) -> Value {
     match (range, &value) {
-        (Allowed::Integers, Value::Numbers(x)) if x.iter().all(|x| x.fract() == 0.0 && *x >= 0.0 && *x <= f64::from(u32::MAX)) => {
+        (Allowed::Integers, Value::Numbers(x))
+            if x.iter().all(|x| x.fract() == 0.0 && *x >= 0.0 && *x <= f64::from(u32::MAX)) =>
+        {
             Value::Integers(x.iter().map(|x| *x as u32).collect())
         }
         _ => value,
     }
 }
 
-fn field<const D: usize>(reader: &Reader<'_>, parameter: &str, known: &Known<'_, D>) -> Result<Option<&'static Field>, Lost> {
+fn field<const D: usize>(
+    reader: &Reader<'_>,
+    parameter: &str,
+    known: &Known<'_, D>,
+) -> Result<Option<&'static Field>, Lost> {
     let parts: Vec<&str> = parameter.split('.').collect();
     let catalogue = reader.catalogue;
     match parts.as_slice() {
@@ -87,21 +107,44 @@ fn field<const D: usize>(reader: &Reader<'_>, parameter: &str, known: &Known<'_,
                 if known.added.contains(name) {
                     return Ok(None);
                 }
-                let names: Vec<&str> = known.bodies.list.iter().take(20).map(|b| b.name.as_str()).chain(known.added.iter().copied()).collect();
+                let names: Vec<&str> = known
+                    .bodies
+                    .list
+                    .iter()
+                    .take(20)
+                    .map(|b| b.name.as_str())
+                    .chain(known.added.iter().copied())
+                    .collect();
                 return Err(lost("body", name, names.iter().copied()));
             };
             let kinds = body.models.iter().map(Values::kind);
-            let model = kind.parse::<usize>().ok().and_then(|k| body.models.get(k)).map(Values::kind).or_else(|| kinds.clone().find(|k| k == kind));
+            let model = kind
+                .parse::<usize>()
+                .ok()
+                .and_then(|k| body.models.get(k))
+                .map(Values::kind)
+                .or_else(|| kinds.clone().find(|k| k == kind));
             match model.and_then(|k| spec_of(&catalogue.models, k)) {
                 Some(spec) => find(spec, field).map(Some),
                 None => Err(lost("model of this body", kind, kinds)),
             }
         }
         _ => {
-            const FORMS: [&str; 5] = ["world.FIELD", "time.substeps", "integrator.FIELD", "collider.NUMBER.FIELD", "body.NAME.models.KIND.FIELD"];
+            const FORMS: [&str; 5] = [
+                "world.FIELD",
+                "time.substeps",
+                "integrator.FIELD",
+                "collider.NUMBER.FIELD",
+                "body.NAME.models.KIND.FIELD",
+            ];
             const HEADS: [&str; 5] = ["world", "time", "integrator", "collider", "body"];
-            let near = nearest(parts.first().unwrap_or(&""), HEADS.into_iter()).filter(|n| Some(&n.as_str()) != parts.first());
-            Err(Lost { message: format!("`{}` is no parameter", visible(parameter)), allowed: FORMS.join(", "), nearest: near })
+            let near =
+                nearest(parts.first().unwrap_or(&""), HEADS.into_iter()).filter(|n| Some(&n.as_str()) != parts.first());
+            Err(Lost {
+                message: format!("`{}` is no parameter", visible(parameter)),
+                allowed: FORMS.join(", "),
+                nearest: near,
+            })
         }
     }
 }
@@ -109,6 +152,9 @@ fn field<const D: usize>(reader: &Reader<'_>, parameter: &str, known: &Known<'_,
 fn find(spec: &'static Spec, name: &str) -> Result<&'static Field, Lost> {
     match spec.fields.iter().find(|f| f.name == name) {
         Some(field) => Ok(field),
-        None => Err(lost(&format!("parameter of `{}`", spec.kind), name, spec.fields.iter().map(|f| f.name))),
+        None => {
+            let lost = lost("parameter", name, spec.fields.iter().map(|f| f.name));
+            Err(Lost { message: format!("{} of `{}`", lost.message, spec.kind), ..lost })
+        }
     }
 }

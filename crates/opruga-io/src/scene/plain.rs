@@ -56,7 +56,8 @@ impl Reader<'_> {
 
     fn refuse_type<T>(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<T> {
         let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-        let mut error = SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
+        let mut error =
+            SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
         error.value = Some(node.shown());
         error.allowed = Some(range.describe(self.dimension));
         if let Data::Text(text) = &node.data
@@ -74,8 +75,13 @@ impl Reader<'_> {
         match &node.data {
             Data::Number(x, text) if !x.is_finite() => {
                 let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
-                let why = if text.contains("nan") || text.contains("inf") { "is not finite" } else { "is too large for a 64-bit number" };
-                let error = SceneError::new("scene.not_finite", format!("`{name}` {why}")).path(path).value(node.shown());
+                let why = if text.contains("nan") || text.contains("inf") {
+                    "is not finite"
+                } else {
+                    "is too large for a 64-bit number"
+                };
+                let error =
+                    SceneError::new("scene.not_finite", format!("`{name}` {why}")).path(path).value(node.shown());
                 self.report(node.place, error.allowed(range.describe(self.dimension)));
                 None
             }
@@ -116,19 +122,32 @@ impl Reader<'_> {
         if items.len() != length {
             let name = path.rsplit('.').find(|s| s.parse::<usize>().is_err()).unwrap_or(path);
             let numbers = if items.len() == 1 { "number" } else { "numbers" };
-            let error = SceneError::new("scene.length", format!("`{}` has {} {numbers}", visible(name), items.len())).path(path).value(node.shown());
+            let error = SceneError::new("scene.length", format!("`{}` has {} {numbers}", visible(name), items.len()))
+                .path(path)
+                .value(node.shown());
             self.report(node.place, error.allowed(range.describe(self.dimension)));
             return None;
         }
-        let before = self.errors.len();
-        let numbers: Vec<f64> = items.iter().enumerate().filter_map(|(k, item)| self.number(item, &join(path, &k.to_string()), &Allowed::ANY)).collect();
-        (self.errors.len() == before).then_some(numbers)
+        let before = self.count();
+        let numbers: Vec<f64> = items
+            .iter()
+            .enumerate()
+            .filter_map(|(k, item)| self.number(item, &join(path, &k.to_string()), &Allowed::ANY))
+            .collect();
+        (self.count() == before).then_some(numbers)
     }
 
     /// Rows of equal length; in a curve or path the first number of each row is a time that rises.
-    pub(crate) fn rows(&mut self, node: &Node, path: &str, length: usize, rising: bool, range: &Allowed) -> Option<Vec<Vec<f64>>> {
+    pub(crate) fn rows(
+        &mut self,
+        node: &Node,
+        path: &str,
+        length: usize,
+        rising: bool,
+        range: &Allowed,
+    ) -> Option<Vec<Vec<f64>>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
-        let before = self.errors.len();
+        let before = self.count();
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(items.len());
         for (k, item) in items.iter().enumerate() {
             let here = join(path, &k.to_string());
@@ -137,20 +156,23 @@ impl Reader<'_> {
                 && let Some(last) = rows.last()
                 && row[0] <= last[0]
             {
-                let error = SceneError::new("scene.range", format!("t does not rise: {} follows {}", row[0], last[0])).path(here).value(item.shown());
+                let error = SceneError::new("scene.range", format!("t does not rise: {} follows {}", row[0], last[0]))
+                    .path(here)
+                    .value(item.shown());
                 self.report(item.place, error.allowed(range.describe(self.dimension)));
             }
             rows.push(row);
         }
-        (self.errors.len() == before).then_some(rows)
+        (self.count() == before).then_some(rows)
     }
 
     /// A list of whole numbers not below zero.
     pub(crate) fn naturals(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<Vec<u32>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
-        let before = self.errors.len();
-        let numbers = items.iter().enumerate().filter_map(|(k, item)| self.natural(item, &join(path, &k.to_string()))).collect();
-        (self.errors.len() == before).then_some(numbers)
+        let before = self.count();
+        let numbers =
+            items.iter().enumerate().filter_map(|(k, item)| self.natural(item, &join(path, &k.to_string()))).collect();
+        (self.count() == before).then_some(numbers)
     }
 
     /// A whole number not below zero.
@@ -182,7 +204,11 @@ impl Reader<'_> {
             Data::Boolean(x) => Some(Value::Boolean(*x)),
             Data::Text(text) => Some(Value::Text(text.clone())),
             Data::Array(items) if items.iter().any(|i| matches!(i.data, Data::Array(_))) => {
-                let length = items.iter().map(|i| if let Data::Array(row) = &i.data { row.len() } else { 0 }).next().unwrap_or(0);
+                let length = items
+                    .iter()
+                    .map(|i| if let Data::Array(row) = &i.data { row.len() } else { 0 })
+                    .next()
+                    .unwrap_or(0);
                 self.rows(node, path, length, false, &Allowed::Points).map(Value::Rows)
             }
             Data::Array(items) => self.row(node, path, items.len(), &Allowed::Numbers).map(Value::Numbers),

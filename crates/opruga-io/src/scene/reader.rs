@@ -8,8 +8,8 @@ use crate::source::Source;
 use opruga_core::spec::{Default, Spec, Values, nearest};
 use opruga_world::schema::{self, Child, Section};
 
-/// More errors than this are counted, not listed.
-const MOST_ERRORS: usize = 200;
+/// More errors than this are counted, not listed: finding a place takes time.
+pub(crate) const MOST_ERRORS: usize = 200;
 
 /// What every part of the reader needs.
 pub(crate) struct Reader<'a> {
@@ -18,6 +18,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) options: &'a Options,
     pub(crate) dimension: usize,
     pub(crate) errors: Vec<SceneError>,
+    /// Errors that were counted only.
+    more: usize,
     notices: Vec<Notice>,
 }
 
@@ -27,23 +29,46 @@ pub(crate) fn join(path: &str, name: &str) -> String {
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(source: &'a Source<'a>, catalogue: &'a Catalogue, options: &'a Options, errors: Vec<SceneError>) -> Reader<'a> {
-        Reader { source, catalogue, options, dimension: 2, errors, notices: Vec::new() }
+    pub(crate) fn new(
+        source: &'a Source<'a>,
+        catalogue: &'a Catalogue,
+        options: &'a Options,
+        errors: Vec<SceneError>,
+    ) -> Reader<'a> {
+        Reader { source, catalogue, options, dimension: 2, errors, more: 0, notices: Vec::new() }
     }
 
     /// Adds an error with its place.
     pub(crate) fn report(&mut self, place: Place, error: SceneError) {
+        if self.errors.len() >= MOST_ERRORS {
+            self.more += 1;
+            return;
+        }
         let error = self.placed(place, error);
         self.errors.push(error);
     }
 
+    /// How many errors there are so far.
+    pub(crate) fn count(&self) -> usize {
+        self.errors.len() + self.more
+    }
+
     /// Adds a notice with its place; with `strict` an error.
     pub(crate) fn notice(&mut self, place: Place, about: SceneError) {
-        let about = self.placed(place, about);
         if self.options.strict {
-            self.errors.push(about);
-        } else {
+            return self.report(place, about);
+        }
+        // The first of each kind carries the place, the others are counted.
+        if let Some(first) =
+            self.notices.iter_mut().find(|n| n.about.code == about.code && n.about.message == about.message)
+        {
+            first.count += 1;
+        } else if self.notices.len() < MOST_ERRORS {
+            let about = self.placed(place, about);
             self.notices.push(Notice { about, count: 1 });
+        } else if let Some(last) = self.notices.last_mut() {
+            last.about.message = "more warnings".into();
+            last.count += 1;
         }
     }
 
@@ -60,9 +85,9 @@ impl<'a> Reader<'a> {
     /// Errors in the order of their places, and notices.
     pub(crate) fn finish(mut self) -> (Vec<SceneError>, Vec<Notice>) {
         self.errors.sort_by_key(|e| (e.line.unwrap_or(0), e.column.unwrap_or(0)));
-        if self.errors.len() > MOST_ERRORS {
-            let rest = self.errors.split_off(MOST_ERRORS).len();
-            self.errors.push(SceneError { file: self.source.file.to_string(), ..SceneError::new("scene.more", format!("{rest} more errors")) });
+        if self.more > 0 {
+            let error = SceneError::new("scene.more", format!("{} more errors", self.more));
+            self.errors.push(SceneError { file: self.source.file.to_string(), ..error });
         }
         (self.errors, self.notices)
     }
@@ -83,7 +108,8 @@ impl<'a> Reader<'a> {
             }
             None => {
                 let near = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
-                let mut error = SceneError::new("scene.format", "the format is missing").path("format").allowed(readable);
+                let mut error =
+                    SceneError::new("scene.format", "the format is missing").path("format").allowed(readable);
                 error.hint = Some(match near {
                     Some(word) => format!("`{}` is misspelt", visible(&word)),
                     None => format!("begin the file with format = \"{}\"", schema::FORMAT),
@@ -98,12 +124,15 @@ impl<'a> Reader<'a> {
                 Some(self.dimension)
             }
             Some((_, node)) => {
-                let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown())).path("dimension").value(node.shown());
+                let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown()))
+                    .path("dimension")
+                    .value(node.shown());
                 self.report(node.place, error.allowed("2 or 3"));
                 None
             }
             None => {
-                let error = SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
+                let error =
+                    SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
                 self.report(Place::Bytes(0, 0), error);
                 None
             }
@@ -131,11 +160,15 @@ impl<'a> Reader<'a> {
                     self.report(entry.value.place, SceneError::new("scene.range", e.to_string()).path(here));
                 }
             } else if !names().any(|n| n == entry.key) {
-                let known = if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
-                let mut error = SceneError::new("scene.unknown_field", format!("there is no field `{}`{known}", visible(&entry.key)))
-                    .path(visible(&here))
-                    .value(visible(&entry.key))
-                    .nearest(nearest(&entry.key, names()));
+                let known =
+                    if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
+                let mut error = SceneError::new(
+                    "scene.unknown_field",
+                    format!("there is no field `{}`{known}", visible(&entry.key)),
+                )
+                .path(visible(&here))
+                .value(visible(&entry.key))
+                .nearest(nearest(&entry.key, names()));
                 error.allowed = Some(listed(names()));
                 if self.options.lenient { self.notice(entry.place, error) } else { self.report(entry.place, error) }
             }
@@ -155,7 +188,8 @@ impl<'a> Reader<'a> {
         let words = missing.iter().map(|m| format!("`{m}`")).collect::<Vec<_>>().join(", ");
         let verb = if missing.len() == 1 { "is" } else { "are" };
         let whole = if path.is_empty() { "the scene".to_string() } else { format!("`{}`", section.spec.kind) };
-        let mut error = SceneError::new("scene.missing", format!("{words} {verb} missing in {whole}")).path(join(path, missing[0]));
+        let mut error =
+            SceneError::new("scene.missing", format!("{words} {verb} missing in {whole}")).path(join(path, missing[0]));
         if let Some(field) = section.spec.fields.iter().find(|f| f.name == missing[0] && missing.len() == 1) {
             error.allowed = Some(field.range.describe(self.dimension));
             error.hint = Some(field.documentation.to_string());
@@ -169,10 +203,14 @@ impl<'a> Reader<'a> {
         let spec = find(list, &word)?;
         if !spec.dimensions.contains(&self.dimension) {
             let place = super::place_of(node, "kind");
-            let error = SceneError::new("scene.dimension", format!("`{}` does not exist in {}D", spec.kind, self.dimension))
-                .path(join(path, "kind"))
-                .value(spec.kind)
-                .allowed(format!("dimension {}", spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ")));
+            let error =
+                SceneError::new("scene.dimension", format!("`{}` does not exist in {}D", spec.kind, self.dimension))
+                    .path(join(path, "kind"))
+                    .value(spec.kind)
+                    .allowed(format!(
+                        "dimension {}",
+                        spec.dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ")
+                    ));
             self.report(place, error);
             return None;
         }
@@ -187,7 +225,9 @@ impl<'a> Reader<'a> {
         }
         let here = join(path, tag);
         let Some(value) = node.get(tag) else {
-            let error = SceneError::new("scene.missing", format!("`{tag}` is missing in `{what}`")).path(here).allowed(listed(words.iter().copied()));
+            let error = SceneError::new("scene.missing", format!("`{tag}` is missing in `{what}`"))
+                .path(here)
+                .allowed(listed(words.iter().copied()));
             self.report(node.place, error);
             return None;
         };
@@ -218,7 +258,11 @@ impl<'a> Reader<'a> {
                 if matches!(value.data, Data::Table(_))
                     && let Some(error) = self.errors.last_mut()
                 {
-                    let hint = if path.is_empty() { format!("write [[{name}]]") } else { format!("write {name} = [ {{ … }} ]") };
+                    let hint = if path.is_empty() {
+                        format!("write [[{name}]]")
+                    } else {
+                        format!("write {name} = [ {{ … }} ]")
+                    };
                     error.hint = Some(hint);
                 }
                 Vec::new()
@@ -229,7 +273,8 @@ impl<'a> Reader<'a> {
     /// Reports a value of another type than wanted.
     pub(crate) fn wrong_type(&mut self, node: &Node, path: &str, wanted: &str) {
         let name = if path.is_empty() { "the scene" } else { path };
-        let mut error = SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
+        let mut error =
+            SceneError::new("scene.type", format!("`{}` is {}", visible(name), node.kind())).path(visible(path));
         error.value = Some(node.shown());
         error.allowed = Some(wanted.to_string());
         if let Data::Text(text) = &node.data

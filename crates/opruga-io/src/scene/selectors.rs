@@ -28,11 +28,12 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         }
     };
     if entries.len() != 1 {
-        let error = SceneError::new("scene.selector", format!("a selector has exactly one key, here are {}", entries.len()))
-            .path(path)
-            .value(node.shown())
-            .allowed(listed(words()))
-            .hint("combine sets with { and = [ … ] } or { or = [ … ] }");
+        let error =
+            SceneError::new("scene.selector", format!("a selector has exactly one key, here are {}", entries.len()))
+                .path(path)
+                .value(node.shown())
+                .allowed(listed(words()))
+                .hint("combine sets with { and = [ … ] } or { or = [ … ] }");
         reader.report(node.place, error);
         return None;
     }
@@ -42,7 +43,9 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         "box" => {
             let rows = reader.rows(value, &here, D, false, &Allowed::Points)?;
             let [a, b] = rows.as_slice() else {
-                let error = SceneError::new("scene.length", format!("`box` has {} corners", rows.len())).path(here).value(value.shown());
+                let error = SceneError::new("scene.length", format!("`box` has {} corners", rows.len()))
+                    .path(here)
+                    .value(value.shown());
                 reader.report(value.place, error.allowed("two opposite corners"));
                 return None;
             };
@@ -50,9 +53,9 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         }
         "ball" | "half_space" => {
             let spec = SELECTORS.iter().find(|s| s.kind == key)?;
-            let before = reader.errors.len();
+            let before = reader.count();
             let values = reader.fields(value, &here, &Section { spec, children: &[] }, None);
-            if reader.errors.len() > before {
+            if reader.count() > before {
                 return None;
             }
             if key == "ball" {
@@ -60,7 +63,9 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
             } else {
                 let normal: [f64; D] = values.vector("normal");
                 if normal.iter().all(|n| *n == 0.0) {
-                    let error = SceneError::new("scene.range", "`normal` is zero").path(join(&here, "normal")).allowed("a vector that is not zero");
+                    let error = SceneError::new("scene.range", "`normal` is zero")
+                        .path(join(&here, "normal"))
+                        .allowed("a vector that is not zero");
                     reader.report(super::place_of(value, "normal"), error);
                     return None;
                 }
@@ -68,7 +73,11 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
             }
         }
         "side" => {
-            let range = Allowed::Choice(if D == 2 { &["left", "right", "bottom", "top"] } else { &["left", "right", "bottom", "top", "back", "front"] });
+            let range = Allowed::Choice(if D == 2 {
+                &["left", "right", "bottom", "top"]
+            } else {
+                &["left", "right", "bottom", "top", "back", "front"]
+            });
             match reader.plain(value, &here, "side", &range)? {
                 opruga_core::spec::Value::Text(side) => Selector::Side(side),
                 _ => return None,
@@ -82,7 +91,9 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
         },
         "boundary" | "all" => {
             if !matches!(value.data, Data::Boolean(true)) {
-                let error = SceneError::new("scene.selector", format!("`{key}` is {}", value.shown())).path(here).value(value.shown());
+                let error = SceneError::new("scene.selector", format!("`{key}` is {}", value.shown()))
+                    .path(here)
+                    .value(value.shown());
                 reader.report(value.place, error.allowed("true"));
                 return None;
             }
@@ -93,7 +104,8 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
                 reader.wrong_type(value, &here, "a list of selectors");
                 return None;
             };
-            let sets: Vec<Option<Selector<D>>> = items.iter().enumerate().map(|(k, item)| one(reader, item, &format!("{here}.{k}"))).collect();
+            let sets: Vec<Option<Selector<D>>> =
+                items.iter().enumerate().map(|(k, item)| one(reader, item, &format!("{here}.{k}"))).collect();
             let sets: Vec<Selector<D>> = sets.into_iter().collect::<Option<_>>()?;
             if key == "and" { Selector::And(sets) } else { Selector::Or(sets) }
         }
@@ -115,7 +127,13 @@ fn fixed<const D: usize>(row: &[f64]) -> [f64; D] {
 }
 
 /// Refuses a selector that names nodes or groups that are not there, or that selects nothing.
-pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, place: Place, path: &str, selector: &Selector<D>, body: &BodyBlueprint<D>) -> bool {
+pub(crate) fn check<const D: usize>(
+    reader: &mut Reader<'_>,
+    place: Place,
+    path: &str,
+    selector: &Selector<D>,
+    body: &BodyBlueprint<D>,
+) -> bool {
     let count = body.mesh.positions.len();
     let mut beyond = None;
     let mut unknown = None;
@@ -126,15 +144,20 @@ pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, place: Place, path:
     });
     let name = visible(&body.name);
     if let Some(node) = beyond {
-        let error = SceneError::new("scene.range", format!("body `{name}` has no node {node}")).path(path).value(node.to_string());
+        let error = SceneError::new("scene.range", format!("body `{name}` has no node {node}"))
+            .path(path)
+            .value(node.to_string());
         reader.report(place, error.allowed(format!("nodes from 0 to {}", count.saturating_sub(1))));
         return false;
     }
     if let Some(group) = unknown {
         let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
-        let mut error = SceneError::new("scene.unknown_name", format!("the mesh of `{name}` has no group `{}`", visible(&group))).path(path);
+        let mut error =
+            SceneError::new("scene.unknown_name", format!("the mesh of `{name}` has no group `{}`", visible(&group)))
+                .path(path);
         error.value = Some(visible(&group));
-        error.allowed = Some(if groups.is_empty() { "it has no groups".into() } else { listed(groups.iter().copied()) });
+        error.allowed =
+            Some(if groups.is_empty() { "it has no groups".into() } else { listed(groups.iter().copied()) });
         reader.report(place, error.nearest(nearest(&group, groups.iter().copied())));
         return false;
     }
@@ -144,8 +167,12 @@ pub(crate) fn check<const D: usize>(reader: &mut Reader<'_>, place: Place, path:
             let x: [f64; D] = core::array::from_fn(|a| x[a] + body.translation[a]);
             format!("{x:?}")
         };
-        let error = SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
-        reader.report(place, error.hint(format!("at the start the body lies between {} and {}", corner(low), corner(high))));
+        let error =
+            SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
+        reader.report(
+            place,
+            error.hint(format!("at the start the body lies between {} and {}", corner(low), corner(high))),
+        );
         return false;
     }
     true
@@ -161,7 +188,13 @@ fn visit<const D: usize>(selector: &Selector<D>, each: &mut impl FnMut(&Selector
 }
 
 /// Reads and checks the selector of a table that names a body.
-pub(crate) fn of_body<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &str, bodies: &Bodies<D>, body: Option<usize>) -> Option<Selector<D>> {
+pub(crate) fn of_body<const D: usize>(
+    reader: &mut Reader<'_>,
+    table: &Node,
+    path: &str,
+    bodies: &Bodies<D>,
+    body: Option<usize>,
+) -> Option<Selector<D>> {
     let selector = of(reader, table, path)?;
     let body = bodies.list.get(body?)?;
     let place = super::place_of(table, "select");

@@ -35,7 +35,11 @@ static PRESSURE: Spec = spec(
 );
 static PLANE_ONLY: Spec = spec("plane_only", &[2], &[]);
 static SYMPLECTIC_EULER: Spec = spec("symplectic_euler", &[2, 3], &[]);
-static NEWTON: Spec = spec("newton", &[2, 3], &[field("iterations", Allowed::Integer { least: 1, greatest: 1000 }, "", Default::Integer(20))]);
+static NEWTON: Spec = spec(
+    "newton",
+    &[2, 3],
+    &[field("iterations", Allowed::Integer { least: 1, greatest: 1000 }, "", Default::Integer(20))],
+);
 static HALF_SPACE: Spec = spec(
     "half_space",
     &[2, 3],
@@ -48,7 +52,11 @@ static HALF_SPACE: Spec = spec(
 );
 
 pub(crate) fn catalogue() -> Catalogue {
-    Catalogue { models: vec![&MASS_SPRING, &PRESSURE, &PLANE_ONLY], integrators: vec![&SYMPLECTIC_EULER, &NEWTON], colliders: vec![&HALF_SPACE] }
+    Catalogue {
+        models: vec![&MASS_SPRING, &PRESSURE, &PLANE_ONLY],
+        integrators: vec![&SYMPLECTIC_EULER, &NEWTON],
+        colliders: vec![&HALF_SPACE],
+    }
 }
 
 pub(crate) fn read_text(text: &str) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
@@ -80,7 +88,8 @@ pub(crate) fn errors(text: &str) -> Vec<SceneError> {
 }
 
 /// The first lines of every scene.
-pub(crate) const HEAD: &str = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n";
+pub(crate) const HEAD: &str =
+    "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n";
 
 /// A body to hang things on.
 pub(crate) const BALL: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 1.0, vertices = 8 }\nmass = 1.0\nmodels = [{ kind = \"mass_spring\", stiffness = 10 }]\n";

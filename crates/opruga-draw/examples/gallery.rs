@@ -1,0 +1,75 @@
+//! Draws a synthetic picture of each kind into a directory, which is the first argument (default: `gallery`).
+#![allow(clippy::disallowed_methods, reason = "no physics is made here")]
+
+#[path = "gallery/charts.rs"]
+mod charts;
+#[path = "gallery/flat.rs"]
+mod flat;
+
+use opruga_draw::{Image, Picture, StripStyle, Style, View, draw, spread, strip};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The result of a step of the gallery.
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// Writes an image and tells how long it took to draw.
+fn save(directory: &Path, name: &str, start: Instant, image: &Image) -> Outcome {
+    println!("{name}: {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
+    image.write_png(std::fs::File::create(directory.join(name))?)?;
+    Ok(())
+}
+
+/// Draws one picture with a view of its own.
+fn single(directory: &Path, name: &str, picture: &Picture, style: &Style) -> Outcome {
+    let view = View::fit([picture])?;
+    let start = Instant::now();
+    let image = draw(picture, &view, style)?;
+    save(directory, name, start, &image)
+}
+
+fn main() -> Outcome {
+    let directory = PathBuf::from(
+        std::env::args()
+            .nth(1)
+            .unwrap_or_else(|| "gallery".to_string()),
+    );
+    std::fs::create_dir_all(&directory)?;
+    let style = Style::default();
+
+    let frames = flat::bouncing_ring(200);
+    let view = View::fit(&frames)?;
+    let start = Instant::now();
+    let image = strip(&spread(&frames, 10), &view, &StripStyle::default())?;
+    save(&directory, "strip.png", start, &image)?;
+    let start = Instant::now();
+    save(
+        &directory,
+        "ring.png",
+        start,
+        &draw(&frames[60], &view, &style)?,
+    )?;
+
+    single(&directory, "plate.png", &flat::plate(), &style)?;
+    single(&directory, "net.png", &flat::net(), &style)?;
+    single(&directory, "room.png", &flat::room(), &style)?;
+    single(
+        &directory,
+        "bodies-1000.png",
+        &flat::crowd(40, 25, true),
+        &style,
+    )?;
+    single(
+        &directory,
+        "bodies-27778.png",
+        &flat::crowd(193, 144, false),
+        &style,
+    )?;
+    for (name, chart) in [
+        ("ledger.svg", charts::ledger()),
+        ("speed.svg", charts::speed()),
+    ] {
+        std::fs::write(directory.join(name), chart.to_svg()?)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! Plots of lines over a common axis, as SVG text.
+
+mod scale;
+mod svg;
+
+use crate::error::DrawError;
+
+/// A plot: panels above each other, over one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// The title, which may be empty.
+    pub title: String,
+    /// The width of the whole plot in pixels.
+    pub width: f64,
+    /// The axis along x, which all panels share.
+    pub x: Axis,
+    /// The panels from the top.
+    pub panels: Vec<Panel>,
+}
+
+impl Default for Chart {
+    fn default() -> Chart {
+        Chart {
+            title: String::new(),
+            width: 720.0,
+            x: Axis::default(),
+            panels: Vec::new(),
+        }
+    }
+}
+
+/// One axis of a plot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// The name of the quantity.
+    pub label: String,
+    /// The unit of the quantity; empty where there is none.
+    pub unit: String,
+    /// Whether equal distances mean equal ratios; values which are not above zero are left out then.
+    pub logarithmic: bool,
+    /// The values at the ends; measured where this is absent.
+    pub range: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis with a label and a unit.
+    pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis {
+            label: label.into(),
+            unit: unit.into(),
+            ..Axis::default()
+        }
+    }
+
+    /// A logarithmic axis with a label and a unit.
+    pub fn logarithmic(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis {
+            logarithmic: true,
+            ..Axis::linear(label, unit)
+        }
+    }
+}
+
+/// One panel of a plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// The height of the area of the lines in pixels.
+    pub height: f64,
+    /// The axis along y.
+    pub y: Axis,
+    /// The lines.
+    pub lines: Vec<Line>,
+    /// The levels for comparison.
+    pub levels: Vec<Level>,
+}
+
+impl Default for Panel {
+    fn default() -> Panel {
+        Panel {
+            height: 180.0,
+            y: Axis::default(),
+            lines: Vec::new(),
+            levels: Vec::new(),
+        }
+    }
+}
+
+/// One line of a panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Line {
+    /// The name in the list of lines; a line without a name is not listed.
+    pub name: String,
+    /// The points; a point which is not finite makes a gap.
+    pub points: Vec<[f64; 2]>,
+    /// The sign at each point.
+    pub marker: Option<Marker>,
+    /// Whether the line has dashes.
+    pub dashed: bool,
+    /// The colour; the colours of Okabe and Ito follow each other where this is absent.
+    pub colour: Option<[u8; 3]>,
+}
+
+/// The sign at each point of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Marker {
+    /// A disc.
+    Circle,
+    /// A square.
+    Square,
+    /// A triangle.
+    Triangle,
+    /// A square on its corner.
+    Diamond,
+}
+
+/// A horizontal line for comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// The value.
+    pub value: f64,
+    /// What the value means.
+    pub label: String,
+}
+
+impl Chart {
+    /// The plot as the text of an SVG file.
+    pub fn to_svg(&self) -> Result<String, DrawError> {
+        if self.panels.is_empty() {
+            return Err(DrawError::Empty("a plot needs a panel"));
+        }
+        Ok(svg::write(self))
+    }
+}

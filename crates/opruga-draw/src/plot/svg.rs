@@ -1,0 +1,431 @@
+//! Writes plots as SVG text.
+
+use super::scale::Scale;
+use super::{Axis, Chart, Line, Marker, Panel};
+use crate::canvas::text_width;
+use crate::colour::{INK, OKABE_ITO, SOFT_INK};
+use std::fmt::Write;
+
+/// The size of the letters of labels.
+const SIZE: f64 = 13.0;
+/// The size of the letters of ticks.
+const TICK_SIZE: f64 = 12.0;
+/// The height of a row of names above a panel.
+const NAME_ROW: f64 = 20.0;
+/// The free space between panels.
+const GAP: f64 = 16.0;
+
+/// The text of an SVG file.
+struct Svg {
+    /// What is written so far.
+    text: String,
+}
+
+impl Svg {
+    /// Adds an element.
+    fn add(&mut self, element: std::fmt::Arguments) {
+        self.text.push_str("  ");
+        let _ = self.text.write_fmt(element);
+        self.text.push('\n');
+    }
+
+    /// Adds a line.
+    fn line(&mut self, [x1, y1, x2, y2]: [f64; 4], colour: [u8; 3], width: f64, dashes: &str) {
+        let colour = hex(colour);
+        let dashes = if dashes.is_empty() {
+            String::new()
+        } else {
+            format!(r#" stroke-dasharray="{dashes}""#)
+        };
+        self.add(format_args!(
+            r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}" stroke="{colour}" stroke-width="{width}"{dashes}/>"#
+        ));
+    }
+
+    /// Adds a text.
+    fn text(
+        &mut self,
+        text: &str,
+        [x, y]: [f64; 2],
+        size: f64,
+        anchor: &str,
+        colour: [u8; 3],
+        more: &str,
+    ) {
+        let colour = hex(colour);
+        let text = escape(text);
+        self.add(format_args!(
+            r#"<text x="{x:.1}" y="{y:.1}" font-size="{size}" text-anchor="{anchor}" fill="{colour}"{more}>{text}</text>"#
+        ));
+    }
+}
+
+/// A colour as SVG writes it.
+fn hex([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// A text in which the signs of XML stand for themselves.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for sign in text.chars() {
+        match sign {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&apos;"),
+            sign if sign.is_control() => out.push(' '),
+            sign => out.push(sign),
+        }
+    }
+    out
+}
+
+/// The width of a text.
+fn width_of(text: &str, size: f64) -> f64 {
+    f64::from(text_width(text, size as f32))
+}
+
+/// The label of an axis with its unit.
+fn axis_text(axis: &Axis) -> String {
+    match (axis.label.is_empty(), axis.unit.is_empty()) {
+        (_, true) => axis.label.clone(),
+        (true, false) => format!("[{}]", axis.unit),
+        (false, false) => format!("{} [{}]", axis.label, axis.unit),
+    }
+}
+
+/// The colour of a line.
+fn colour_of(line: &Line, index: usize) -> [u8; 3] {
+    line.colour.unwrap_or(OKABE_ITO[index % OKABE_ITO.len()])
+}
+
+/// Writes a plot.
+pub(crate) fn write(chart: &Chart) -> String {
+    let points = chart
+        .panels
+        .iter()
+        .flat_map(|panel| &panel.lines)
+        .flat_map(|line| &line.points);
+    let margin = if chart.x.logarithmic { 0.04 } else { 0.0 };
+    let x = Scale::fit(&chart.x, points.map(|point| point[0]), margin);
+    let scales: Vec<Scale> = chart.panels.iter().map(fit_panel).collect();
+    let tick_width = |(panel, scale): (&Panel, &Scale)| {
+        let ticks = scale.ticks(tick_count(panel.height));
+        ticks
+            .iter()
+            .map(|tick| width_of(&tick.label, TICK_SIZE))
+            .fold(0.0, f64::max)
+    };
+    let left = chart
+        .panels
+        .iter()
+        .zip(&scales)
+        .map(tick_width)
+        .fold(20.0, f64::max)
+        + 44.0;
+    let right = chart.width - 22.0;
+    let mut y = if chart.title.is_empty() { 14.0 } else { 40.0 };
+    let mut svg = Svg {
+        text: String::new(),
+    };
+    if !chart.title.is_empty() {
+        svg.text(
+            &chart.title,
+            [left, 25.0],
+            16.0,
+            "start",
+            INK,
+            r#" font-weight="600""#,
+        );
+    }
+    for (index, (panel, scale)) in chart.panels.iter().zip(&scales).enumerate() {
+        let rows = names(&mut svg, panel, [left, right], y);
+        y += rows as f64 * NAME_ROW + if rows > 0 { 4.0 } else { 0.0 };
+        let area = [left, y, right, y + panel.height];
+        let last = index + 1 == chart.panels.len();
+        draw_panel(&mut svg, panel, [&x, scale], area, index, last);
+        y += panel.height + if last { 0.0 } else { GAP };
+    }
+    svg.text(
+        &axis_text(&chart.x),
+        [0.5 * (left + right), y + 42.0],
+        SIZE,
+        "middle",
+        INK,
+        "",
+    );
+    let (width, height) = (chart.width, y + 56.0);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"Inter, Helvetica, Arial, sans-serif\">\n  \
+         <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{}</svg>\n",
+        svg.text
+    )
+}
+
+/// The number of ticks which fit along a height.
+fn tick_count(height: f64) -> usize {
+    (height / 42.0).clamp(2.0, 10.0) as usize
+}
+
+/// The scale along y of a panel.
+fn fit_panel(panel: &Panel) -> Scale {
+    let values = panel
+        .lines
+        .iter()
+        .flat_map(|line| &line.points)
+        .map(|point| point[1]);
+    Scale::fit(
+        &panel.y,
+        values.chain(panel.levels.iter().map(|level| level.value)),
+        0.07,
+    )
+}
+
+/// Lists the names of the lines above a panel, and gives the number of rows.
+fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usize {
+    let (mut x, mut rows) = (left, 0);
+    for (index, line) in panel
+        .lines
+        .iter()
+        .enumerate()
+        .filter(|(_, line)| !line.name.is_empty())
+    {
+        let width = 28.0 + width_of(&line.name, SIZE) * 1.06 + 18.0;
+        if rows == 0 || x + width > right + 18.0 {
+            rows += 1;
+            x = left;
+        }
+        let y = top + NAME_ROW * (rows as f64 - 0.35);
+        let colour = colour_of(line, index);
+        svg.line(
+            [x, y - 4.5, x + 22.0, y - 4.5],
+            colour,
+            2.0,
+            if line.dashed { "6 4" } else { "" },
+        );
+        if let Some(marker) = line.marker {
+            draw_marker(svg, marker, [x + 11.0, y - 4.5], colour);
+        }
+        svg.text(&line.name, [x + 28.0, y], SIZE, "start", INK, "");
+        x += width;
+    }
+    rows
+}
+
+/// Draws the axes and the lines of a panel.
+fn draw_panel(
+    svg: &mut Svg,
+    panel: &Panel,
+    [x, y]: [&Scale; 2],
+    area: [f64; 4],
+    index: usize,
+    last: bool,
+) {
+    let [left, top, right, bottom] = area;
+    let grid = [232, 234, 238];
+    let at_x = |place: f64| left + place * (right - left);
+    let at_y = |place: f64| bottom - place * (bottom - top);
+    for tick in x.ticks(((right - left) / 80.0) as usize) {
+        let Some(place) = x.place(tick.value).map(at_x) else {
+            continue;
+        };
+        if !tick.label.is_empty() {
+            svg.line([place, top, place, bottom], grid, 1.0, "");
+            if last {
+                svg.text(
+                    &tick.label,
+                    [place, bottom + 20.0],
+                    TICK_SIZE,
+                    "middle",
+                    INK,
+                    "",
+                );
+            }
+        }
+        let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
+        svg.line([place, bottom, place, bottom + length], SOFT_INK, 1.0, "");
+    }
+    for tick in y.ticks(tick_count(panel.height)) {
+        let Some(place) = y.place(tick.value).map(at_y) else {
+            continue;
+        };
+        if !tick.label.is_empty() {
+            svg.line([left, place, right, place], grid, 1.0, "");
+            svg.text(
+                &tick.label,
+                [left - 9.0, place + 4.2],
+                TICK_SIZE,
+                "end",
+                INK,
+                "",
+            );
+        }
+        let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
+        svg.line([left - length, place, left, place], SOFT_INK, 1.0, "");
+    }
+    let (width, height) = (right - left, bottom - top);
+    svg.add(format_args!(
+        r#"<clipPath id="panel-{index}"><rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}"/></clipPath>"#
+    ));
+    for level in &panel.levels {
+        if let Some(place) = y.place(level.value).map(at_y) {
+            svg.line([left, place, right, place], SOFT_INK, 1.4, "7 5");
+            svg.text(
+                &level.label,
+                [right - 6.0, place - 6.0],
+                TICK_SIZE,
+                "end",
+                SOFT_INK,
+                "",
+            );
+        }
+    }
+    for (number, line) in panel.lines.iter().enumerate() {
+        let colour = colour_of(line, number);
+        let places = line
+            .points
+            .iter()
+            .map(|point| Some([at_x(x.place(point[0])?), at_y(y.place(point[1])?)]));
+        let path = path_text(places);
+        if !path.is_empty() {
+            let dashes = if line.dashed {
+                r#" stroke-dasharray="6 4""#
+            } else {
+                ""
+            };
+            let colour = hex(colour);
+            svg.add(format_args!(
+                r#"<path d="{path}" fill="none" stroke="{colour}" stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"{dashes} clip-path="url(#panel-{index})"/>"#
+            ));
+        }
+        if let Some(marker) = line.marker {
+            for point in &line.points {
+                if let (Some(px), Some(py)) = (x.place(point[0]), y.place(point[1]))
+                    && (-1e-9..=1.0 + 1e-9).contains(&px)
+                    && (-1e-9..=1.0 + 1e-9).contains(&py)
+                {
+                    draw_marker(svg, marker, [at_x(px), at_y(py)], colour);
+                }
+            }
+        }
+    }
+    svg.line([left, top, left, bottom], SOFT_INK, 1.0, "");
+    svg.line([left, bottom, right, bottom], SOFT_INK, 1.0, "");
+    let middle = 0.5 * (top + bottom);
+    let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
+    svg.text(
+        &axis_text(&panel.y),
+        [16.0, middle],
+        SIZE,
+        "middle",
+        INK,
+        &turn,
+    );
+}
+
+/// Draws the sign of a point.
+fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3]) {
+    let colour = hex(colour);
+    let corners: &[[f64; 2]] = match marker {
+        Marker::Circle => {
+            return svg.add(format_args!(
+                r##"<circle cx="{x:.1}" cy="{y:.1}" r="4" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##
+            ));
+        }
+        Marker::Square => &[[-3.6, -3.6], [3.6, -3.6], [3.6, 3.6], [-3.6, 3.6]],
+        Marker::Triangle => &[[0.0, -4.8], [4.6, 3.4], [-4.6, 3.4]],
+        Marker::Diamond => &[[0.0, -5.0], [5.0, 0.0], [0.0, 5.0], [-5.0, 0.0]],
+    };
+    let points: Vec<String> = corners
+        .iter()
+        .map(|corner| format!("{:.1},{:.1}", x + corner[0], y + corner[1]))
+        .collect();
+    let points = points.join(" ");
+    svg.add(format_args!(
+        r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##
+    ));
+}
+
+/// The commands of a path; of many points in the same half pixel only the ends and the extremes are kept.
+fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
+    let mut path = String::new();
+    let mut column: Vec<[f64; 2]> = Vec::new();
+    let mut pen_down = false;
+    let mut flush = |column: &mut Vec<[f64; 2]>, pen_down: &mut bool| {
+        let last = column.len().saturating_sub(1);
+        let by_height = |a: &usize, b: &usize| column[*a][1].total_cmp(&column[*b][1]);
+        let low = (0..column.len()).min_by(by_height).unwrap_or(0);
+        let high = (0..column.len()).max_by(by_height).unwrap_or(0);
+        let mut kept = [0, low, high, last];
+        kept.sort_unstable();
+        for (place, &index) in kept.iter().enumerate() {
+            if column.is_empty() || (place > 0 && kept[place - 1] == index) {
+                continue;
+            }
+            let [x, y] = column[index].map(|value| value.clamp(-1e5, 1e5));
+            let _ = write!(path, "{}{x:.1} {y:.1}", if *pen_down { "L" } else { "M" });
+            *pen_down = true;
+        }
+        column.clear();
+    };
+    for point in points {
+        match point {
+            Some(point) => {
+                if column
+                    .first()
+                    .is_some_and(|first| (first[0] - point[0]).abs() > 0.5)
+                {
+                    flush(&mut column, &mut pen_down);
+                }
+                column.push(point);
+            }
+            None => {
+                flush(&mut column, &mut pen_down);
+                pen_down = false;
+            }
+        }
+    }
+    flush(&mut column, &mut pen_down);
+    path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_escaped() {
+        let line = Line {
+            name: "a < b & \"c\"".to_string(),
+            points: vec![[0.0, 0.0], [1.0, 1.0]],
+            ..Line::default()
+        };
+        let chart = Chart {
+            panels: vec![Panel {
+                lines: vec![line],
+                ..Panel::default()
+            }],
+            ..Chart::default()
+        };
+        let text = chart.to_svg().unwrap();
+        assert!(text.contains("a &lt; b &amp; &quot;c&quot;"));
+        assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn a_point_which_is_not_finite_makes_a_gap() {
+        let points = [Some([0.0, 0.0]), Some([1.0, 2.0]), None, Some([3.0, 1.0])];
+        assert_eq!(path_text(points.into_iter()), "M0.0 0.0L1.0 2.0M3.0 1.0");
+    }
+
+    #[test]
+    fn long_lines_are_thinned() {
+        let points =
+            (0..100_000).map(|index| Some([f64::from(index) * 0.005, f64::from(index % 7)]));
+        let commands = path_text(points).matches('L').count();
+        assert!(commands > 1000 && commands < 5000, "{commands}");
+    }
+}

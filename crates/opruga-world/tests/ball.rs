@@ -1,0 +1,206 @@
+//! A ring of springs and gas in a world: closed forms, ledger, bits, snapshots.
+
+use opruga_core::spec::{Spec, Value, Values};
+use opruga_math::Simd;
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, Registry, World};
+use std::sync::Arc;
+
+fn values(spec: &'static Spec, fields: &[(&str, Value)]) -> Values {
+    let mut values = Values::defaults(spec, 2);
+    for (name, value) in fields {
+        values.set(spec, name, value.clone(), 2).expect("a field of the test's own");
+    }
+    values
+}
+
+fn model(kind: &str, fields: &[(&str, f64)]) -> Values {
+    let registry = Registry::<2>::default();
+    let fields: Vec<_> = fields.iter().map(|(n, x)| (*n, Value::Number(*x))).collect();
+    values(registry.model(kind).expect("a model").spec(), &fields)
+}
+
+fn integrator(kind: &str) -> Values {
+    Values::defaults(Registry::<2>::default().integrator(kind).expect("an integrator").spec(), 2)
+}
+
+fn floor(restitution: f64, friction: f64) -> ColliderBlueprint {
+    let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a floor");
+    let fields = [
+        ("point", Value::Numbers(vec![0.0, 0.0])),
+        ("normal", Value::Numbers(vec![0.0, 1.0])),
+        ("restitution", Value::Number(restitution)),
+        ("friction", Value::Number(friction)),
+    ];
+    ColliderBlueprint { values: values(spec, &fields) }
+}
+
+fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
+    let mesh = Arc::new(Mesh::ring(0.5, vertices, [0.0, 0.0], 0.0).expect("a ring"));
+    Blueprint {
+        name: "test".into(),
+        title: String::new(),
+        seed: 0,
+        time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 40 },
+        surroundings: Surroundings { gravity: [0.0, -9.81], drag: 0.0, largest_force: None, largest_velocity: None },
+        integrator: integrator(rule),
+        bodies: (0..count)
+            .map(|k| BodyBlueprint {
+                name: format!("ball[{k}]"),
+                mesh: Arc::clone(&mesh),
+                translation: [2.0 * k as f64, 0.8 + 0.01 * k as f64],
+                velocity: [0.3, 0.0],
+                angular_velocity: vec![1.0],
+                mass: Mass::Total(1.0),
+                thickness: 1.0,
+                models: vec![
+                    model("mass_spring", &[("stiffness", 1600.0 + k as f64), ("damping", 0.5)]),
+                    model("pressure", &[("nRT", 50.0)]),
+                ],
+                pins: Vec::new(),
+            })
+            .collect(),
+        colliders: vec![floor(0.4, 0.3)],
+        loads: Vec::new(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+    }
+}
+
+fn run(blueprint: Blueprint<2>, options: Options, frames: usize) -> World<2> {
+    let mut world = World::new(blueprint, options).expect("a world");
+    for _ in 0..frames {
+        world.frame().expect("a frame");
+    }
+    world
+}
+
+#[test]
+fn threads_lanes_and_batches_give_the_same_bits() {
+    let reference = run(rings(11, 36, "symplectic_euler"), Options { batches: false, simd: Some(Simd::Baseline), ..Options::default() }, 60);
+    assert!(reference.position(0, 27)[1] < 0.5, "the balls have come down");
+    for threads in [1, 2, 3, 8] {
+        for simd in Simd::available() {
+            for batches in [false, true] {
+                let options = Options { threads, simd: Some(simd), batches, ..Options::default() };
+                let world = run(rings(11, 36, "symplectic_euler"), options, 60);
+                assert_eq!(world.state_hash(), reference.state_hash(), "{threads} threads, {simd:?}, batches {batches}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_restored_snapshot_goes_on_bit_for_bit_on_another_number_of_threads() {
+    let mut first = run(rings(5, 36, "verlet"), Options::default(), 30);
+    let bytes = first.snapshot();
+    let mut second = World::new(rings(5, 36, "verlet"), Options { threads: 3, ..Options::default() }).expect("a world");
+    second.restore(&bytes).expect("its own snapshot");
+    assert_eq!(first.state_hash(), second.state_hash());
+    for _ in 0..40 {
+        first.frame().expect("a frame");
+        second.frame().expect("a frame");
+    }
+    assert_eq!(first.state_hash(), second.state_hash());
+    assert_eq!(first.energy(), second.energy());
+}
+
+#[test]
+fn a_damaged_snapshot_is_refused_and_leaves_the_world_as_it_was() {
+    let mut world = run(rings(2, 8, "symplectic_euler"), Options::default(), 3);
+    let hash = world.state_hash();
+    let bytes = world.snapshot();
+    for length in 0..bytes.len() {
+        assert!(world.restore(&bytes[..length]).is_err(), "cut at {length}");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert!(world.restore(&longer).is_err());
+    assert_eq!(world.state_hash(), hash);
+    world.restore(&bytes).expect("the whole snapshot");
+    assert_eq!(world.state_hash(), hash);
+}
+
+#[test]
+fn a_free_ring_keeps_its_momentum_and_falls_like_a_stone() {
+    let mut blueprint = rings(1, 36, "symplectic_euler");
+    blueprint.colliders.clear();
+    let world = run(blueprint, Options::default(), 60);
+    let momentum = world.momentum();
+    // m v: 1 kg at 0.3 m/s to the side, −9.81 m/s after one second of fall.
+    assert!((momentum.linear.0[0] - 0.3).abs() < 1e-12);
+    assert!((momentum.linear.0[1] + 9.81).abs() < 1e-11);
+    // Symplectic Euler after n steps: y = −g h² n (n + 1) / 2.
+    let (h, n) = (world.h(), 2400.0);
+    let mean = (0..36).map(|i| world.position(0, i)[1]).sum::<f64>() / 36.0;
+    let expected = 0.8 - 9.81 * h * h * n * (n + 1.0) / 2.0;
+    assert!((mean - expected).abs() < 1e-9, "{mean} {expected}");
+}
+
+#[test]
+fn the_ledger_closes_at_first_order_and_every_channel_has_its_sign() {
+    let closure = |substeps: u32| {
+        let mut blueprint = rings(1, 36, "symplectic_euler");
+        blueprint.time.substeps = substeps;
+        let world = run(blueprint, Options::default(), 90);
+        let e = world.energy();
+        assert!(e.loss_damping > 0.0 && e.loss_contact > 0.0 && e.loss_friction > 0.0);
+        assert!(e.work_user == 0.0 && e.work_gas == 0.0);
+        e.loss_integrator.abs()
+    };
+    let (coarse, fine) = (closure(40), closure(160));
+    assert!(fine < 0.5 * coarse, "{coarse} {fine}");
+}
+
+#[test]
+fn a_diverging_world_names_body_and_node_and_stays_at_its_last_good_frame() {
+    let mut blueprint = rings(3, 36, "symplectic_euler");
+    blueprint.time.substeps = 1;
+    let refused = World::new(blueprint.clone(), Options::default());
+    let message = refused.err().expect("the step is too long").to_string();
+    assert!(message.contains("the largest stable step is"), "{message}");
+    let mut world = World::new(blueprint, Options { allow_unstable: true, ..Options::default() }).expect("allowed");
+    let error = loop {
+        let hash = world.state_hash();
+        match world.frame() {
+            Ok(()) => assert!(world.frames() < 2000),
+            Err(error) => {
+                assert_eq!(world.state_hash(), hash, "the world is at its last good frame");
+                break error;
+            }
+        }
+    };
+    assert!(error.to_string().contains("body `ball["), "{error}");
+    assert!(error.to_string().contains("node"), "{error}");
+}
+
+#[test]
+fn parameters_change_in_flight_and_bad_ones_are_refused() {
+    let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 5);
+    world.set("body.ball[0].models.pressure.nRT", Value::Number(80.0)).expect("a parameter");
+    let error = world.set("body.ball[0].models.pressure.nRt", Value::Number(80.0)).expect_err("misspelt");
+    assert!(error.to_string().contains("did you mean `nRT`"), "{error}");
+    let error = world.set("body.bal[0].models.pressure.nRT", Value::Number(80.0)).expect_err("misspelt");
+    assert!(error.to_string().contains("did you mean `ball[0]`"), "{error}");
+    assert!(world.set("body.ball[0].models.mass_spring.stiffness", Value::Number(-1.0)).is_err());
+    // A stiffness for which the step is too long is refused; the old one stays.
+    assert!(world.set("body.ball[0].models.mass_spring.stiffness", Value::Number(1e9)).is_err());
+    world.frame().expect("goes on");
+}
+
+#[test]
+fn bodies_come_and_go_and_old_handles_are_told() {
+    let mut world = run(rings(4, 36, "symplectic_euler"), Options::default(), 5);
+    let handle = world.handle(2).expect("a body");
+    world.remove_body("ball[2]").expect("it is there");
+    assert_eq!(world.resolve(handle), None);
+    assert_eq!(world.bodies().count(), 3);
+    let mut body = rings(1, 36, "symplectic_euler").bodies[0].clone();
+    assert!(world.add_body(body.clone()).is_err(), "the name is taken");
+    body.name = "new".into();
+    body.translation = [-5.0, 3.0];
+    let number = world.add_body(body).expect("a new body");
+    world.frame().expect("a frame");
+    assert!(world.position(number, 0)[0] < -4.0);
+}
