@@ -57,7 +57,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
     let rule = spec(registry.integrator(integrator).map(|i| i.spec()))?;
     let floor = spec(opruga::collide::all(2).into_iter().find(|s| s.kind == "half_space"))?;
     let radius = vertices as f64 * 0.1 / (2.0 * std::f64::consts::PI);
-    let ring = Arc::new(mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?);
+    let ring = Arc::new(mesh::Mesh::ring(radius, vertices as u32, [0.0, 0.0], 0.0).map_err(|e| e.to_string())?);
     let models = vec![
         values(springs, &[("stiffness", Value::Number(1600.0)), ("damping", Value::Number(40.0))]),
         values(gas, &[("nRT", Value::Number(160.0 / radius * std::f64::consts::PI * radius * radius))]),
@@ -109,25 +109,31 @@ pub(crate) fn time(
     let blueprint = rings(bodies, vertices, integrator)?;
     let mut world = World::new(blueprint, options.clone()).map_err(|e| e.to_string())?;
     let total = bodies * vertices;
-    let one_frame = |world: &mut World<2>| world.frame().map_err(|e| e.to_string());
-    for _ in 0..2 {
-        one_frame(&mut world)?;
-    }
-    let mut repetitions: Vec<f64> = Vec::new();
+    // 200 frames of 16 ms keep the rings in flight; then they start again.
+    const FLIGHT: usize = 200;
+    let start = world.snapshot();
+    let fly = |world: &mut World<2>, frames: usize| -> Result<f64, String> {
+        let mut elapsed = 0.0;
+        let mut left = frames;
+        while left > 0 {
+            world.restore(&start).map_err(|e| e.to_string())?;
+            let some = left.min(FLIGHT);
+            let (wall, processor) = (Instant::now(), processor_time());
+            for _ in 0..some {
+                world.frame().map_err(|e| e.to_string())?;
+            }
+            elapsed += if options.threads == 1 { processor_time() - processor } else { wall.elapsed().as_secs_f64() };
+            left -= some;
+        }
+        Ok(elapsed)
+    };
+    // A warm-up, and how many frames fill the time.
+    fly(&mut world, 2)?;
+    let frames = ((seconds / 5.0 / fly(&mut world, 2)? * 2.0) as usize).clamp(2, 1_000_000);
+    let mut repetitions = Vec::new();
     let mut drawn = 0.0;
-    let mut frames = 1;
-    for repetition in 0..6 {
-        let (wall, processor) = (Instant::now(), processor_time());
-        for _ in 0..frames {
-            one_frame(&mut world)?;
-        }
-        let elapsed = if options.threads == 1 { processor_time() - processor } else { wall.elapsed().as_secs_f64() };
-        if repetition == 0 {
-            // The first one tells how many frames fill the time.
-            frames = ((seconds / 5.0 / elapsed) as usize).clamp(1, 20_000);
-            continue;
-        }
-        repetitions.push(elapsed * 1e9 / (frames * 16 * total) as f64);
+    for _ in 0..5 {
+        repetitions.push(fly(&mut world, frames)? * 1e9 / (frames * 16 * total) as f64);
     }
     if let Some(draw) = draw.as_mut() {
         let start = Instant::now();
@@ -169,7 +175,7 @@ fn processor_time() -> f64 {
 
 /// Time of a pack of square roots and divisions [ns].
 fn calibration(simd: Simd) -> f64 {
-    use opruga::math::{Lane, Pack, WIDTH, Work};
+    use opruga::math::{Pack, WIDTH, Work};
     struct Roots<'a>(&'a mut [f64]);
     impl Work for Roots<'_> {
         type Output = ();

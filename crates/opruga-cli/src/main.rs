@@ -5,6 +5,7 @@ mod arguments;
 mod bench;
 mod failure;
 mod outputs;
+mod plots;
 mod reports;
 mod run;
 

@@ -246,17 +246,17 @@ impl Outputs<'_> {
     /// Strip, video and plots.
     fn pictures(&self, scenery: &Scenery, recorder: &Recorder, files: &mut Vec<String>) -> Result<(), Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let plots = crate::reports::plots(&recorder.table);
+        let plots = crate::plots::of_run(&recorder.table, &self.source.name).map_err(draw_failed)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;
         files.push("plots.svg".into());
         let moments = &recorder.moments;
         if moments.is_empty() {
             return Ok(());
         }
-        let pictures: Vec<draw::Picture> = sample(moments, 60).map(|m| scenery.picture(m)).collect();
+        let pictures: Vec<draw::Picture> = draw::spread(moments, 60).into_iter().map(|m| scenery.picture(m)).collect();
         let view = draw::View::fit(&pictures).map_err(draw_failed)?;
-        let panels: Vec<draw::Picture> = sample(moments, 12).map(|m| scenery.picture(m)).collect();
-        let strip = draw::strip(&panels, &view, 4).map_err(draw_failed)?;
+        let panels = draw::spread(&pictures, 10);
+        let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(draw_failed)?;
         let png = strip.to_png().map_err(draw_failed)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
@@ -290,11 +290,4 @@ impl Outputs<'_> {
         }
         eprintln!("written to {}", self.folder.path("").display());
     }
-}
-
-/// At most `count` items, evenly spread, the first and the last among them.
-fn sample(moments: &[Moment], count: usize) -> impl Iterator<Item = &Moment> {
-    let last = moments.len() - 1;
-    let n = count.min(moments.len());
-    (0..n).map(move |k| &moments[if n > 1 { k * last / (n - 1) } else { 0 }])
 }

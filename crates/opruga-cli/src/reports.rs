@@ -1,6 +1,6 @@
 //! The commands that tell: check, list, new, reference, bench; and the plots of a run.
 
-use crate::arguments::{Bench, BenchVertices, Check};
+use crate::arguments::{Bench, Check};
 use crate::bench;
 use crate::failure::{Failure, print_data};
 use crate::run::{find_scene, overrides, simd_from_environment};
@@ -8,7 +8,6 @@ use opruga::core::spec::Spec;
 use opruga::draw;
 use opruga::io::safe_write::safe_write;
 use opruga::io::scene;
-use opruga::io::tables::NumberTable;
 use opruga::{Options, World, blueprint::AnyBlueprint};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -145,7 +144,7 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
             let scenery = scenery.get_or_insert_with(|| opruga::pictures::Scenery::new(world));
             let picture = scenery.picture(&scenery.capture(world, false));
             if let Ok(view) = draw::View::fit([&picture]) {
-                let _ = draw::draw(&picture, &view);
+                let _ = draw::draw(&picture, &view, &draw::Style::default());
             }
         };
         let drawing: Option<&mut dyn FnMut(&mut World<2>)> = if call.draw { Some(&mut draw_frame) } else { None };
@@ -153,7 +152,7 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
     }
     eprintln!("\r                              ");
     if let Some(path) = &call.plot {
-        let plot = bench_plot(&rows, call);
+        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
         safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
     }
     if call.json {

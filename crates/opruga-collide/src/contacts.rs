@@ -1,6 +1,6 @@
 //! The pass over a tile of nodes.
 
-use crate::collider::{Collider, Law, Part, Reach};
+use crate::collider::{Collider, Law, Part};
 use crate::facets::Facets;
 use crate::motion::{Carry, Pose};
 use crate::picture::{Picture, picture};
@@ -48,7 +48,7 @@ impl<const D: usize> Colliders<D> {
     /// from `time0` to `time1` [s]. Never no where one does; it may be yes where none does.
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         self.0.iter().any(|collider| {
-            let reach = collider.reach(time0, time1, time1 - time0);
+            let reach = collider.reach(time0, time1);
             collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
         })
     }
@@ -68,23 +68,29 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         if used == 0 {
             return;
         }
+        // The box around the nodes, by which colliders far away are passed over.
         let simple = self.is_simple();
+        let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let mut held = Held([0; TILE / WIDTH]);
         // More than once, since one collider may push a node into another.
         for _ in 0..ROUNDS {
-            let space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
             let mut touched = false;
             for collider in self.0.iter() {
-                let reach = collider.reach(moved.time - moved.h, moved.time, moved.h);
                 let mut frame = None;
                 for part in &collider.parts {
-                    if let Some([low, high]) = &space
-                        && !collider.may_touch(part, &reach, low, high)
+                    if let Some(space) = &space
+                        && !collider.may_touch(part, &collider.sweep(moved.time, moved.h, space), &space[0], &space[1])
                     {
                         continue;
                     }
                     let frame = frame.get_or_insert_with(|| Frame::new(collider, moved.time, moved.h));
-                    touched |= hold_back(simd, part, collider, frame, &reach, moved, &mut held, used);
+                    if hold_back(simd, part, collider, frame, moved, &mut held, used) {
+                        touched = true;
+                        // A node may have been pushed out of the box.
+                        if !simple {
+                            space = Some(simd.run(Bounds { moved, used }));
+                        }
+                    }
                 }
             }
             if simple || !touched {
@@ -96,6 +102,9 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
 
 /// How often the colliders act at most in a step.
 const ROUNDS: usize = 4;
+
+/// Places of the first look.
+const LOOK: usize = 4 * WIDTH;
 
 /// Which nodes of a tile have been held back in this step: a bit each.
 struct Held([u8; TILE / WIDTH]);
@@ -144,7 +153,6 @@ fn hold_back<const D: usize>(
     part: &Part<D>,
     collider: &Collider<D>,
     frame: &Frame<D>,
-    reach: &Reach<D>,
     moved: &mut Moved<D>,
     held: &mut Held,
     used: usize,
@@ -155,7 +163,7 @@ fn hold_back<const D: usize>(
         Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
         Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
         Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
-        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, reach.bend, moved, held, used),
+        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used),
     }
 }
 
@@ -176,29 +184,58 @@ impl<const D: usize> Work for Bounds<'_, '_, D> {
         }
         let x = Strip::<D>::new(&x, self.moved.range.start, length);
         let before = Strip::<D>::new(&self.moved.before, 0, length);
-        let (mut low, mut high) = ([P::splat(f64::INFINITY); D], [P::splat(f64::NEG_INFINITY); D]);
-        for k in (0..self.used).step_by(WIDTH) {
-            for d in 0..D {
-                let (mut a, mut b) = (x.load::<P>(d, k), before.load::<P>(d, k));
-                if k + WIDTH > self.used {
-                    // Padding takes the place of the first node of the pack.
-                    let nodes = P::first(self.used - k);
-                    a = P::select(nodes, a, P::splat(a.to_array()[0]));
-                    b = P::select(nodes, b, P::splat(b.to_array()[0]));
-                }
-                low[d] = a.smaller(b.smaller(low[d]));
-                high[d] = a.larger(b.larger(high[d]));
+        // Positions before and after, of even and of odd packs, do not wait for one another.
+        let mut ranges = [Range::<P, D>::empty(), Range::empty(), Range::empty(), Range::empty()];
+        let mut k = 0;
+        while k + 2 * WIDTH <= self.used {
+            ranges[0].include(&lanes!(P, d => x.load::<P>(d, k)));
+            ranges[1].include(&lanes!(P, d => before.load::<P>(d, k)));
+            ranges[2].include(&lanes!(P, d => x.load::<P>(d, k + WIDTH)));
+            ranges[3].include(&lanes!(P, d => before.load::<P>(d, k + WIDTH)));
+            k += 2 * WIDTH;
+        }
+        while k < self.used {
+            // Padding takes the place of the first node of the pack.
+            let nodes = P::first(self.used - k);
+            for (range, column) in [(0, &x), (1, &before)] {
+                ranges[range].include(&lanes!(P, d => {
+                    let pack = column.load::<P>(d, k);
+                    P::select(nodes, pack, P::splat(pack.to_array()[0]))
+                }));
             }
+            k += WIDTH;
         }
         let mut out = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
         for d in 0..D {
-            let (low, high) = (low[d].to_array(), high[d].to_array());
-            for l in 0..WIDTH {
-                out[0][d] = low[l].smaller(out[0][d]);
-                out[1][d] = high[l].larger(out[1][d]);
+            for range in &ranges {
+                let (low, high) = (range.low[d].to_array(), range.high[d].to_array());
+                for l in 0..WIDTH {
+                    out[0][d] = low[l].smaller(out[0][d]);
+                    out[1][d] = high[l].larger(out[1][d]);
+                }
             }
         }
         out
+    }
+}
+
+/// The least and greatest coordinates.
+struct Range<P, const D: usize> {
+    low: [P; D],
+    high: [P; D],
+}
+
+impl<P: Pack, const D: usize> Range<P, D> {
+    #[inline(always)]
+    fn empty() -> Self {
+        Range { low: [P::splat(f64::INFINITY); D], high: [P::splat(f64::NEG_INFINITY); D] }
+    }
+    #[inline(always)]
+    fn include(&mut self, x: &[P; D]) {
+        for d in 0..D {
+            self.low[d] = x[d].smaller(self.low[d]);
+            self.high[d] = x[d].larger(self.high[d]);
+        }
     }
 }
 
@@ -254,19 +291,29 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         let has_far_side = far < f64::INFINITY;
         let far = P::splat(far * far);
 
-        // One look at all nodes; mostly that is all.
-        let mut least = P::splat(f64::INFINITY);
-        let mut most = P::zero();
-        for k in (0..used).step_by(WIDTH) {
-            let x = lanes!(P, d => tile.x.load::<P>(d, k));
-            let gap = shape.gap(&x);
-            least = if k + WIDTH <= used { gap } else { P::select(P::first(used - k), gap, least) }.smaller(least);
-            if has_far_side {
-                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
-                most = P::select(P::first(used - k), dot(&way, &way), most).larger(most);
+        // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
+        let near = P::splat(law.thickness + largest_rounding(law));
+        let mut any = false;
+        let mut k = 0;
+        while k < used && !any {
+            let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
+            let count = if k + LOOK <= used { LOOK } else { WIDTH };
+            for k in (k..k + count).step_by(WIDTH) {
+                let x = lanes!(P, d => tile.x.load::<P>(d, k));
+                let mut gap = shape.gap(&x);
+                if k + WIDTH > used {
+                    gap = P::select(P::first(used - k), gap, P::splat(f64::INFINITY));
+                }
+                least = gap.smaller(least);
+                if has_far_side {
+                    let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
+                    most = dot(&way, &way).larger(most);
+                }
             }
+            any = P::any(least.less(near)) || (has_far_side && P::any(far.less(most)));
+            k += count;
         }
-        if !P::any(least.less(P::splat(law.thickness + largest_rounding(law)))) && !(has_far_side && P::any(far.less(most))) {
+        if !any {
             return false;
         }
 
@@ -374,7 +421,7 @@ impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
 }
 
 /// Facets against the nodes of a tile, one node at a time.
-fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, bend: f64, moved: &mut Moved<D>, held: &mut Held, used: usize) -> bool {
+fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, moved: &mut Moved<D>, held: &mut Held, used: usize) -> bool {
     let mut touched = false;
     for k in 0..used {
         let place = moved.range.start + k;
@@ -382,7 +429,7 @@ fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &C
         let before: [f64; D] = carry.along(&lanes!(f64, d => moved.before[d][k]));
         let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
         let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
-        if !finite || !surface.facets.near(&from, &to, surface.margin + bend) {
+        if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
             continue;
         }
         let (gap, normal) = surface.find(&x, &before, largest_rounding(law));

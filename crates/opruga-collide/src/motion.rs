@@ -106,13 +106,16 @@ impl<const D: usize> Pose<D> {
     }
     /// The way from one pose to a later one.
     pub(crate) fn carry_to(&self, later: &Pose<D>) -> Carry<D> {
+        if self.upright {
+            return Carry { turn: self.turn, turns: false, from: self.center, to: later.center };
+        }
         let mut back = self.turn;
         for i in 0..D {
             for j in 0..D {
                 back[i][j] = self.turn[j][i];
             }
         }
-        Carry { turn: product(&later.turn, &back), turns: !self.upright, from: self.center, to: later.center }
+        Carry { turn: product(&later.turn, &back), turns: true, from: self.center, to: later.center }
     }
 }
 

@@ -74,7 +74,9 @@ pub(crate) fn largest_rounding(law: &Law) -> f64 {
 pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
     let small = rounding(law, &node.x);
     let coming = -dot(&subtract(&node.v, &node.obstacle), &node.normal) * node.h;
-    node.gap.less(S::select(small.less(coming), small, -small))
+    let inside = node.gap.less(S::select(small.less(coming), small, -small));
+    // A node so far away that its distance overflows has no place on the surface.
+    S::both(inside, S::splat(-f64::MAX).less_or_equal(node.gap))
 }
 
 /// Holds back a node where `hit` holds (what comes out elsewhere has no meaning but is finite if what comes in is).

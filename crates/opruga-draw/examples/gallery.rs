@@ -5,6 +5,8 @@
 mod charts;
 #[path = "gallery/flat.rs"]
 mod flat;
+#[path = "gallery/solid.rs"]
+mod solid;
 
 use opruga_draw::{Image, Picture, StripStyle, Style, View, draw, spread, strip};
 use std::path::{Path, PathBuf};
@@ -29,11 +31,7 @@ fn single(directory: &Path, name: &str, picture: &Picture, style: &Style) -> Out
 }
 
 fn main() -> Outcome {
-    let directory = PathBuf::from(
-        std::env::args()
-            .nth(1)
-            .unwrap_or_else(|| "gallery".to_string()),
-    );
+    let directory = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "gallery".to_string()));
     std::fs::create_dir_all(&directory)?;
     let style = Style::default();
 
@@ -43,32 +41,18 @@ fn main() -> Outcome {
     let image = strip(&spread(&frames, 10), &view, &StripStyle::default())?;
     save(&directory, "strip.png", start, &image)?;
     let start = Instant::now();
-    save(
-        &directory,
-        "ring.png",
-        start,
-        &draw(&frames[60], &view, &style)?,
-    )?;
+    save(&directory, "ring.png", start, &draw(&frames[60], &view, &style)?)?;
 
     single(&directory, "plate.png", &flat::plate(), &style)?;
     single(&directory, "net.png", &flat::net(), &style)?;
     single(&directory, "room.png", &flat::room(), &style)?;
-    single(
-        &directory,
-        "bodies-1000.png",
-        &flat::crowd(40, 25, true),
-        &style,
-    )?;
-    single(
-        &directory,
-        "bodies-27778.png",
-        &flat::crowd(193, 144, false),
-        &style,
-    )?;
-    for (name, chart) in [
-        ("ledger.svg", charts::ledger()),
-        ("speed.svg", charts::speed()),
-    ] {
+    single(&directory, "bodies-1000.png", &flat::crowd(40, 25, true), &style)?;
+    single(&directory, "bodies-27778.png", &flat::crowd(193, 144, false), &style)?;
+    single(&directory, "balloons.png", &solid::balloons(80), &style)?;
+    single(&directory, "cloth.png", &solid::cloth(60, false), &style)?;
+    single(&directory, "net-solid.png", &solid::cloth(33, true), &style)?;
+    single(&directory, "room-solid.png", &solid::room(), &style)?;
+    for (name, chart) in [("ledger.svg", charts::ledger()), ("speed.svg", charts::speed())] {
         std::fs::write(directory.join(name), chart.to_svg()?)?;
     }
     Ok(())

@@ -4,8 +4,7 @@ use crate::image::Image;
 use ab_glyph::{Font, FontRef, ScaleFont};
 use std::sync::OnceLock;
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, PixmapMut, Rect, Stroke, StrokeDash,
-    Transform,
+    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, PixmapMut, Rect, Stroke, StrokeDash, Transform,
 };
 
 /// Where a text lies relative to its point.
@@ -23,8 +22,7 @@ pub(crate) enum Anchor {
 fn font() -> &'static FontRef<'static> {
     static FONT: OnceLock<FontRef<'static>> = OnceLock::new();
     FONT.get_or_init(|| {
-        FontRef::try_from_slice(include_bytes!("../font/inter-subset.otf"))
-            .expect("the font of the crate is a font")
+        FontRef::try_from_slice(include_bytes!("../font/inter-subset.otf")).expect("the font of the crate is a font")
     })
 }
 
@@ -53,16 +51,8 @@ pub(crate) struct Canvas<'a> {
 
 /// A paint of one colour.
 pub(crate) fn paint(colour: [u8; 3], opacity: f64) -> Paint<'static> {
-    let mut paint = Paint {
-        anti_alias: true,
-        ..Paint::default()
-    };
-    paint.set_color_rgba8(
-        colour[0],
-        colour[1],
-        colour[2],
-        (opacity * 255.0).round() as u8,
-    );
+    let mut paint = Paint { anti_alias: true, ..Paint::default() };
+    paint.set_color_rgba8(colour[0], colour[1], colour[2], (opacity * 255.0).round() as u8);
     paint
 }
 
@@ -86,15 +76,14 @@ impl<'a> Canvas<'a> {
     /// A canvas over an image.
     pub(crate) fn new(image: &'a mut Image) -> Canvas<'a> {
         let (width, height) = (image.width(), image.height());
-        let pixmap = PixmapMut::from_bytes(image.pixels_mut(), width, height)
-            .expect("an image has four bytes for each pixel");
+        let pixmap =
+            PixmapMut::from_bytes(image.pixels_mut(), width, height).expect("an image has four bytes for each pixel");
         Canvas { pixmap }
     }
 
     /// Fills a path; overlapping loops leave holes.
     pub(crate) fn fill(&mut self, path: &Path, paint: &Paint) {
-        self.pixmap
-            .fill_path(path, paint, FillRule::EvenOdd, Transform::identity(), None);
+        self.pixmap.fill_path(path, paint, FillRule::EvenOdd, Transform::identity(), None);
     }
 
     /// Draws the line of a path with round ends and corners.
@@ -106,21 +95,12 @@ impl<'a> Canvas<'a> {
     pub(crate) fn stroke_dashed(&mut self, path: &Path, width: f32, dashes: &[f32], paint: &Paint) {
         let stroke = Stroke {
             width,
-            line_cap: if dashes.is_empty() {
-                LineCap::Round
-            } else {
-                LineCap::Butt
-            },
+            line_cap: if dashes.is_empty() { LineCap::Round } else { LineCap::Butt },
             line_join: LineJoin::Round,
-            dash: if dashes.is_empty() {
-                None
-            } else {
-                StrokeDash::new(dashes.to_vec(), 0.0)
-            },
+            dash: if dashes.is_empty() { None } else { StrokeDash::new(dashes.to_vec(), 0.0) },
             ..Stroke::default()
         };
-        self.pixmap
-            .stroke_path(path, paint, &stroke, Transform::identity(), None);
+        self.pixmap.stroke_path(path, paint, &stroke, Transform::identity(), None);
     }
 
     /// Draws a line through points.
@@ -145,17 +125,11 @@ impl<'a> Canvas<'a> {
     }
 
     /// Fills a rectangle (left, top, width, height) without softened edges.
-    pub(crate) fn rectangle(
-        &mut self,
-        [left, top, width, height]: [f32; 4],
-        colour: [u8; 3],
-        opacity: f64,
-    ) {
+    pub(crate) fn rectangle(&mut self, [left, top, width, height]: [f32; 4], colour: [u8; 3], opacity: f64) {
         if let Some(rectangle) = Rect::from_xywh(left, top, width, height) {
             let mut paint = paint(colour, opacity);
             paint.anti_alias = false;
-            self.pixmap
-                .fill_rect(rectangle, &paint, Transform::identity(), None);
+            self.pixmap.fill_rect(rectangle, &paint, Transform::identity(), None);
         }
     }
 
@@ -169,14 +143,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Writes a text whose base line goes through a point.
-    pub(crate) fn text(
-        &mut self,
-        text: &str,
-        point: [f32; 2],
-        size: f32,
-        anchor: Anchor,
-        colour: [u8; 3],
-    ) {
+    pub(crate) fn text(&mut self, text: &str, point: [f32; 2], size: f32, anchor: Anchor, colour: [u8; 3]) {
         let shift = match anchor {
             Anchor::Start => 0.0,
             Anchor::Middle => -0.5 * text_width(text, size),
@@ -194,12 +161,7 @@ impl<'a> Canvas<'a> {
             if let Some(outline) = font.outline_glyph(glyph) {
                 let bounds = outline.px_bounds();
                 outline.draw(|column, row, coverage| {
-                    self.blend(
-                        bounds.min.x as i32 + column as i32,
-                        bounds.min.y as i32 + row as i32,
-                        colour,
-                        coverage,
-                    );
+                    self.blend(bounds.min.x as i32 + column as i32, bounds.min.y as i32 + row as i32, colour, coverage);
                 });
             }
             x += space;
@@ -217,8 +179,7 @@ impl<'a> Canvas<'a> {
         for channel in 0..3 {
             let under = f32::from(bytes[place + channel]);
             let over = f32::from(colour[channel]);
-            bytes[place + channel] =
-                (under + (over - under) * coverage.clamp(0.0, 1.0)).round() as u8;
+            bytes[place + channel] = (under + (over - under) * coverage.clamp(0.0, 1.0)).round() as u8;
         }
     }
 }

@@ -59,14 +59,8 @@ pub const OKABE_ITO: [[u8; 3]; 8] = [
 ];
 
 /// The soft colours which bodies without a colour take in turn.
-pub const BODIES: [[u8; 3]; 6] = [
-    [122, 174, 214],
-    [240, 178, 122],
-    [122, 196, 168],
-    [218, 166, 196],
-    [238, 206, 124],
-    [164, 172, 186],
-];
+pub const BODIES: [[u8; 3]; 6] =
+    [[122, 174, 214], [240, 178, 122], [122, 196, 168], [218, 166, 196], [238, 206, 124], [164, 172, 186]];
 
 /// The colour of text.
 pub(crate) const INK: [u8; 3] = [38, 42, 50];

@@ -4,9 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
     /// The image has no area, or is larger than 16384 pixels on a side.
-    #[error(
-        "an image of {width} by {height} pixels cannot be drawn; each side must be between 1 and 16384"
-    )]
+    #[error("an image of {width} by {height} pixels cannot be drawn; each side must be between 1 and 16384")]
     Size {
         /// The width asked for, in pixels.
         width: u32,
@@ -29,9 +27,7 @@ pub enum DrawError {
         node: u32,
     },
     /// The list of scalars of a body has another length than the list of positions.
-    #[error(
-        "body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node"
-    )]
+    #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node")]
     Scalars {
         /// The body, by its place in the picture.
         body: usize,

@@ -24,11 +24,7 @@ impl Image {
             return Err(DrawError::Size { width, height });
         }
         let pixel = [colour[0], colour[1], colour[2], 255];
-        Ok(Image {
-            width,
-            height,
-            pixels: pixel.repeat(width as usize * height as usize),
-        })
+        Ok(Image { width, height, pixels: pixel.repeat(width as usize * height as usize) })
     }
 
     /// The width in pixels.
@@ -57,11 +53,7 @@ impl Image {
             return [0; 3];
         }
         let place = 4 * (y as usize * self.width as usize + x as usize);
-        [
-            self.pixels[place],
-            self.pixels[place + 1],
-            self.pixels[place + 2],
-        ]
+        [self.pixels[place], self.pixels[place + 1], self.pixels[place + 2]]
     }
 
     /// Copies another image to a place; what sticks out is left away.
@@ -71,8 +63,7 @@ impl Image {
         for row in 0..rows {
             let from = 4 * row * other.width as usize;
             let to = 4 * ((y as usize + row) * self.width as usize + x as usize);
-            self.pixels[to..to + 4 * columns]
-                .copy_from_slice(&other.pixels[from..from + 4 * columns]);
+            self.pixels[to..to + 4 * columns].copy_from_slice(&other.pixels[from..from + 4 * columns]);
         }
     }
 
@@ -83,11 +74,7 @@ impl Image {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Balanced);
         let mut writer = encoder.write_header()?;
-        let bytes: Vec<u8> = self
-            .pixels
-            .chunks_exact(4)
-            .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-            .collect();
+        let bytes: Vec<u8> = self.pixels.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         writer.write_image_data(&bytes)?;
         writer.finish()?;
         Ok(())
@@ -110,9 +97,7 @@ mod tests {
         let mut image = Image::new(3, 2, [10, 20, 30]).unwrap();
         image.paste(&Image::new(2, 2, [200, 0, 1]).unwrap(), 2, 1);
         let bytes = image.to_png().unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-            .read_info()
-            .unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
         let mut found = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut found).unwrap();
         assert_eq!(&found[..3], &[10, 20, 30]);

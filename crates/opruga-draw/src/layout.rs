@@ -26,14 +26,7 @@ pub struct Style {
 
 impl Default for Style {
     fn default() -> Style {
-        Style {
-            width: 800,
-            height: 600,
-            background: [255; 3],
-            header: true,
-            footer: true,
-            legend: true,
-        }
+        Style { width: 800, height: 600, background: [255; 3], header: true, footer: true, legend: true }
     }
 }
 
@@ -53,22 +46,12 @@ impl Layout {
         let top = if style.header { 38.0 * unit } else { margin };
         let bottom = if style.footer { 40.0 * unit } else { margin };
         let right = match &picture.legend {
-            Some(legend) if style.legend => {
-                margin + legend_width(legend, view.range(picture), unit)
-            }
+            Some(legend) if style.legend => margin + legend_width(legend, view.range(picture), unit),
             _ => margin,
         };
         let (width, height) = (style.width as f32, style.height as f32);
-        let scene = [
-            margin,
-            top,
-            (width - margin - right).max(8.0),
-            (height - top - bottom).max(8.0),
-        ];
-        Layout {
-            scene: scene.map(|value| value.round() as u32),
-            unit,
-        }
+        let scene = [margin, top, (width - margin - right).max(8.0), (height - top - bottom).max(8.0)];
+        Layout { scene: scene.map(|value| value.round() as u32), unit }
     }
 
     /// The width which the legend takes, if there is one and it is wanted.
@@ -107,16 +90,8 @@ impl Layout {
         }
         if style.footer {
             let base = top + height + 26.0 * unit;
-            let end = scale.map_or(left, |scale| {
-                self.scale_bar(canvas, [left, base], width, scale)
-            });
-            self.arrow_names(
-                canvas,
-                &[picture],
-                view,
-                [end + 24.0 * unit, left + width],
-                base,
-            );
+            let end = scale.map_or(left, |scale| self.scale_bar(canvas, [left, base], width, scale));
+            self.arrow_names(canvas, &[picture], view, [end + 24.0 * unit, left + width], base);
         }
         if let (Some(legend), true) = (&picture.legend, style.legend) {
             self.legend(canvas, legend, view.range(picture));
@@ -124,13 +99,7 @@ impl Layout {
     }
 
     /// Draws a bar of a round length, and gives the place where its text ends.
-    pub(crate) fn scale_bar(
-        &self,
-        canvas: &mut Canvas,
-        [left, base]: [f32; 2],
-        width: f32,
-        scale: f64,
-    ) -> f32 {
+    pub(crate) fn scale_bar(&self, canvas: &mut Canvas, [left, base]: [f32; 2], width: f32, scale: f64) -> f32 {
         let unit = self.unit;
         let length = nice_length(0.24 * f64::from(width) / scale);
         let bar = (length * scale) as f32;
@@ -141,13 +110,7 @@ impl Layout {
             canvas.rectangle([end, middle - 4.0 * unit, thick, 8.0 * unit], INK, 1.0);
         }
         let text = length_text(length);
-        canvas.text(
-            &text,
-            [left + bar + 8.0 * unit, base],
-            14.0 * unit,
-            Anchor::Start,
-            INK,
-        );
+        canvas.text(&text, [left + bar + 8.0 * unit, base], 14.0 * unit, Anchor::Start, INK);
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
     }
 
@@ -164,10 +127,7 @@ impl Layout {
         let size = 13.0 * unit;
         let mut end = to;
         for (&kind, _) in view.longest.iter().rev() {
-            if !pictures
-                .iter()
-                .any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind))
-            {
+            if !pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind)) {
                 continue;
             }
             let name = arrow_name(kind);
@@ -195,43 +155,19 @@ impl Layout {
             canvas.text(line, [start, base], size, Anchor::Start, INK);
         }
         let bar_top = (top + 17.0 * unit * lines.len() as f32 + 10.0 * unit).round();
-        let bar = [
-            start,
-            bar_top,
-            (14.0 * unit).round(),
-            (top + height - bar_top).min(300.0 * unit).round(),
-        ];
+        let bar = [start, bar_top, (14.0 * unit).round(), (top + height - bar_top).min(300.0 * unit).round()];
         let rows = bar[3] as u32;
         for row in 0..rows {
             let place = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
-            canvas.rectangle(
-                [bar[0], bar[1] + row as f32, bar[2], 1.0],
-                legend.map.colour(place),
-                1.0,
-            );
+            canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(place), 1.0);
         }
         let ticks = nice_ticks(range[0], range[1], 5);
-        let step = if ticks.len() > 1 {
-            ticks[1] - ticks[0]
-        } else {
-            range[0].abs()
-        };
+        let step = if ticks.len() > 1 { ticks[1] - ticks[0] } else { range[0].abs() };
         for tick in ticks {
-            let y = (bar[1] + bar[3] * (1.0 - View::place(range, tick) as f32))
-                .clamp(bar[1], bar[1] + bar[3] - 1.0);
-            canvas.rectangle(
-                [bar[0] + bar[2], y.round(), (4.0 * unit).round(), 1.0],
-                SOFT_INK,
-                1.0,
-            );
+            let y = (bar[1] + bar[3] * (1.0 - View::place(range, tick) as f32)).clamp(bar[1], bar[1] + bar[3] - 1.0);
+            canvas.rectangle([bar[0] + bar[2], y.round(), (4.0 * unit).round(), 1.0], SOFT_INK, 1.0);
             let point = [bar[0] + bar[2] + 7.0 * unit, y + 4.5 * unit];
-            canvas.text(
-                &format_tick(tick, step),
-                point,
-                12.0 * unit,
-                Anchor::Start,
-                INK,
-            );
+            canvas.text(&format_tick(tick, step), point, 12.0 * unit, Anchor::Start, INK);
         }
     }
 }
@@ -248,34 +184,18 @@ fn legend_lines(legend: &Legend) -> Vec<String> {
 /// The width which a legend takes.
 fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
     let ticks = nice_ticks(range[0], range[1], 5);
-    let step = if ticks.len() > 1 {
-        ticks[1] - ticks[0]
-    } else {
-        range[0].abs()
-    };
-    let values = ticks
-        .iter()
-        .map(|&tick| 21.0 * unit + text_width(&format_tick(tick, step), 12.0 * unit));
-    let lines = legend_lines(legend)
-        .into_iter()
-        .map(|line| text_width(&line, 13.0 * unit));
+    let step = if ticks.len() > 1 { ticks[1] - ticks[0] } else { range[0].abs() };
+    let values = ticks.iter().map(|&tick| 21.0 * unit + text_width(&format_tick(tick, step), 12.0 * unit));
+    let lines = legend_lines(legend).into_iter().map(|line| text_width(&line, 13.0 * unit));
     values.chain(lines).fold(0.0, f32::max) + 16.0 * unit
 }
 
 /// A time as text.
 pub(crate) fn time_text(time: f64) -> String {
-    if time.abs() >= 100.0 {
-        format!("t = {time:.1} s")
-    } else {
-        format!("t = {time:.3} s")
-    }
+    if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
 /// A length as text, in metres, or in millimetres where it is small.
 fn length_text(length: f64) -> String {
-    if length < 0.0099 {
-        format!("{} mm", format_value(length * 1e3))
-    } else {
-        format!("{} m", format_value(length))
-    }
+    if length < 0.0099 { format!("{} mm", format_value(length * 1e3)) } else { format!("{} m", format_value(length)) }
 }

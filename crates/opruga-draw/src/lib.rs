@@ -14,6 +14,7 @@ mod layout;
 mod marks;
 mod picture;
 mod plot;
+mod solid;
 mod strip;
 mod ticks;
 mod view;
@@ -22,14 +23,10 @@ pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
 pub use image::Image;
 pub use layout::Style;
-pub use picture::{
-    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
-};
+pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture};
 pub use plot::{Axis, Chart, Level, Line, Marker, Panel};
 pub use strip::{StripStyle, spread, strip};
-pub use ticks::{
-    decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific,
-};
+pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
 pub use view::View;
 
 /// Draws a picture as it is seen in a view.
@@ -37,21 +34,9 @@ pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, Draw
     let mut image = Image::new(style.width, style.height, style.background)?;
     let layout = layout::Layout::new(picture, view, style);
     let [left, top, width, height] = layout.scene;
-    let (scene, scale) = scene(
-        picture,
-        view,
-        style.background,
-        [width, height],
-        layout.unit,
-    )?;
+    let (scene, scale) = scene(picture, view, style.background, [width, height], layout.unit)?;
     image.paste(&scene, left, top);
-    layout.annotate(
-        &mut canvas::Canvas::new(&mut image),
-        picture,
-        view,
-        style,
-        scale,
-    );
+    layout.annotate(&mut canvas::Canvas::new(&mut image), picture, view, style, scale);
     Ok(image)
 }
 
@@ -64,6 +49,9 @@ fn scene(
     unit: f32,
 ) -> Result<(Image, Option<f64>), DrawError> {
     picture.check()?;
+    if picture.dimension == 3 {
+        return Ok((solid::scene(picture, view, background, size, unit)?, None));
+    }
     let (image, scale) = flat::scene(picture, view, background, size, unit)?;
     Ok((image, Some(scale)))
 }

@@ -47,11 +47,7 @@ pub(crate) fn draw_marks(
         let few = body.pinned.len() <= SUPPORTS;
         for &node in &body.pinned {
             if let Some(point) = project(body.positions[node as usize]) {
-                if few {
-                    support(canvas, point, unit)
-                } else {
-                    canvas.disc(point, 2.2 * unit, INK)
-                }
+                if few { support(canvas, point, unit) } else { canvas.disc(point, 2.2 * unit, INK) }
             }
         }
     }
@@ -59,13 +55,7 @@ pub(crate) fn draw_marks(
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
         if let (Some(from), Some(to)) = (project(mark.from), project(to)) {
-            arrow(
-                canvas,
-                [from, to],
-                1.8 * unit,
-                arrow_colour(mark.kind),
-                true,
-            );
+            arrow(canvas, [from, to], 1.8 * unit, arrow_colour(mark.kind), true);
         }
     }
     for pull in &picture.pulls {
@@ -76,13 +66,7 @@ pub(crate) fn draw_marks(
 }
 
 /// Draws an arrow with a filled head, and a light rim where it lies over a scene.
-pub(crate) fn arrow(
-    canvas: &mut Canvas,
-    [from, to]: [[f32; 2]; 2],
-    width: f32,
-    colour: [u8; 3],
-    rim: bool,
-) {
+pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, colour: [u8; 3], rim: bool) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
     if !length.is_finite() || length < 1.5 {
@@ -94,10 +78,7 @@ pub(crate) fn arrow(
     let neck = [to[0] - head * direction[0], to[1] - head * direction[1]];
     let left = [neck[0] - half * direction[1], neck[1] + half * direction[0]];
     let right = [neck[0] + half * direction[1], neck[1] - half * direction[0]];
-    let inner = [
-        neck[0] + 0.2 * head * direction[0],
-        neck[1] + 0.2 * head * direction[1],
-    ];
+    let inner = [neck[0] + 0.2 * head * direction[0], neck[1] + 0.2 * head * direction[1]];
     if rim {
         canvas.line(&[from, neck], width + 2.4, [255; 3], 0.75);
         canvas.line(&[to, left, right, to], 2.4, [255; 3], 0.75);
@@ -109,23 +90,11 @@ pub(crate) fn arrow(
 /// Draws the sign of a support under a pinned node.
 fn support(canvas: &mut Canvas, point: [f32; 2], unit: f32) {
     let (half, tall) = (5.5 * unit, 9.0 * unit);
-    let corners = [
-        point,
-        [point[0] - half, point[1] + tall],
-        [point[0] + half, point[1] + tall],
-    ];
+    let corners = [point, [point[0] - half, point[1] + tall], [point[0] + half, point[1] + tall]];
     canvas.polygon(&corners, [255; 3], 1.0);
+    canvas.line(&[corners[0], corners[1], corners[2], corners[0]], 1.3 * unit, INK, 1.0);
     canvas.line(
-        &[corners[0], corners[1], corners[2], corners[0]],
-        1.3 * unit,
-        INK,
-        1.0,
-    );
-    canvas.line(
-        &[
-            [point[0] - 1.5 * half, point[1] + tall],
-            [point[0] + 1.5 * half, point[1] + tall],
-        ],
+        &[[point[0] - 1.5 * half, point[1] + tall], [point[0] + 1.5 * half, point[1] + tall]],
         1.6 * unit,
         INK,
         1.0,
@@ -137,12 +106,7 @@ fn support(canvas: &mut Canvas, point: [f32; 2], unit: f32) {
 fn rubber_line(canvas: &mut Canvas, node: [f32; 2], pointer: [f32; 2], unit: f32) {
     canvas.line(&[node, pointer], 3.4 * unit, [255; 3], 0.8);
     if let Some(path) = crate::canvas::path_of(&[node, pointer], false) {
-        canvas.stroke_dashed(
-            &path,
-            1.8 * unit,
-            &[6.0 * unit, 3.5 * unit],
-            &paint(RUBBER, 1.0),
-        );
+        canvas.stroke_dashed(&path, 1.8 * unit, &[6.0 * unit, 3.5 * unit], &paint(RUBBER, 1.0));
     }
     canvas.disc(node, 3.0 * unit, RUBBER);
     canvas.disc(pointer, 6.5 * unit, RUBBER);

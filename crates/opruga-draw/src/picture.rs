@@ -190,10 +190,7 @@ impl Picture {
         if self.dimension != 2 && self.dimension != 3 {
             return Err(DrawError::Dimension(self.dimension));
         }
-        self.bodies
-            .iter()
-            .enumerate()
-            .try_for_each(|(index, body)| body.check(index))
+        self.bodies.iter().enumerate().try_for_each(|(index, body)| body.check(index))
     }
 }
 
@@ -202,39 +199,22 @@ impl BodyPicture {
     fn check(&self, body: usize) -> Result<(), DrawError> {
         let nodes = self.positions.len();
         if !self.scalar.is_empty() && self.scalar.len() != nodes {
-            return Err(DrawError::Scalars {
-                body,
-                nodes,
-                scalars: self.scalar.len(),
-            });
+            return Err(DrawError::Scalars { body, nodes, scalars: self.scalar.len() });
         }
-        let wrong = |mut list: Box<dyn Iterator<Item = u32> + '_>| {
-            list.find(|&node| node as usize >= nodes)
-        };
+        let wrong = |mut list: Box<dyn Iterator<Item = u32> + '_>| list.find(|&node| node as usize >= nodes);
         let facets: Box<dyn Iterator<Item = u32> + '_> = match &self.facets {
             Facets::Edges(edges) => Box::new(edges.iter().flatten().copied()),
             Facets::Triangles(triangles) => Box::new(triangles.iter().flatten().copied()),
         };
         let parts: [(&'static str, Option<u32>); 4] = [
             ("facets", wrong(facets)),
-            (
-                "cells",
-                wrong(Box::new(self.cells.iter().flatten().copied())),
-            ),
-            (
-                "segments",
-                wrong(Box::new(self.segments.iter().flatten().copied())),
-            ),
+            ("cells", wrong(Box::new(self.cells.iter().flatten().copied()))),
+            ("segments", wrong(Box::new(self.segments.iter().flatten().copied()))),
             ("pinned nodes", wrong(Box::new(self.pinned.iter().copied()))),
         ];
         for (part, node) in parts {
             if let Some(node) = node {
-                return Err(DrawError::Node {
-                    body,
-                    nodes,
-                    part,
-                    node,
-                });
+                return Err(DrawError::Node { body, nodes, part, node });
             }
         }
         Ok(())

@@ -25,13 +25,7 @@ pub struct StripStyle {
 
 impl Default for StripStyle {
     fn default() -> StripStyle {
-        StripStyle {
-            width: 1400,
-            columns: 5,
-            aspect: None,
-            background: [255; 3],
-            legend: true,
-        }
+        StripStyle { width: 1400, columns: 5, aspect: None, background: [255; 3], legend: true }
     }
 }
 
@@ -41,64 +35,38 @@ pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
     (0..kept)
         .map(|place| {
             let last = pictures.len() - 1;
-            &pictures[if kept == 1 {
-                last
-            } else {
-                (place * last + (kept - 1) / 2) / (kept - 1)
-            }]
+            &pictures[if kept == 1 { last } else { (place * last + (kept - 1) / 2) / (kept - 1) }]
         })
         .collect()
 }
 
 /// Draws pictures side by side in rows, with one view, one length scale and one legend for all.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
-    let first = pictures
-        .first()
-        .ok_or(DrawError::Empty("a film strip needs a picture"))?;
+    let first = pictures.first().ok_or(DrawError::Empty("a film strip needs a picture"))?;
     let columns = style.columns.clamp(1, pictures.len());
     let rows = pictures.len().div_ceil(columns);
     let unit = (style.width as f32 / 1400.0).clamp(0.6, 6.0);
     let margin = (16.0 * unit).round();
-    let head = if first.title.is_empty() {
-        margin
-    } else {
-        44.0 * unit
-    };
+    let head = if first.title.is_empty() { margin } else { 44.0 * unit };
     let foot = 44.0 * unit;
     let legend = Layout::legend_space(first, view, unit, style.legend);
     let gap = (10.0 * unit).round();
     let width = style.width as f32 - 2.0 * margin - legend;
     let panel = ((width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
     if panel < 8.0 {
-        return Err(DrawError::Size {
-            width: panel.max(0.0) as u32,
-            height: 0,
-        });
+        return Err(DrawError::Size { width: panel.max(0.0) as u32, height: 0 });
     }
-    let tall = (panel
-        * style
-            .aspect
-            .unwrap_or_else(|| natural_aspect(view, first.dimension)) as f32)
-        .round();
+    let tall = (panel * style.aspect.unwrap_or_else(|| natural_aspect(view, first.dimension)) as f32).round();
     let line = (26.0 * unit).round();
     let height = head + rows as f32 * (tall + line) + (rows as f32 - 1.0) * 0.4 * gap + foot;
     let mut image = Image::new(style.width, height.round() as u32, style.background)?;
     let mut scale = None;
     let place = |index: usize| {
         let (row, column) = (index / columns, index % columns);
-        [
-            margin + column as f32 * (panel + gap),
-            (head + row as f32 * (tall + line + 0.4 * gap)).round(),
-        ]
+        [margin + column as f32 * (panel + gap), (head + row as f32 * (tall + line + 0.4 * gap)).round()]
     };
     for (index, picture) in pictures.iter().enumerate() {
-        let (scene, found) = crate::scene(
-            picture,
-            view,
-            style.background,
-            [panel as u32, tall as u32],
-            0.9 * unit,
-        )?;
+        let (scene, found) = crate::scene(picture, view, style.background, [panel as u32, tall as u32], 0.9 * unit)?;
         let [left, top] = place(index);
         image.paste(&scene, left as u32, top as u32);
         scale = found.or(scale);
@@ -106,53 +74,19 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     let mut canvas = Canvas::new(&mut image);
     for (index, picture) in pictures.iter().enumerate() {
         let [left, top] = place(index);
-        canvas.frame(
-            [left - 1.0, top - 1.0, panel + 2.0, tall + 2.0],
-            crate::colour::FRAME,
-        );
+        canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
         let point = [left + 0.5 * panel, top + tall + 19.0 * unit];
-        canvas.text(
-            &time_text(picture.time),
-            point,
-            15.0 * unit,
-            Anchor::Middle,
-            INK,
-        );
+        canvas.text(&time_text(picture.time), point, 15.0 * unit, Anchor::Middle, INK);
     }
-    canvas.text(
-        &first.title,
-        [margin, head - 16.0 * unit],
-        18.0 * unit,
-        Anchor::Start,
-        INK,
-    );
+    canvas.text(&first.title, [margin, head - 16.0 * unit], 18.0 * unit, Anchor::Start, INK);
     let bottom = (head + rows as f32 * (tall + line) + (rows as f32 - 1.0) * 0.4 * gap).round();
-    let layout = Layout {
-        scene: [
-            margin as u32,
-            head as u32,
-            width as u32,
-            (bottom - head - line) as u32,
-        ],
-        unit,
-    };
+    let layout = Layout { scene: [margin as u32, head as u32, width as u32, (bottom - head - line) as u32], unit };
     let base = bottom + 26.0 * unit;
     let end = match scale {
-        Some(scale) => layout.scale_bar(
-            &mut canvas,
-            [margin, base],
-            panel.max(120.0 * unit) * 2.0,
-            scale,
-        ),
+        Some(scale) => layout.scale_bar(&mut canvas, [margin, base], panel.max(120.0 * unit) * 2.0, scale),
         None => margin,
     };
-    layout.arrow_names(
-        &mut canvas,
-        pictures,
-        view,
-        [end + 24.0 * unit, margin + width],
-        base,
-    );
+    layout.arrow_names(&mut canvas, pictures, view, [end + 24.0 * unit, margin + width], base);
     if let (Some(legend), true) = (&first.legend, style.legend) {
         layout.legend(&mut canvas, legend, view.range(first));
     }
@@ -163,11 +97,7 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
 fn natural_aspect(view: &View, dimension: u8) -> f64 {
     let border = 0.08 * view.extent();
     let side = |axis: usize| view.high[axis] - view.low[axis] + border;
-    let wide = if dimension == 3 {
-        (side(0).powi(2) + side(2).powi(2)).sqrt()
-    } else {
-        side(0)
-    };
+    let wide = if dimension == 3 { (side(0).powi(2) + side(2).powi(2)).sqrt() } else { side(0) };
     (side(1) / wide.max(1e-12)).clamp(0.4, 2.0)
 }
 

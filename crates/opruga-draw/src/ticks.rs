@@ -5,20 +5,28 @@ pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     if !(low.is_finite() && high.is_finite()) || high <= low {
         return vec![low];
     }
-    let step = nice_step((high - low) / count.max(1) as f64);
-    let slack = 1e-9 * (high - low) / step;
-    let first = (low / step - slack).ceil() as i64;
-    let last = (high / step + slack).floor() as i64;
-    (first..=last).map(|index| index as f64 * step).collect()
+    let inside = |pieces: usize| {
+        let step = nice_step((high - low) / pieces as f64);
+        let slack = 1e-9 * (high - low) / step;
+        let first = (low / step - slack).ceil() as i64;
+        let last = (high / step + slack).floor() as i64;
+        (first..=last).map(|index| index as f64 * step).collect::<Vec<f64>>()
+    };
+    let mut pieces = count.max(1);
+    let mut ticks = inside(pieces);
+    // Two ticks are needed to read a scale.
+    while ticks.len() < 2 {
+        pieces += 1;
+        ticks = inside(pieces);
+    }
+    ticks
 }
 
 /// The smallest of 1, 2, 2.5 and 5 times a power of ten which is at least `rough`.
 pub fn nice_step(rough: f64) -> f64 {
     let power = power_of_ten(rough);
     let mantissa = rough / power;
-    let round = [1.0, 2.0, 2.5, 5.0]
-        .into_iter()
-        .find(|&candidate| mantissa <= candidate * (1.0 + 1e-9));
+    let round = [1.0, 2.0, 2.5, 5.0].into_iter().find(|&candidate| mantissa <= candidate * (1.0 + 1e-9));
     round.unwrap_or(10.0) * power
 }
 
@@ -26,9 +34,7 @@ pub fn nice_step(rough: f64) -> f64 {
 pub fn nice_length(limit: f64) -> f64 {
     let power = power_of_ten(limit);
     let mantissa = limit / power;
-    let round = [5.0, 2.0]
-        .into_iter()
-        .find(|&candidate| mantissa >= candidate * (1.0 - 1e-9));
+    let round = [5.0, 2.0].into_iter().find(|&candidate| mantissa >= candidate * (1.0 - 1e-9));
     round.unwrap_or(1.0) * power
 }
 
@@ -76,11 +82,7 @@ pub fn format_value(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    format_tick(
-        value,
-        ten_to((value.abs().log10() + 1e-9).floor() as i32 - 2),
-    )
-    .trim_end_matches_fraction()
+    format_tick(value, ten_to((value.abs().log10() + 1e-9).floor() as i32 - 2)).trim_end_matches_fraction()
 }
 
 /// Takes the zeros from the end of a decimal fraction.
@@ -114,8 +116,7 @@ pub fn scientific(value: f64) -> String {
         .chars()
         .map(|sign| match sign {
             '-' => '⁻',
-            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
-                [digit.to_digit(10).unwrap_or(0) as usize],
+            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
         })
         .collect();
     let mantissa = format!("{rounded}").replace('-', "−");
@@ -128,12 +129,8 @@ pub fn scientific(value: f64) -> String {
 
 /// Puts a thin space between groups of three digits of a whole part with five digits or more.
 fn grouped(text: &str) -> String {
-    let (sign, rest) = text
-        .strip_prefix('-')
-        .map_or(("", text), |rest| ("-", rest));
-    let (whole, fraction) = rest
-        .split_once('.')
-        .map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));
+    let (sign, rest) = text.strip_prefix('-').map_or(("", text), |rest| ("-", rest));
+    let (whole, fraction) = rest.split_once('.').map_or((rest, None), |(whole, fraction)| (whole, Some(fraction)));
     let mut out = String::from(sign);
     for (place, digit) in whole.chars().enumerate() {
         if whole.len() >= 5 && place > 0 && (whole.len() - place) % 3 == 0 {
@@ -154,11 +151,9 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(
-            nice_ticks(0.0, 1.0, 5),
-            vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]
-        );
+        assert_eq!(nice_ticks(0.0, 1.0, 5), vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
         assert_eq!(nice_ticks(-3.2, 7.9, 5), vec![-2.5, 0.0, 2.5, 5.0, 7.5]);
+        assert_eq!(nice_ticks(0.66, 0.79, 2), vec![0.7000000000000001, 0.75]);
         assert_eq!(nice_ticks(4.0, 4.0, 5), vec![4.0]);
     }
 

@@ -35,10 +35,7 @@ struct Bounds {
 impl Bounds {
     /// A box around nothing.
     fn empty() -> Bounds {
-        Bounds {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-        }
+        Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
     }
 
     /// Takes a ball into the box; points which are not finite are left out.
@@ -59,22 +56,13 @@ impl Bounds {
     /// The eight corners.
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..8).map(|corner| {
-            std::array::from_fn(|axis| {
-                if corner >> axis & 1 == 0 {
-                    self.low[axis]
-                } else {
-                    self.high[axis]
-                }
-            })
+            std::array::from_fn(|axis| if corner >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] })
         })
     }
 
     /// The length of the diagonal.
     fn diagonal(&self) -> f64 {
-        (0..3)
-            .map(|axis| (self.high[axis] - self.low[axis]).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        (0..3).map(|axis| (self.high[axis] - self.low[axis]).powi(2)).sum::<f64>().sqrt()
     }
 }
 
@@ -88,9 +76,7 @@ impl View {
         let mut planes: Vec<([f64; 3], [f64; 3])> = Vec::new();
         for picture in &pictures {
             for body in &picture.bodies {
-                body.positions
-                    .iter()
-                    .for_each(|&position| bounds.add(position, 0.0));
+                body.positions.iter().for_each(|&position| bounds.add(position, 0.0));
                 for &scalar in body.scalar.iter().filter(|scalar| scalar.is_finite()) {
                     scalars = [scalars[0].min(scalar), scalars[1].max(scalar)];
                 }
@@ -99,12 +85,7 @@ impl View {
                 bounds.add(pull.pointer, 0.0);
             }
             for arrow in &picture.arrows {
-                let length = arrow
-                    .vector
-                    .iter()
-                    .map(|value| value * value)
-                    .sum::<f64>()
-                    .sqrt();
+                let length = arrow.vector.iter().map(|value| value * value).sum::<f64>().sqrt();
                 let longest: &mut f64 = longest.entry(arrow.kind).or_insert(0.0);
                 *longest = longest.max(if length.is_finite() { length } else { 0.0 });
             }
@@ -126,27 +107,15 @@ impl View {
         for (point, normal) in planes {
             let length = normal.iter().map(|value| value * value).sum::<f64>().sqrt();
             if length > 0.0 {
-                take_plane(
-                    &mut bounds,
-                    point,
-                    normal.map(|value| value / length),
-                    diagonal,
-                );
+                take_plane(&mut bounds, point, normal.map(|value| value / length), diagonal);
             }
         }
         let view = View::of(&bounds, scalars, longest);
         for arrow in pictures.iter().flat_map(|picture| &picture.arrows) {
             let scale = view.arrow_scale(arrow.kind);
-            bounds.add(
-                std::array::from_fn(|axis| arrow.from[axis] + scale * arrow.vector[axis]),
-                0.0,
-            );
+            bounds.add(std::array::from_fn(|axis| arrow.from[axis] + scale * arrow.vector[axis]), 0.0);
         }
-        Ok(View {
-            low: bounds.low,
-            high: bounds.high,
-            ..view
-        })
+        Ok(View { low: bounds.low, high: bounds.high, ..view })
     }
 
     /// The view of a box, from a little above and aside.
@@ -163,9 +132,7 @@ impl View {
 
     /// The larger side of the view [m].
     pub fn extent(&self) -> f64 {
-        (0..3)
-            .map(|axis| self.high[axis] - self.low[axis])
-            .fold(1e-12, f64::max)
+        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(1e-12, f64::max)
     }
 
     /// The centre of the view [m].
@@ -183,11 +150,7 @@ impl View {
 
     /// The place of a scalar from 0 to 1 between the ends of a range.
     pub(crate) fn place(range: [f64; 2], scalar: f64) -> f64 {
-        if range[1] > range[0] {
-            (scalar - range[0]) / (range[1] - range[0])
-        } else {
-            0.5
-        }
+        if range[1] > range[0] { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
     }
 
     /// The range of scalars which a picture uses: its own, or the one of the run.
@@ -213,19 +176,13 @@ fn add_collider(bounds: &mut Bounds, collider: &ColliderPicture) {
         ColliderPicture::Polygon(points) | ColliderPicture::Polyline(points) => {
             points.iter().for_each(|&point| bounds.add(point, 0.0));
         }
-        ColliderPicture::Mesh { positions, .. } => {
-            positions.iter().for_each(|&point| bounds.add(point, 0.0))
-        }
+        ColliderPicture::Mesh { positions, .. } => positions.iter().for_each(|&point| bounds.add(point, 0.0)),
     }
 }
 
 /// Makes the box reach the surface of a half space, unless that is far away.
 fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: f64) {
-    let height = |corner: [f64; 3]| {
-        (0..3)
-            .map(|axis| (corner[axis] - point[axis]) * normal[axis])
-            .sum::<f64>()
-    };
+    let height = |corner: [f64; 3]| (0..3).map(|axis| (corner[axis] - point[axis]) * normal[axis]).sum::<f64>();
     let gap = bounds.corners().map(height).fold(f64::INFINITY, f64::min);
     if gap.is_finite() && gap < diagonal {
         let step = (gap + 0.03 * diagonal).max(0.0);
@@ -248,15 +205,8 @@ mod tests {
             positions: vec![[0.0, 1.0, 0.0], [2.0, 2.0, 0.0], [f64::NAN, 0.0, 0.0]],
             ..Default::default()
         };
-        let floor = ColliderPicture::HalfSpace {
-            point: [0.0; 3],
-            normal: [0.0, 1.0, 0.0],
-        };
-        let picture = Picture {
-            bodies: vec![body],
-            colliders: vec![floor],
-            ..Default::default()
-        };
+        let floor = ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] };
+        let picture = Picture { bodies: vec![body], colliders: vec![floor], ..Default::default() };
         let view = View::fit([&picture]).unwrap();
         assert!(view.low[1] < 0.0 && view.low[1] > -0.2);
         assert_eq!(view.high, [2.0, 2.0, 0.0]);

@@ -2,7 +2,7 @@
 
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, Update};
-use opruga_math::{Pack, Strip, WIDTH};
+use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
 /// y₁ = y₀ + s k₀ with k₀ = (v₀, a₀): from the current state into the first work columns.
@@ -30,10 +30,13 @@ impl<const D: usize> Update<D> for FirstStage {
         let (mut x1, mut v1) = (x1.strip_mut(start, length), v1.strip_mut(start, length));
         for k in (0..length).step_by(WIDTH) {
             let kick = span * inverse_mass.load::<P>(k);
+            // All reads come before the first write: a read behind a write has to wait for it.
+            let velocity = lanes!(P, d => v0.load::<P>(d, k));
+            let position = lanes!(P, d => x0.load::<P>(d, k) + velocity[d] * span);
+            let next = lanes!(P, d => velocity[d] + force.load::<P>(d, k) * kick);
             for d in 0..D {
-                let velocity = v0.load::<P>(d, k);
-                x1.store(d, k, x0.load::<P>(d, k) + velocity * span);
-                v1.store(d, k, velocity + force.load::<P>(d, k) * kick);
+                x1.store(d, k, position[d]);
+                v1.store(d, k, next[d]);
             }
         }
     }

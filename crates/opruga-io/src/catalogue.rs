@@ -13,7 +13,9 @@ pub struct Catalogue {
     pub colliders: Vec<&'static Spec>,
 }
 
-/// The specification of a kind, if it is in the list.
-pub(crate) fn find(list: &[&'static Spec], kind: &str) -> Option<&'static Spec> {
-    list.iter().copied().find(|s| s.kind == kind)
+/// The specification of a kind, if it is in the list: of several (one per dimension) the one that exists in `dimension`.
+pub(crate) fn find(list: &[&'static Spec], kind: &str, dimension: usize) -> Option<&'static Spec> {
+    let mut named = list.iter().copied().filter(|s| s.kind == kind);
+    let first = named.clone().next();
+    named.find(|s| s.dimensions.contains(&dimension)).or(first)
 }

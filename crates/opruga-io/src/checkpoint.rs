@@ -22,7 +22,7 @@ const HEAD: usize = 32;
 /// The contents of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// The text of the scene, overrides included: the checkpoint needs no other file.
+    /// The text of the scene as it was read: the checkpoint needs no other file. Overrides belong into the payload.
     pub scene: String,
     /// The state, in the form of the world that wrote it.
     pub payload: Vec<u8>,

@@ -150,6 +150,7 @@ pub struct EnergySummary {
     pub gas: f64,
     pub gravity: f64,
     pub work_user: f64,
+    pub work_gas: f64,
     pub loss_damping: f64,
     pub loss_friction: f64,
     pub loss_contact: f64,

@@ -3,7 +3,8 @@
 mod common;
 use common::*;
 use opruga_core::spec::Value;
-use opruga_io::scene::{Limits, Options};
+use opruga_io::Catalogue;
+use opruga_io::scene::{Limits, Options, read};
 use opruga_io::{overrides, reference, schema, template};
 use opruga_world::blueprint::{Action, AnyBlueprint, LoadKind, Mass, Selector};
 use std::sync::Arc;
@@ -190,6 +191,17 @@ fn the_template_is_a_scene() {
     let scene = plane(&template::commented("my \"scene\"\n"));
     assert_eq!(scene.title, "my scene");
     assert_eq!((scene.bodies.len(), scene.colliders.len(), scene.commands.len(), scene.probes.len()), (1, 1, 1, 1));
+}
+
+/// The template names what the program really has.
+#[test]
+fn the_template_fits_the_registry() {
+    let registry = opruga_world::Registry::<2>::default();
+    let catalogue = Catalogue { models: registry.models(), integrators: registry.integrators(), ..catalogue() };
+    let text = template::commented("ball");
+    if let Err(errors) = read(text.as_bytes(), "ball.toml", &catalogue, &Options::default()) {
+        panic!("{}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+    }
 }
 
 #[test]

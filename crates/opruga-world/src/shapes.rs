@@ -41,6 +41,18 @@ static RING: Spec = Spec {
     ],
 };
 
+static RINGS: Spec = Spec {
+    kind: "rings",
+    summary: "several round outlines in one body: chambers, and holes in them",
+    documentation: "Circles of `vertices` nodes each, one after the other. A negative radius is a hole: it runs clockwise, and the gas of the ring around it leaves it out. Rings should not cross.",
+    dimensions: &[2],
+    fields: &[
+        field("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
+        field("radii", Allowed::Numbers, "m", Default::Required, "The radius of each ring; negative: a hole."),
+        field("vertices", count(3), "", Default::Required, "How many vertices each ring has."),
+    ],
+};
+
 static REGULAR_POLYGON: Spec = Spec {
     kind: "regular_polygon",
     summary: "an outline of equal sides",
@@ -169,7 +181,7 @@ static TORUS: Spec = Spec {
 
 /// All shapes.
 pub fn all() -> Vec<&'static Spec> {
-    vec![&RING, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS]
+    vec![&RING, &RINGS, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS]
 }
 
 /// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
@@ -178,6 +190,7 @@ pub fn node_count(shape: &Values, dimension: usize) -> u64 {
     let product = |cells: &[u32], more: u64| cells.iter().fold(1u64, |n, c| n.saturating_mul(u64::from(*c) + more));
     match shape.kind() {
         "ring" => whole("vertices"),
+        "rings" => whole("vertices").saturating_mul(shape.rows("centers").len() as u64),
         "regular_polygon" => whole("sides").saturating_mul(whole("vertices_per_side")),
         "polygon" | "polyline" => shape.rows("points").len() as u64,
         "line" => whole("segments").saturating_add(1),
@@ -245,9 +258,29 @@ fn cells<const N: usize>(shape: &Values) -> Result<[u32; N], MeshError> {
     })
 }
 
-/// The rows of `points`.
-fn points<const D: usize>(shape: &Values) -> Vec<[f64; D]> {
-    shape.rows("points").iter().map(|row| core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))).collect()
+/// Rows as points.
+fn points<const D: usize>(rows: &[Vec<f64>]) -> Vec<[f64; D]> {
+    rows.iter().map(|row| core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))).collect()
+}
+
+/// Rings one after the other; those of negative radius run clockwise.
+fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
+    let (centers, radii) = (points::<2>(shape.rows("centers")), shape.numbers("radii").unwrap_or(&[]));
+    if radii.len() != centers.len() {
+        let (value, wanted) = (radii.len() as u64, centers.len() as u64);
+        return Err(MeshError::Count { what: "length of `radii`", value, least: wanted, most: wanted });
+    }
+    let mut all = Mesh::<2>::default();
+    for (center, radius) in centers.iter().zip(radii) {
+        let mut ring = Mesh::ring(radius.abs(), number(shape, "vertices"), *center, 0.0)?;
+        let first = all.positions.len() as u32;
+        all.positions.append(&mut ring.positions);
+        let hole = *radius < 0.0;
+        all.facets.extend(ring.facets.iter().map(|[a, b]| if hole { [b + first, a + first] } else { [a + first, b + first] }));
+    }
+    // A hole in nothing is refused here, not only when a gas is filled in.
+    all.chambers()?;
+    Ok(all)
 }
 
 fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError> {
@@ -255,6 +288,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
     let mut flipped = false;
     let mut mesh = match shape.kind() {
         "ring" => Mesh::ring(radius, number(shape, "vertices"), shape.vector("center"), start)?,
+        "rings" => rings(shape)?,
         "regular_polygon" => Mesh::regular_polygon(
             number(shape, "sides"),
             radius,
@@ -263,7 +297,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
             start,
         )?,
         "polygon" => {
-            let polygon = Mesh::polygon(&points(shape))?;
+            let polygon = Mesh::polygon(&points(shape.rows("points")))?;
             flipped = polygon.flipped;
             polygon.mesh
         }
@@ -304,7 +338,7 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
 fn either<const D: usize>(shape: &Values) -> Result<Mesh<D>, MeshError> {
     match shape.kind() {
         "line" => Mesh::line(shape.vector("from"), shape.vector("to"), number(shape, "segments")),
-        "polyline" => Mesh::polyline(&points(shape), shape.flag("closed")),
+        "polyline" => Mesh::polyline(&points(shape.rows("points")), shape.flag("closed")),
         _ => Mesh::grid(shape.vector("corner"), shape.vector("size"), cells(shape)?),
     }
 }

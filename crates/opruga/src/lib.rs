@@ -35,11 +35,6 @@ pub use opruga_world::{BodyHandle, Energy, Momentum, Options, Registry, Warning,
 /// What scenes can name: the models, integrators and colliders of this library.
 pub fn catalogue() -> io::Catalogue {
     let registry = Registry::<2>::default();
-    let mut colliders = collide::all(2);
-    for spec in collide::all(3) {
-        if !colliders.iter().any(|s| s.kind == spec.kind) {
-            colliders.push(spec);
-        }
-    }
+    let colliders = [collide::all(2), collide::all(3)].concat();
     io::Catalogue { models: registry.models(), integrators: registry.integrators(), colliders }
 }

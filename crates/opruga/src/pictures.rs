@@ -16,7 +16,6 @@ pub struct Scenery {
 
 #[derive(Clone, Debug)]
 struct Fixed {
-    body: usize,
     nodes: usize,
     facets: Facets,
     cells: Vec<[u32; 3]>,
@@ -73,7 +72,6 @@ impl Scenery {
                 cells.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
             }
             Fixed {
-                body,
                 nodes: mesh.nodes(),
                 facets: if D == 2 {
                     Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())

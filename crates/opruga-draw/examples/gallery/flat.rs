@@ -1,24 +1,18 @@
 //! Synthetic pictures in two dimensions.
 
 use opruga_draw::{
-    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture,
-    PullPicture,
+    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
 use std::f64::consts::TAU;
 
 /// A floor at height zero.
 fn floor() -> ColliderPicture {
-    ColliderPicture::HalfSpace {
-        point: [0.0; 3],
-        normal: [0.0, 1.0, 0.0],
-    }
+    ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] }
 }
 
 /// The edges of a closed outline of some nodes, from a first one.
 fn outline(first: u32, count: u32) -> Vec<[u32; 2]> {
-    (0..count)
-        .map(|node| [first + node, first + (node + 1) % count])
-        .collect()
+    (0..count).map(|node| [first + node, first + (node + 1) % count]).collect()
 }
 
 /// A ring which bounces and is flattened at each bounce.
@@ -30,11 +24,7 @@ pub(crate) fn bouncing_ring(frames: usize) -> Vec<Picture> {
             let phase = (time % 1.0) - 0.5;
             let height = 0.5 + 1.1 * (1.0 - 4.0 * phase * phase);
             let squash = 0.32 * (-(phase.abs() - 0.5).powi(2) / 0.012).exp();
-            let center = [
-                0.6 * time,
-                (height * (1.0 - squash)).max(0.5 * (1.0 - squash)),
-                0.0,
-            ];
+            let center = [0.6 * time, (height * (1.0 - squash)).max(0.5 * (1.0 - squash)), 0.0];
             let node = |index: u32| {
                 let angle = TAU * f64::from(index) / f64::from(count);
                 let wave = 1.0 + 0.05 * (3.0 * angle + 20.0 * time).sin() * (1.0 + 2.0 * squash);
@@ -45,21 +35,14 @@ pub(crate) fn bouncing_ring(frames: usize) -> Vec<Picture> {
                 ]
             };
             let positions: Vec<[f64; 3]> = (0..count).map(node).collect();
-            let scalar = positions
-                .iter()
-                .map(|p| 1.0 + 6.0 * squash * (1.5 - p[1]) + 0.3 * p[1])
-                .collect();
+            let scalar = positions.iter().map(|p| 1.0 + 6.0 * squash * (1.5 - p[1]) + 0.3 * p[1]).collect();
             let arrows = (0..count)
                 .step_by(3)
                 .map(|index| {
                     let angle = TAU * f64::from(index) / f64::from(count);
                     let size = 12.0 * (1.0 + 3.0 * squash);
                     let vector = [size * angle.cos(), size * angle.sin(), 0.0];
-                    ArrowPicture {
-                        kind: ArrowKind::Pressure,
-                        from: positions[index as usize],
-                        vector,
-                    }
+                    ArrowPicture { kind: ArrowKind::Pressure, from: positions[index as usize], vector }
                 })
                 .collect();
             let body = BodyPicture {
@@ -135,15 +118,8 @@ pub(crate) fn plate() -> Picture {
         time: 1.25,
         title: "A clamped plate with a hole".to_string(),
         bodies: vec![body],
-        pulls: vec![PullPicture {
-            node: tip,
-            pointer: [tip[0] + 0.5, tip[1] - 0.5, 0.0],
-        }],
-        arrows: vec![ArrowPicture {
-            kind: ArrowKind::Gravity,
-            from: [1.5, 0.2, 0.0],
-            vector: [0.0, -9.81, 0.0],
-        }],
+        pulls: vec![PullPicture { node: tip, pointer: [tip[0] + 0.5, tip[1] - 0.5, 0.0] }],
+        arrows: vec![ArrowPicture { kind: ArrowKind::Gravity, from: [1.5, 0.2, 0.0], vector: [0.0, -9.81, 0.0] }],
         legend: Some(Legend {
             label: "stress σ".to_string(),
             unit: "kPa".to_string(),
@@ -180,10 +156,7 @@ pub(crate) fn net() -> Picture {
             }
         }
     }
-    let scalar = positions
-        .iter()
-        .map(|p| 8.0 * (p[1] * p[1] / 4.0) * (0.4 + p[0].abs()))
-        .collect();
+    let scalar = positions.iter().map(|p| 8.0 * (p[1] * p[1] / 4.0) * (0.4 + p[0].abs())).collect();
     let body = BodyPicture {
         positions,
         segments,
@@ -195,10 +168,7 @@ pub(crate) fn net() -> Picture {
     Picture {
         title: "A net on two pins".to_string(),
         bodies: vec![body],
-        colliders: vec![ColliderPicture::Ball {
-            center: [0.2, -0.45, 0.0],
-            radius: 0.3,
-        }],
+        colliders: vec![ColliderPicture::Ball { center: [0.2, -0.45, 0.0], radius: 0.3 }],
         legend: Some(Legend {
             label: "tension".to_string(),
             unit: "N".to_string(),
@@ -216,11 +186,7 @@ pub(crate) fn room() -> Picture {
             .map(|node| {
                 let angle = TAU * f64::from(node) / 48.0;
                 let r = radius * (1.0 + wave * (3.0 * angle).cos());
-                [
-                    center[0] + r * angle.cos(),
-                    center[1] + r * angle.sin(),
-                    0.0,
-                ]
+                [center[0] + r * angle.cos(), center[1] + r * angle.sin(), 0.0]
             })
             .collect()
     };
@@ -235,35 +201,15 @@ pub(crate) fn room() -> Picture {
     edges.extend(outline(48, 48));
     edges.sort_by_key(|edge| edge[0] * 7 % 13);
     let spokes = (0..48).step_by(4).map(|node| [node, node + 48]).collect();
-    let tyre = BodyPicture {
-        positions: tyre,
-        facets: Facets::Edges(edges),
-        segments: spokes,
-        ..BodyPicture::default()
-    };
+    let tyre =
+        BodyPicture { positions: tyre, facets: Facets::Edges(edges), segments: spokes, ..BodyPicture::default() };
     Picture {
         title: "A room with obstacles".to_string(),
-        bodies: vec![
-            plain(ring([2.6, 2.2], 0.4, 0.12)),
-            tyre,
-            plain(ring([3.4, 0.42], 0.4, 0.03)),
-        ],
+        bodies: vec![plain(ring([2.6, 2.2], 0.4, 0.12)), tyre, plain(ring([3.4, 0.42], 0.4, 0.03))],
         colliders: vec![
-            ColliderPicture::Box {
-                min: [0.0; 3],
-                max: [4.0, 3.0, 0.0],
-                inside: true,
-            },
-            ColliderPicture::Box {
-                min: [0.4, 0.0, 0.0],
-                max: [1.0, 0.5, 0.0],
-                inside: false,
-            },
-            ColliderPicture::Capsule {
-                a: [1.5, 0.9, 0.0],
-                b: [2.3, 0.6, 0.0],
-                radius: 0.12,
-            },
+            ColliderPicture::Box { min: [0.0; 3], max: [4.0, 3.0, 0.0], inside: true },
+            ColliderPicture::Box { min: [0.4, 0.0, 0.0], max: [1.0, 0.5, 0.0], inside: false },
+            ColliderPicture::Capsule { a: [1.5, 0.9, 0.0], b: [2.3, 0.6, 0.0], radius: 0.12 },
             ColliderPicture::Polygon(vec![[2.0, 0.0, 0.0], [2.9, 0.0, 0.0], [2.9, 0.45, 0.0]]),
             ColliderPicture::Polyline(vec![[3.1, 1.5, 0.0], [3.5, 1.3, 0.0], [3.9, 1.35, 0.0]]),
         ],
@@ -278,26 +224,16 @@ pub(crate) fn crowd(columns: usize, rows: usize, coloured: bool) -> Picture {
     for index in 0..columns * rows {
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
         let shake = (index as f64 * 12.9898).sin();
-        let center = [
-            column + 0.5 + 0.08 * shake,
-            row + 0.5 + 0.08 * (index as f64 * 78.233).sin(),
-        ];
+        let center = [column + 0.5 + 0.08 * shake, row + 0.5 + 0.08 * (index as f64 * 78.233).sin()];
         let positions: Vec<[f64; 3]> = (0..count)
             .map(|node| {
                 let angle = TAU * f64::from(node) / f64::from(count);
                 let r = 0.42 * (1.0 + 0.08 * (2.0 * angle + 9.0 * shake).cos());
-                [
-                    center[0] + r * angle.cos(),
-                    center[1] + r * angle.sin(),
-                    0.0,
-                ]
+                [center[0] + r * angle.cos(), center[1] + r * angle.sin(), 0.0]
             })
             .collect();
-        let scalar = if coloured {
-            vec![(0.2 * column).sin() + 0.1 * row + 0.2 * shake; count as usize]
-        } else {
-            Vec::new()
-        };
+        let scalar =
+            if coloured { vec![(0.2 * column).sin() + 0.1 * row + 0.2 * shake; count as usize] } else { Vec::new() };
         bodies.push(BodyPicture {
             positions,
             facets: Facets::Edges(outline(0, count)),

@@ -30,42 +30,20 @@ impl Scalars {
 
     /// The mean of the scalars of some nodes.
     fn mean(body: &BodyPicture, nodes: impl Iterator<Item = u32>) -> f64 {
-        let (sum, count) = nodes.fold((0.0, 0.0), |(sum, count), node| {
-            (sum + body.scalar[node as usize], count + 1.0)
-        });
+        let (sum, count) = nodes.fold((0.0, 0.0), |(sum, count), node| (sum + body.scalar[node as usize], count + 1.0));
         sum / f64::max(count, 1.0)
     }
 }
 
 /// Draws all bodies of a picture.
-pub(crate) fn draw(
-    canvas: &mut Canvas,
-    picture: &Picture,
-    view: &View,
-    projection: &Projection,
-    unit: f32,
-) {
-    let map = picture
-        .legend
-        .as_ref()
-        .map_or(ColourMap::Viridis, |legend| legend.map);
-    let scalars = Scalars {
-        map,
-        range: view.range(picture),
-    };
+pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projection: &Projection, unit: f32) {
+    let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
+    let scalars = Scalars { map, range: view.range(picture) };
     let mut pixels = Vec::new();
     for (index, body) in picture.bodies.iter().enumerate() {
         pixels.clear();
-        pixels.extend(
-            body.positions
-                .iter()
-                .map(|&position| projection.pixel(position)),
-        );
-        let used = body
-            .positions
-            .iter()
-            .zip(&pixels)
-            .filter(|(position, _)| position.iter().all(|v| v.is_finite()));
+        pixels.extend(body.positions.iter().map(|&position| projection.pixel(position)));
+        let used = body.positions.iter().zip(&pixels).filter(|(position, _)| position.iter().all(|v| v.is_finite()));
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for (_, pixel) in used {
             for axis in 0..2 {
@@ -73,37 +51,20 @@ pub(crate) fn draw(
                 high[axis] = high[axis].max(pixel[axis]);
             }
         }
-        let outside =
-            (0..2).any(|axis| high[axis] < -2.0 || low[axis] > projection.size[axis] + 2.0);
+        let outside = (0..2).any(|axis| high[axis] < -2.0 || low[axis] > projection.size[axis] + 2.0);
         if outside || low[0] > high[0] {
             continue;
         }
-        let base = body
-            .colour
-            .unwrap_or(body_colour(index, picture.bodies.len()));
+        let base = body.colour.unwrap_or(body_colour(index, picture.bodies.len()));
         let size = (high[0] - low[0]).max(high[1] - low[1]);
-        Drawing {
-            body,
-            pixels: &pixels,
-            low,
-            high,
-            size,
-            unit,
-            base,
-            scalars: &scalars,
-        }
-        .draw(canvas);
+        Drawing { body, pixels: &pixels, low, high, size, unit, base, scalars: &scalars }.draw(canvas);
     }
 }
 
 /// The colour of a body without scalars; many bodies take colours without a visible order.
 pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
     let shuffled = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
-    let place = if count <= 2 * BODIES.len() {
-        index
-    } else {
-        shuffled as usize
-    };
+    let place = if count <= 2 * BODIES.len() { index } else { shuffled as usize };
     BODIES[place % BODIES.len()]
 }
 
@@ -140,37 +101,17 @@ impl Drawing<'_> {
             Facets::Triangles(triangles) => triangles,
             Facets::Edges(_) => &[],
         };
-        let cells = if body.cells.is_empty() {
-            surface
-        } else {
-            &body.cells
-        };
+        let cells = if body.cells.is_empty() { surface } else { &body.cells };
         let outline = self.outline(&loops);
-        let fill = if coloured {
-            self.scalars
-                .colour(Scalars::mean(body, 0..body.positions.len() as u32))
-        } else {
-            self.base
-        };
+        let fill =
+            if coloured { self.scalars.colour(Scalars::mean(body, 0..body.positions.len() as u32)) } else { self.base };
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
         } else if let Some(outline) = &outline {
-            let pale = coloured && self.size > 12.0;
-            canvas.fill(
-                outline,
-                &paint(
-                    if pale {
-                        mix(fill, [255; 3], 0.45)
-                    } else {
-                        fill
-                    },
-                    1.0,
-                ),
-            );
+            let pale = coloured && self.size > 12.0 && !self.is_uniform();
+            canvas.fill(outline, &paint(if pale { mix(fill, [255; 3], 0.6) } else { fill }, 1.0));
         } else if !cells.is_empty() {
-            cells.iter().for_each(|cell| {
-                canvas.polygon(&cell.map(|node| self.pixels[node as usize]), fill, 1.0)
-            });
+            cells.iter().for_each(|cell| canvas.polygon(&cell.map(|node| self.pixels[node as usize]), fill, 1.0));
         }
         self.cell_edges(canvas, cells);
         self.segments(canvas, outline.is_some());
@@ -187,14 +128,8 @@ impl Drawing<'_> {
 
     /// Whether all scalars of the body have nearly the same colour.
     fn is_uniform(&self) -> bool {
-        let places = self
-            .body
-            .scalar
-            .iter()
-            .map(|&scalar| self.scalars.place(scalar));
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
-            (low.min(p), high.max(p))
-        });
+        let places = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar));
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         high - low < 0.01
     }
 
@@ -224,55 +159,30 @@ impl Drawing<'_> {
     /// Fills cells with the colours of their nodes, cut off at the outline.
     fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
         let limit = [canvas.pixmap.width() as f32, canvas.pixmap.height() as f32];
-        let low: [f32; 2] =
-            std::array::from_fn(|axis| (self.low[axis] - 2.0).floor().clamp(0.0, limit[axis]));
-        let high: [f32; 2] =
-            std::array::from_fn(|axis| (self.high[axis] + 2.0).ceil().clamp(0.0, limit[axis]));
-        let Some(mut scratch) = Pixmap::new((high[0] - low[0]) as u32, (high[1] - low[1]) as u32)
-        else {
+        let low: [f32; 2] = std::array::from_fn(|axis| (self.low[axis] - 2.0).floor().clamp(0.0, limit[axis]));
+        let high: [f32; 2] = std::array::from_fn(|axis| (self.high[axis] + 2.0).ceil().clamp(0.0, limit[axis]));
+        let Some(mut scratch) = Pixmap::new((high[0] - low[0]) as u32, (high[1] - low[1]) as u32) else {
             return;
         };
-        let places: Vec<f64> = self
-            .body
-            .scalar
-            .iter()
-            .map(|&scalar| self.scalars.place(scalar))
-            .collect();
+        let places: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar)).collect();
         // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
-        let passes: &[f32] = if outline.is_some() {
-            &[1.5, 0.01]
-        } else {
-            &[0.01]
-        };
+        let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
                 let corners = cell.map(|node| {
                     let [x, y] = self.pixels[node as usize];
                     ([x - low[0], y - low[1]], places[node as usize])
                 });
-                shade::triangle(&mut scratch.as_mut(), corners, reach, &|place| {
-                    self.scalars.map.colour(place)
-                });
+                shade::triangle(&mut scratch.as_mut(), corners, reach, &|place| self.scalars.map.colour(place));
             }
         }
         let shift = Transform::from_translate(low[0], low[1]);
-        let shader = Pattern::new(
-            scratch.as_ref(),
-            SpreadMode::Pad,
-            FilterQuality::Nearest,
-            1.0,
-            shift,
-        );
-        let paint = Paint {
-            shader,
-            anti_alias: true,
-            ..Paint::default()
-        };
+        let shader = Pattern::new(scratch.as_ref(), SpreadMode::Pad, FilterQuality::Nearest, 1.0, shift);
+        let paint = Paint { shader, anti_alias: true, ..Paint::default() };
         match outline {
             Some(outline) => canvas.fill(outline, &paint),
             None => {
-                let all = tiny_skia::Rect::from_ltrb(low[0], low[1], high[0], high[1])
-                    .map(PathBuilder::from_rect);
+                let all = tiny_skia::Rect::from_ltrb(low[0], low[1], high[0], high[1]).map(PathBuilder::from_rect);
                 all.iter().for_each(|path| canvas.fill(path, &paint));
             }
         }
@@ -284,11 +194,8 @@ impl Drawing<'_> {
         if spacing < 7.0 {
             return;
         }
-        let mut edges: Vec<[u32; 2]> = cells
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-            .map(|[a, b]| [a.min(b), a.max(b)])
-            .collect();
+        let mut edges: Vec<[u32; 2]> =
+            cells.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.dedup();
         self.lines(canvas, &edges, 0.6 * self.unit, [255; 3], 0.38);
@@ -303,33 +210,18 @@ impl Drawing<'_> {
         let spacing = self.size / (segments.len() as f32).sqrt();
         let width = (0.09 * spacing).clamp(0.35, 1.3) * self.unit;
         if self.body.scalar.is_empty() || filled {
-            self.lines(
-                canvas,
-                segments,
-                width,
-                darker(self.base),
-                if filled { 0.45 } else { 1.0 },
-            );
+            self.lines(canvas, segments, width, darker(self.base), if filled { 0.45 } else { 1.0 });
             return;
         }
         for &[a, b] in segments {
-            let colour = self
-                .scalars
-                .colour(Scalars::mean(self.body, [a, b].into_iter()));
+            let colour = self.scalars.colour(Scalars::mean(self.body, [a, b].into_iter()));
             let points = [self.pixels[a as usize], self.pixels[b as usize]];
             canvas.line(&points, 1.5 * width, colour, 1.0);
         }
     }
 
     /// Draws many lines of one colour at once.
-    fn lines(
-        &self,
-        canvas: &mut Canvas,
-        lines: &[[u32; 2]],
-        width: f32,
-        colour: [u8; 3],
-        opacity: f64,
-    ) {
+    fn lines(&self, canvas: &mut Canvas, lines: &[[u32; 2]], width: f32, colour: [u8; 3], opacity: f64) {
         for part in lines.chunks(512) {
             let mut builder = PathBuilder::new();
             for &[a, b] in part {
@@ -350,25 +242,11 @@ impl Drawing<'_> {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
         for chain in loops {
-            let count = if chain.closed {
-                chain.nodes.len()
-            } else {
-                chain.nodes.len() - 1
-            };
+            let count = if chain.closed { chain.nodes.len() } else { chain.nodes.len() - 1 };
             for place in 0..count {
-                let ends = [
-                    chain.nodes[place],
-                    chain.nodes[(place + 1) % chain.nodes.len()],
-                ];
-                let colour = self
-                    .scalars
-                    .colour(Scalars::mean(self.body, ends.into_iter()));
-                canvas.line(
-                    &ends.map(|node| self.pixels[node as usize]),
-                    width,
-                    colour,
-                    1.0,
-                );
+                let ends = [chain.nodes[place], chain.nodes[(place + 1) % chain.nodes.len()]];
+                let colour = self.scalars.colour(Scalars::mean(self.body, ends.into_iter()));
+                canvas.line(&ends.map(|node| self.pixels[node as usize]), width, colour, 1.0);
             }
         }
     }
@@ -382,11 +260,7 @@ impl Drawing<'_> {
         }
         let radius = (3.0 * self.size / count as f32).clamp(1.2, 2.6) * self.unit;
         for (node, &pixel) in self.pixels.iter().enumerate() {
-            let colour = self
-                .body
-                .scalar
-                .get(node)
-                .map_or(self.base, |&scalar| self.scalars.colour(scalar));
+            let colour = self.body.scalar.get(node).map_or(self.base, |&scalar| self.scalars.colour(scalar));
             canvas.disc(pixel, radius + 0.9 * self.unit, darker(darker(colour)));
             canvas.disc(pixel, radius, mix(colour, [255; 3], 0.25));
         }

@@ -5,6 +5,8 @@ mod colliders;
 mod loops;
 mod shade;
 
+pub(crate) use bodies::body_colour;
+
 use crate::canvas::Canvas;
 use crate::error::DrawError;
 use crate::image::Image;
@@ -65,10 +67,7 @@ pub(crate) fn scene(
     }
     bodies::draw(&mut canvas, picture, view, &projection, unit);
     draw_marks(&mut canvas, picture, view, unit, &|point| {
-        point
-            .iter()
-            .all(|value| value.is_finite())
-            .then(|| projection.pixel(point))
+        point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point))
     });
     Ok((scene, projection.scale))
 }

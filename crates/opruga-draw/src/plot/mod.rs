@@ -20,12 +20,7 @@ pub struct Chart {
 
 impl Default for Chart {
     fn default() -> Chart {
-        Chart {
-            title: String::new(),
-            width: 720.0,
-            x: Axis::default(),
-            panels: Vec::new(),
-        }
+        Chart { title: String::new(), width: 720.0, x: Axis::default(), panels: Vec::new() }
     }
 }
 
@@ -45,19 +40,12 @@ pub struct Axis {
 impl Axis {
     /// A linear axis with a label and a unit.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        Axis {
-            label: label.into(),
-            unit: unit.into(),
-            ..Axis::default()
-        }
+        Axis { label: label.into(), unit: unit.into(), ..Axis::default() }
     }
 
     /// A logarithmic axis with a label and a unit.
     pub fn logarithmic(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        Axis {
-            logarithmic: true,
-            ..Axis::linear(label, unit)
-        }
+        Axis { logarithmic: true, ..Axis::linear(label, unit) }
     }
 }
 
@@ -76,12 +64,7 @@ pub struct Panel {
 
 impl Default for Panel {
     fn default() -> Panel {
-        Panel {
-            height: 180.0,
-            y: Axis::default(),
-            lines: Vec::new(),
-            levels: Vec::new(),
-        }
+        Panel { height: 180.0, y: Axis::default(), lines: Vec::new(), levels: Vec::new() }
     }
 }
 

@@ -28,38 +28,17 @@ impl Scale {
     pub(crate) fn fit(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> Scale {
         let logarithmic = axis.logarithmic;
         let seen = values.filter(|value| value.is_finite() && (!logarithmic || *value > 0.0));
-        let (low, high) = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
-        let [low, high] = if low <= high {
-            [low, high]
-        } else {
-            [1.0, 10.0]
-        };
-        if let Some([low, high]) = axis
-            .range
-            .filter(|[low, high]| high > low && (!logarithmic || *low > 0.0))
-        {
-            return Scale {
-                low,
-                high,
-                logarithmic,
-            };
+        let (low, high) = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let [low, high] = if low <= high { [low, high] } else { [1.0, 10.0] };
+        if let Some([low, high]) = axis.range.filter(|[low, high]| high > low && (!logarithmic || *low > 0.0)) {
+            return Scale { low, high, logarithmic };
         }
         if logarithmic {
             let factor = (high / low).powf(margin).max(1.15);
-            return Scale {
-                low: low / factor,
-                high: high * factor,
-                logarithmic,
-            };
+            return Scale { low: low / factor, high: high * factor, logarithmic };
         }
         // A line which is constant but for rounding is drawn flat.
-        let width = if high - low > 1e-12 * low.abs().max(high.abs()) {
-            high - low
-        } else {
-            0.0
-        };
+        let width = if high - low > 1e-12 * low.abs().max(high.abs()) { high - low } else { 0.0 };
         let pad = if width > 0.0 {
             margin * width
         } else if margin > 0.0 {
@@ -67,11 +46,7 @@ impl Scale {
         } else {
             0.5
         };
-        Scale {
-            low: low - pad,
-            high: high + pad,
-            logarithmic,
-        }
+        Scale { low: low - pad, high: high + pad, logarithmic }
     }
 
     /// The place of a value, or nothing where it has none.
@@ -88,18 +63,8 @@ impl Scale {
     pub(crate) fn ticks(&self, count: usize) -> Vec<Tick> {
         if !self.logarithmic {
             let values = nice_ticks(self.low, self.high, count);
-            let step = if values.len() > 1 {
-                values[1] - values[0]
-            } else {
-                self.low.abs()
-            };
-            return values
-                .into_iter()
-                .map(|value| Tick {
-                    value,
-                    label: format_tick(value, step),
-                })
-                .collect();
+            let step = if values.len() > 1 { values[1] - values[0] } else { self.low.abs() };
+            return values.into_iter().map(|value| Tick { value, label: format_tick(value, step) }).collect();
         }
         let whole = decades(self.low, self.high);
         let first = 10_f64.powf(self.low.log10().floor());
@@ -120,11 +85,7 @@ impl Scale {
                     _ => false,
                 };
                 if listed || span < 7.0 {
-                    let label = if listed {
-                        log_label(value)
-                    } else {
-                        String::new()
-                    };
+                    let label = if listed { log_label(value) } else { String::new() };
                     ticks.push(Tick { value, label });
                 }
             }
@@ -158,17 +119,9 @@ mod tests {
 
     #[test]
     fn a_logarithmic_scale_lists_decades_and_skips_what_is_not_positive() {
-        let scale = Scale::fit(
-            &Axis::logarithmic("", ""),
-            [0.0, -3.0, 10.0, 1e4].into_iter(),
-            0.0,
-        );
-        let labels: Vec<String> = scale
-            .ticks(6)
-            .into_iter()
-            .map(|tick| tick.label)
-            .filter(|label| !label.is_empty())
-            .collect();
+        let scale = Scale::fit(&Axis::logarithmic("", ""), [0.0, -3.0, 10.0, 1e4].into_iter(), 0.0);
+        let labels: Vec<String> =
+            scale.ticks(6).into_iter().map(|tick| tick.label).filter(|label| !label.is_empty()).collect();
         assert_eq!(labels, ["10", "100", "1000", "10\u{a0}000"]);
         assert_eq!(scale.place(0.0), None);
     }

@@ -1,7 +1,7 @@
 //! Writes plots as SVG text.
 
 use super::scale::Scale;
-use super::{Axis, Chart, Line, Marker, Panel};
+use super::{Axis, Chart, Level, Line, Marker, Panel};
 use crate::canvas::text_width;
 use crate::colour::{INK, OKABE_ITO, SOFT_INK};
 use std::fmt::Write;
@@ -32,26 +32,14 @@ impl Svg {
     /// Adds a line.
     fn line(&mut self, [x1, y1, x2, y2]: [f64; 4], colour: [u8; 3], width: f64, dashes: &str) {
         let colour = hex(colour);
-        let dashes = if dashes.is_empty() {
-            String::new()
-        } else {
-            format!(r#" stroke-dasharray="{dashes}""#)
-        };
+        let dashes = if dashes.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dashes}""#) };
         self.add(format_args!(
             r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}" stroke="{colour}" stroke-width="{width}"{dashes}/>"#
         ));
     }
 
     /// Adds a text.
-    fn text(
-        &mut self,
-        text: &str,
-        [x, y]: [f64; 2],
-        size: f64,
-        anchor: &str,
-        colour: [u8; 3],
-        more: &str,
-    ) {
+    fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, anchor: &str, colour: [u8; 3], more: &str) {
         let colour = hex(colour);
         let text = escape(text);
         self.add(format_args!(
@@ -103,42 +91,20 @@ fn colour_of(line: &Line, index: usize) -> [u8; 3] {
 
 /// Writes a plot.
 pub(crate) fn write(chart: &Chart) -> String {
-    let points = chart
-        .panels
-        .iter()
-        .flat_map(|panel| &panel.lines)
-        .flat_map(|line| &line.points);
+    let points = chart.panels.iter().flat_map(|panel| &panel.lines).flat_map(|line| &line.points);
     let margin = if chart.x.logarithmic { 0.04 } else { 0.0 };
     let x = Scale::fit(&chart.x, points.map(|point| point[0]), margin);
     let scales: Vec<Scale> = chart.panels.iter().map(fit_panel).collect();
     let tick_width = |(panel, scale): (&Panel, &Scale)| {
         let ticks = scale.ticks(tick_count(panel.height));
-        ticks
-            .iter()
-            .map(|tick| width_of(&tick.label, TICK_SIZE))
-            .fold(0.0, f64::max)
+        ticks.iter().map(|tick| width_of(&tick.label, TICK_SIZE)).fold(0.0, f64::max)
     };
-    let left = chart
-        .panels
-        .iter()
-        .zip(&scales)
-        .map(tick_width)
-        .fold(20.0, f64::max)
-        + 44.0;
+    let left = chart.panels.iter().zip(&scales).map(tick_width).fold(20.0, f64::max) + 44.0;
     let right = chart.width - 22.0;
     let mut y = if chart.title.is_empty() { 14.0 } else { 40.0 };
-    let mut svg = Svg {
-        text: String::new(),
-    };
+    let mut svg = Svg { text: String::new() };
     if !chart.title.is_empty() {
-        svg.text(
-            &chart.title,
-            [left, 25.0],
-            16.0,
-            "start",
-            INK,
-            r#" font-weight="600""#,
-        );
+        svg.text(&chart.title, [left, 25.0], 16.0, "start", INK, r#" font-weight="600""#);
     }
     for (index, (panel, scale)) in chart.panels.iter().zip(&scales).enumerate() {
         let rows = names(&mut svg, panel, [left, right], y);
@@ -148,14 +114,7 @@ pub(crate) fn write(chart: &Chart) -> String {
         draw_panel(&mut svg, panel, [&x, scale], area, index, last);
         y += panel.height + if last { 0.0 } else { GAP };
     }
-    svg.text(
-        &axis_text(&chart.x),
-        [0.5 * (left + right), y + 42.0],
-        SIZE,
-        "middle",
-        INK,
-        "",
-    );
+    svg.text(&axis_text(&chart.x), [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
     let (width, height) = (chart.width, y + 56.0);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
@@ -172,27 +131,14 @@ fn tick_count(height: f64) -> usize {
 
 /// The scale along y of a panel.
 fn fit_panel(panel: &Panel) -> Scale {
-    let values = panel
-        .lines
-        .iter()
-        .flat_map(|line| &line.points)
-        .map(|point| point[1]);
-    Scale::fit(
-        &panel.y,
-        values.chain(panel.levels.iter().map(|level| level.value)),
-        0.07,
-    )
+    let values = panel.lines.iter().flat_map(|line| &line.points).map(|point| point[1]);
+    Scale::fit(&panel.y, values.chain(panel.levels.iter().map(|level| level.value)), 0.07)
 }
 
 /// Lists the names of the lines above a panel, and gives the number of rows.
 fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usize {
     let (mut x, mut rows) = (left, 0);
-    for (index, line) in panel
-        .lines
-        .iter()
-        .enumerate()
-        .filter(|(_, line)| !line.name.is_empty())
-    {
+    for (index, line) in panel.lines.iter().enumerate().filter(|(_, line)| !line.name.is_empty()) {
         let width = 28.0 + width_of(&line.name, SIZE) * 1.06 + 18.0;
         if rows == 0 || x + width > right + 18.0 {
             rows += 1;
@@ -200,12 +146,7 @@ fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usi
         }
         let y = top + NAME_ROW * (rows as f64 - 0.35);
         let colour = colour_of(line, index);
-        svg.line(
-            [x, y - 4.5, x + 22.0, y - 4.5],
-            colour,
-            2.0,
-            if line.dashed { "6 4" } else { "" },
-        );
+        svg.line([x, y - 4.5, x + 22.0, y - 4.5], colour, 2.0, if line.dashed { "6 4" } else { "" });
         if let Some(marker) = line.marker {
             draw_marker(svg, marker, [x + 11.0, y - 4.5], colour);
         }
@@ -216,14 +157,7 @@ fn names(svg: &mut Svg, panel: &Panel, [left, right]: [f64; 2], top: f64) -> usi
 }
 
 /// Draws the axes and the lines of a panel.
-fn draw_panel(
-    svg: &mut Svg,
-    panel: &Panel,
-    [x, y]: [&Scale; 2],
-    area: [f64; 4],
-    index: usize,
-    last: bool,
-) {
+fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4], index: usize, last: bool) {
     let [left, top, right, bottom] = area;
     let grid = [232, 234, 238];
     let at_x = |place: f64| left + place * (right - left);
@@ -235,14 +169,7 @@ fn draw_panel(
         if !tick.label.is_empty() {
             svg.line([place, top, place, bottom], grid, 1.0, "");
             if last {
-                svg.text(
-                    &tick.label,
-                    [place, bottom + 20.0],
-                    TICK_SIZE,
-                    "middle",
-                    INK,
-                    "",
-                );
+                svg.text(&tick.label, [place, bottom + 20.0], TICK_SIZE, "middle", INK, "");
             }
         }
         let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
@@ -254,14 +181,7 @@ fn draw_panel(
         };
         if !tick.label.is_empty() {
             svg.line([left, place, right, place], grid, 1.0, "");
-            svg.text(
-                &tick.label,
-                [left - 9.0, place + 4.2],
-                TICK_SIZE,
-                "end",
-                INK,
-                "",
-            );
+            svg.text(&tick.label, [left - 9.0, place + 4.2], TICK_SIZE, "end", INK, "");
         }
         let length = if tick.label.is_empty() { 3.0 } else { 5.0 };
         svg.line([left - length, place, left, place], SOFT_INK, 1.0, "");
@@ -273,29 +193,14 @@ fn draw_panel(
     for level in &panel.levels {
         if let Some(place) = y.place(level.value).map(at_y) {
             svg.line([left, place, right, place], SOFT_INK, 1.4, "7 5");
-            svg.text(
-                &level.label,
-                [right - 6.0, place - 6.0],
-                TICK_SIZE,
-                "end",
-                SOFT_INK,
-                "",
-            );
         }
     }
     for (number, line) in panel.lines.iter().enumerate() {
         let colour = colour_of(line, number);
-        let places = line
-            .points
-            .iter()
-            .map(|point| Some([at_x(x.place(point[0])?), at_y(y.place(point[1])?)]));
+        let places = line.points.iter().map(|point| Some([at_x(x.place(point[0])?), at_y(y.place(point[1])?)]));
         let path = path_text(places);
         if !path.is_empty() {
-            let dashes = if line.dashed {
-                r#" stroke-dasharray="6 4""#
-            } else {
-                ""
-            };
+            let dashes = if line.dashed { r#" stroke-dasharray="6 4""# } else { "" };
             let colour = hex(colour);
             svg.add(format_args!(
                 r#"<path d="{path}" fill="none" stroke="{colour}" stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"{dashes} clip-path="url(#panel-{index})"/>"#
@@ -312,18 +217,42 @@ fn draw_panel(
             }
         }
     }
+    for level in &panel.levels {
+        level_label(svg, panel, level, [x, y], area);
+    }
     svg.line([left, top, left, bottom], SOFT_INK, 1.0, "");
     svg.line([left, bottom, right, bottom], SOFT_INK, 1.0, "");
     let middle = 0.5 * (top + bottom);
     let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
-    svg.text(
-        &axis_text(&panel.y),
-        [16.0, middle],
-        SIZE,
-        "middle",
-        INK,
-        &turn,
-    );
+    svg.text(&axis_text(&panel.y), [16.0, middle], SIZE, "middle", INK, &turn);
+}
+
+/// Writes what a level means, above or below its line, at the end where the lines of the panel are farthest away.
+fn level_label(svg: &mut Svg, panel: &Panel, level: &Level, [x, y]: [&Scale; 2], area: [f64; 4]) {
+    let [left, top, right, bottom] = area;
+    let Some(place) = y.place(level.value) else { return };
+    let line = bottom - place * (bottom - top);
+    let width = width_of(&level.label, TICK_SIZE);
+    let points = panel.lines.iter().flat_map(|line| &line.points);
+    let pixels: Vec<[f64; 2]> = points
+        .filter_map(|point| {
+            Some([left + x.place(point[0])? * (right - left), bottom - y.place(point[1])? * (bottom - top)])
+        })
+        .collect();
+    let candidates = [(true, -11.0), (true, 11.0), (false, -11.0), (false, 11.0)].map(|(at_end, shift)| {
+        let middle = [if at_end { right - 6.0 - 0.5 * width } else { left + 8.0 + 0.5 * width }, line + shift];
+        let gap = |point: &[f64; 2]| {
+            let aside = ((point[0] - middle[0]).abs() - 0.5 * width).max(0.0);
+            (aside * aside + (point[1] - middle[1]).powi(2)).sqrt()
+        };
+        let inside = if middle[1] < top + 6.0 || middle[1] > bottom - 6.0 { 0.0 } else { 1.0 };
+        (middle, inside * pixels.iter().map(gap).fold(60.0, f64::min))
+    });
+    let best = candidates.into_iter().reduce(|best, next| if next.1 > best.1 + 1.0 { next } else { best });
+    if let Some((middle, _)) = best {
+        let halo = r##" stroke="#ffffff" stroke-width="4" stroke-linejoin="round" paint-order="stroke""##;
+        svg.text(&level.label, [middle[0], middle[1] + 4.2], TICK_SIZE, "middle", SOFT_INK, halo);
+    }
 }
 
 /// Draws the sign of a point.
@@ -339,14 +268,10 @@ fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3])
         Marker::Triangle => &[[0.0, -4.8], [4.6, 3.4], [-4.6, 3.4]],
         Marker::Diamond => &[[0.0, -5.0], [5.0, 0.0], [0.0, 5.0], [-5.0, 0.0]],
     };
-    let points: Vec<String> = corners
-        .iter()
-        .map(|corner| format!("{:.1},{:.1}", x + corner[0], y + corner[1]))
-        .collect();
+    let points: Vec<String> =
+        corners.iter().map(|corner| format!("{:.1},{:.1}", x + corner[0], y + corner[1])).collect();
     let points = points.join(" ");
-    svg.add(format_args!(
-        r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##
-    ));
+    svg.add(format_args!(r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##));
 }
 
 /// The commands of a path; of many points in the same half pixel only the ends and the extremes are kept.
@@ -374,10 +299,7 @@ fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
     for point in points {
         match point {
             Some(point) => {
-                if column
-                    .first()
-                    .is_some_and(|first| (first[0] - point[0]).abs() > 0.5)
-                {
+                if column.first().is_some_and(|first| (first[0] - point[0]).abs() > 0.5) {
                     flush(&mut column, &mut pen_down);
                 }
                 column.push(point);
@@ -398,18 +320,8 @@ mod tests {
 
     #[test]
     fn names_are_escaped() {
-        let line = Line {
-            name: "a < b & \"c\"".to_string(),
-            points: vec![[0.0, 0.0], [1.0, 1.0]],
-            ..Line::default()
-        };
-        let chart = Chart {
-            panels: vec![Panel {
-                lines: vec![line],
-                ..Panel::default()
-            }],
-            ..Chart::default()
-        };
+        let line = Line { name: "a < b & \"c\"".to_string(), points: vec![[0.0, 0.0], [1.0, 1.0]], ..Line::default() };
+        let chart = Chart { panels: vec![Panel { lines: vec![line], ..Panel::default() }], ..Chart::default() };
         let text = chart.to_svg().unwrap();
         assert!(text.contains("a &lt; b &amp; &quot;c&quot;"));
         assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
@@ -423,8 +335,7 @@ mod tests {
 
     #[test]
     fn long_lines_are_thinned() {
-        let points =
-            (0..100_000).map(|index| Some([f64::from(index) * 0.005, f64::from(index % 7)]));
+        let points = (0..100_000).map(|index| Some([f64::from(index) * 0.005, f64::from(index % 7)]));
         let commands = path_text(points).matches('L').count();
         assert!(commands > 1000 && commands < 5000, "{commands}");
     }

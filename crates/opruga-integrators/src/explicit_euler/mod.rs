@@ -23,7 +23,7 @@ use opruga_core::integrator::{Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
-use opruga_math::{Pack, Strip, WIDTH};
+use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
 /// The parameters: none.
@@ -87,11 +87,13 @@ impl<const D: usize> Update<D> for Rule {
         let mut v = state.v.strip_mut(range.start, length);
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
+            // All reads come before the first write: a read behind a write has to wait for it.
+            let velocity = lanes!(P, d => v.load::<P>(d, k));
+            let position = lanes!(P, d => x.load::<P>(d, k) + velocity[d] * h);
+            let next = lanes!(P, d => velocity[d] + force.load::<P>(d, k) * kick);
             for d in 0..D {
-                // The position moves with the old velocity.
-                let velocity = v.load::<P>(d, k);
-                x.store(d, k, x.load::<P>(d, k) + velocity * h);
-                v.store(d, k, velocity + force.load::<P>(d, k) * kick);
+                x.store(d, k, position[d]);
+                v.store(d, k, next[d]);
             }
         }
     }

@@ -22,7 +22,7 @@ use opruga_core::integrator::{Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
-use opruga_math::{Pack, Strip, WIDTH};
+use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
 /// The parameters: none.
@@ -97,10 +97,13 @@ impl<const D: usize> Update<D> for Trapezoid {
         let mut v = state.v.strip_mut(start, length);
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
+            let first = lanes!(P, d => v.load::<P>(d, k));
+            let last = lanes!(P, d => v1.load::<P>(d, k));
+            let position = lanes!(P, d => x.load::<P>(d, k) + (first[d] + last[d]) * half_step);
+            let velocity = lanes!(P, d => first[d] + ((last[d] - first[d]) + force.load::<P>(d, k) * kick) * half);
             for d in 0..D {
-                let (first, last) = (v.load::<P>(d, k), v1.load::<P>(d, k));
-                x.store(d, k, x.load::<P>(d, k) + (first + last) * half_step);
-                v.store(d, k, first + ((last - first) + force.load::<P>(d, k) * kick) * half);
+                x.store(d, k, position[d]);
+                v.store(d, k, velocity[d]);
             }
         }
     }

@@ -25,7 +25,7 @@ use opruga_core::integrator::{Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
-use opruga_math::{Pack, Strip, WIDTH};
+use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
 /// The parameters: none.
@@ -105,10 +105,12 @@ impl<const D: usize> Update<D> for Drift {
         let (mut x1, mut predicted) = (x1.strip_mut(start, length), predicted.strip_mut(start, length));
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
+            let velocity = lanes!(P, d => v0.load::<P>(d, k));
+            let change = lanes!(P, d => force.load::<P>(d, k) * kick);
+            let position = lanes!(P, d => x0.load::<P>(d, k) + (velocity[d] + change[d] * half) * h);
             for d in 0..D {
-                let (velocity, change) = (v0.load::<P>(d, k), force.load::<P>(d, k) * kick);
-                x1.store(d, k, x0.load::<P>(d, k) + (velocity + change * half) * h);
-                predicted.store(d, k, velocity + change);
+                x1.store(d, k, position[d]);
+                predicted.store(d, k, velocity[d] + change[d]);
             }
         }
     }
@@ -138,11 +140,12 @@ impl<const D: usize> Update<D> for Kick {
         let mut v = state.v.strip_mut(start, length);
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
+            let position = lanes!(P, d => x1.load::<P>(d, k));
+            let old = lanes!(P, d => v.load::<P>(d, k));
+            let change = lanes!(P, d => (predicted.load::<P>(d, k) - old[d]) + force.load::<P>(d, k) * kick);
             for d in 0..D {
-                let velocity = v.load::<P>(d, k);
-                let change = (predicted.load::<P>(d, k) - velocity) + force.load::<P>(d, k) * kick;
-                x.store(d, k, x1.load::<P>(d, k));
-                v.store(d, k, velocity + change * half);
+                x.store(d, k, position[d]);
+                v.store(d, k, old[d] + change[d] * half);
             }
         }
     }

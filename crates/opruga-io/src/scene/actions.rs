@@ -10,7 +10,7 @@ use opruga_world::blueprint::{
     Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded,
 };
 use opruga_world::schema::{self, Section};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// The section that the tag of a table names, and its plain fields.
 fn tagged(
@@ -179,7 +179,7 @@ pub(crate) fn probes<const D: usize>(
     bodies: &Bodies<D>,
 ) -> Vec<ProbeBlueprint<D>> {
     let mut probes = Vec::new();
-    let mut seen: HashMap<String, Place> = HashMap::new();
+    let mut seen: BTreeMap<String, Place> = BTreeMap::new();
     for (node, path) in reader.list(root, "", "probe") {
         let values = reader.fields(node, &path, &schema::PROBE, None);
         let name = values.text("name").unwrap_or("").to_string();
@@ -250,6 +250,6 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
 }
 
 /// The specification of a kind in a list, for paths.
-pub(crate) fn spec_of(list: &[&'static Spec], kind: &str) -> Option<&'static Spec> {
-    crate::catalogue::find(list, kind)
+pub(crate) fn spec_of(list: &[&'static Spec], kind: &str, dimension: usize) -> Option<&'static Spec> {
+    crate::catalogue::find(list, kind, dimension)
 }

@@ -8,16 +8,16 @@ use opruga_core::spec::{Allowed, Value, Values, nearest};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The bodies of a scene, copies written out.
 pub(crate) struct Bodies<const D: usize> {
     pub(crate) list: Vec<BodyBlueprint<D>>,
     /// Name → place in the list.
-    names: HashMap<String, usize>,
+    names: BTreeMap<String, usize>,
     /// Name of a body with copies → how many.
-    copied: HashMap<String, usize>,
+    copied: BTreeMap<String, usize>,
     /// Names of bodies that have errors of their own: a reference to them is no further error.
     broken: Vec<String>,
 }
@@ -62,7 +62,7 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
         }
     }
     duplicate_names(reader, &drafts);
-    let mut bodies = Bodies { list: Vec::new(), names: HashMap::new(), copied: HashMap::new(), broken: Vec::new() };
+    let mut bodies = Bodies { list: Vec::new(), names: BTreeMap::new(), copied: BTreeMap::new(), broken: Vec::new() };
     let affordable = within_limits(reader, &drafts);
     for (number, draft) in drafts.into_iter().enumerate() {
         let Some(body) = (if affordable { build(reader, &draft) } else { None }) else {
@@ -230,7 +230,7 @@ fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> O
 
 /// The same name twice: both places are named.
 fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
-    let mut seen: HashMap<&str, Place> = HashMap::new();
+    let mut seen: BTreeMap<&str, Place> = BTreeMap::new();
     for draft in drafts {
         if draft.name.is_empty() {
             continue;

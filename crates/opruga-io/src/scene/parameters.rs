@@ -88,13 +88,13 @@ fn field<const D: usize>(
         ["world", name] => find(schema::WORLD.spec, name).map(Some),
         ["time", "substeps"] => find(schema::TIME.spec, "substeps").map(Some),
         ["time", ..] => Err(lost("parameter that changes in the run", parameter, ["time.substeps"].into_iter())),
-        ["integrator", name] => match known.integrator.and_then(|v| spec_of(&catalogue.integrators, v.kind())) {
+        ["integrator", name] => match known.integrator.and_then(|v| spec_of(&catalogue.integrators, v.kind(), D)) {
             Some(spec) => find(spec, name).map(Some),
             None => Ok(None),
         },
         ["collider", number, name] => {
             let collider = number.parse::<usize>().ok().and_then(|k| known.colliders.get(k));
-            match collider.and_then(|c| spec_of(&catalogue.colliders, c.values.kind())) {
+            match collider.and_then(|c| spec_of(&catalogue.colliders, c.values.kind(), D)) {
                 Some(spec) => find(spec, name).map(Some),
                 None => {
                     let numbers: Vec<String> = (0..known.colliders.len().min(20)).map(|k| k.to_string()).collect();
@@ -124,7 +124,7 @@ fn field<const D: usize>(
                 .and_then(|k| body.models.get(k))
                 .map(Values::kind)
                 .or_else(|| kinds.clone().find(|k| k == kind));
-            match model.and_then(|k| spec_of(&catalogue.models, k)) {
+            match model.and_then(|k| spec_of(&catalogue.models, k, D)) {
                 Some(spec) => find(spec, field).map(Some),
                 None => Err(lost("model of this body", kind, kinds)),
             }

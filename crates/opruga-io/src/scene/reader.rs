@@ -200,7 +200,7 @@ impl<'a> Reader<'a> {
     /// A table whose `kind` names one of several specifications.
     pub(crate) fn kind_table(&mut self, node: &Node, path: &str, what: &str, list: &[&'static Spec]) -> Option<Values> {
         let word = self.tag(node, path, "kind", what, &list.iter().map(|s| s.kind).collect::<Vec<_>>())?;
-        let spec = find(list, &word)?;
+        let spec = find(list, &word, self.dimension)?;
         if !spec.dimensions.contains(&self.dimension) {
             let place = super::place_of(node, "kind");
             let error =

@@ -1,0 +1,130 @@
+//! The camera of a solid scene.
+
+use crate::view::View;
+
+/// The height of the picture divided by the distance, for one half: the tangent of half the angle of view.
+const HALF_HEIGHT: f64 = 0.27;
+
+/// The dot product.
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The cross product.
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The vector from one point to another.
+pub(crate) fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| to[axis] - from[axis])
+}
+
+/// The vector with the length one; a vector without a length stays as it is.
+pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = dot(vector, vector).sqrt();
+    if length > 0.0 { vector.map(|value| value / length) } else { vector }
+}
+
+/// A point plus a multiple of a vector.
+pub(crate) fn along(point: [f64; 3], vector: [f64; 3], factor: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| point[axis] + factor * vector[axis])
+}
+
+/// A point on the screen: its pixel and the inverse of its distance along the axis of the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Seen {
+    /// The pixel, from the left and from the top.
+    pub(crate) pixel: [f32; 2],
+    /// One divided by the distance along the axis of the camera.
+    pub(crate) near: f32,
+}
+
+/// A camera with a perspective view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Camera {
+    /// The place of the camera [m].
+    pub(crate) place: [f64; 3],
+    /// The directions to the right, upwards and forwards.
+    pub(crate) axes: [[f64; 3]; 3],
+    /// The number of pixels for a tangent of one.
+    pub(crate) focus: f64,
+    /// The pixel on the axis of the camera.
+    pub(crate) middle: [f64; 2],
+}
+
+impl Camera {
+    /// The camera which sees the whole view in an image of some pixels.
+    pub(crate) fn new(view: &View, width: f64, height: f64) -> Camera {
+        let (azimuth, elevation) = (view.azimuth.to_radians(), view.elevation.clamp(-89.0, 89.0).to_radians());
+        let back = [elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos()];
+        let forward = back.map(|value| -value);
+        let right = unit(cross(forward, [0.0, 1.0, 0.0]));
+        let axes = [right, cross(right, forward), forward];
+        let margin = 1.08;
+        let slope = [HALF_HEIGHT * width / height / margin, HALF_HEIGHT / margin];
+        let corners: Vec<[f64; 3]> = (0..8)
+            .map(|corner| {
+                std::array::from_fn(|axis| if corner >> axis & 1 == 0 { view.low[axis] } else { view.high[axis] })
+            })
+            .collect();
+        let mut target = view.center();
+        let mut distance = view.extent();
+        for _ in 0..8 {
+            let seen: Vec<[f64; 3]> =
+                corners.iter().map(|&corner| axes.map(|axis| dot(axis, between(target, corner)))).collect();
+            let need = |p: &[f64; 3]| (0..2).map(|axis| p[axis].abs() / slope[axis] - p[2]).fold(0.0, f64::max);
+            distance = seen.iter().map(need).fold(1e-9, f64::max);
+            // Move the target so that both sides have the same free border.
+            for axis in 0..2 {
+                let at = |p: &[f64; 3]| p[axis] / (distance + p[2]).max(1e-9);
+                let low = seen.iter().map(at).fold(f64::INFINITY, f64::min);
+                let high = seen.iter().map(at).fold(f64::NEG_INFINITY, f64::max);
+                target = along(target, axes[axis], 0.5 * (low + high) * distance);
+            }
+        }
+        Camera {
+            place: along(target, forward, -distance.max(1e-6)),
+            axes,
+            focus: 0.5 * height / HALF_HEIGHT,
+            middle: [0.5 * width, 0.5 * height],
+        }
+    }
+
+    /// The components of a direction to the right, upwards and forwards.
+    pub(crate) fn turn(&self, direction: [f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| dot(axis, direction))
+    }
+
+    /// Where a point is seen, unless it is behind the camera or not finite.
+    pub(crate) fn see(&self, point: [f64; 3]) -> Option<Seen> {
+        let [x, y, z] = self.turn(between(self.place, point));
+        if !(z > 1e-9 && z.is_finite()) {
+            return None;
+        }
+        let pixel = [self.middle[0] + self.focus * x / z, self.middle[1] - self.focus * y / z];
+        let wide = pixel.iter().all(|value| value.abs() < 1e6);
+        wide.then(|| Seen { pixel: pixel.map(|value| value as f32), near: (1.0 / z) as f32 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::{BodyPicture, Picture};
+
+    #[test]
+    fn the_whole_view_is_seen() {
+        let body = BodyPicture { positions: vec![[-1.0, 0.0, -2.0], [3.0, 1.0, 2.0]], ..Default::default() };
+        let picture = Picture { dimension: 3, bodies: vec![body], ..Default::default() };
+        let view = View::fit([&picture]).unwrap();
+        let camera = Camera::new(&view, 800.0, 600.0);
+        for corner in 0..8 {
+            let point =
+                std::array::from_fn(|axis| if corner >> axis & 1 == 0 { view.low[axis] } else { view.high[axis] });
+            let [x, y] = camera.see(point).unwrap().pixel;
+            assert!((0.0..800.0).contains(&x) && (0.0..600.0).contains(&y), "{x} {y}");
+        }
+        assert!(camera.see(along(camera.place, camera.axes[2], -1.0)).is_none());
+    }
+}

@@ -1,0 +1,202 @@
+//! Floors and walls without an end, and the shadows on a floor.
+
+use super::camera::{Camera, Seen, along, between, cross, dot, unit};
+use super::raster::{Cover, Screen, line_triangles};
+use crate::colour::mix;
+use crate::view::View;
+
+/// The two colours of the squares of a floor.
+const SQUARES: [[u8; 3]; 2] = [[238, 240, 243], [224, 227, 232]];
+/// How dark a shadow is.
+const SHADOW: f64 = 0.36;
+
+/// A plane which looks to the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plane {
+    /// A point of the plane [m].
+    pub(crate) point: [f64; 3],
+    /// The direction out of the obstacle, with the length one.
+    pub(crate) normal: [f64; 3],
+}
+
+/// The parts of a screen which lie in a shadow.
+pub(crate) struct Shadow {
+    /// How much each sample is in the shadow, from 0 to 255.
+    shade: Vec<u8>,
+    /// The first and the last column and row with a shadow, the last ones not included.
+    span: [usize; 4],
+    /// The direction towards the light.
+    light: [f64; 3],
+    /// The plane on which the shadow falls.
+    plane: Plane,
+}
+
+impl Plane {
+    /// Whether the plane is a floor.
+    pub(crate) fn is_floor(&self) -> bool {
+        self.normal[1] > 0.6
+    }
+
+    /// The height of a point over the plane.
+    fn height(&self, point: [f64; 3]) -> f64 {
+        dot(self.normal, between(self.point, point))
+    }
+}
+
+impl Shadow {
+    /// A shadow of nothing.
+    pub(crate) fn new(screen: &Screen, plane: Plane, light: [f64; 3]) -> Shadow {
+        let span = [screen.width, 0, screen.height, 0];
+        Shadow { shade: vec![0; screen.width * screen.height], span, light, plane }
+    }
+
+    /// Where the shadow of a point is seen.
+    fn cast(&self, camera: &Camera, point: [f64; 3]) -> Option<Seen> {
+        let height = self.plane.height(point).max(0.0);
+        camera.see(along(point, self.light, -height / dot(self.light, self.plane.normal)))
+    }
+
+    /// Adds the shadow of a triangle.
+    fn cover(&mut self, screen: &Screen, corners: [Seen; 3]) {
+        let Some(cover) = Cover::new(corners, screen.width, screen.height) else { return };
+        let span = cover.span();
+        for side in [0, 2] {
+            self.span[side] = self.span[side].min(span[side]);
+            self.span[side + 1] = self.span[side + 1].max(span[side + 1]);
+        }
+        let shade = &mut self.shade;
+        cover.each(screen.width, |place, _| shade[place] = 255);
+    }
+
+    /// Adds the shadows of triangles.
+    pub(crate) fn triangles(
+        &mut self,
+        screen: &Screen,
+        camera: &Camera,
+        positions: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+    ) {
+        let seen: Vec<Option<Seen>> = positions.iter().map(|&position| self.cast(camera, position)).collect();
+        for triangle in triangles {
+            if let [Some(a), Some(b), Some(c)] = triangle.map(|node| seen[node as usize]) {
+                self.cover(screen, [a, b, c]);
+            }
+        }
+    }
+
+    /// Adds the shadow of a line with a width in samples.
+    pub(crate) fn line(&mut self, screen: &Screen, camera: &Camera, ends: [[f64; 3]; 2], width: f32) {
+        if let [Some(from), Some(to)] = ends.map(|end| self.cast(camera, end)) {
+            line_triangles([from, to], width).into_iter().for_each(|corners| self.cover(screen, corners));
+        }
+    }
+
+    /// Softens the edge of the shadow.
+    pub(crate) fn soften(&mut self, screen: &Screen, radius: usize) {
+        let grown = [
+            self.span[0].saturating_sub(2 * radius),
+            (self.span[1] + 2 * radius).min(screen.width),
+            self.span[2].saturating_sub(2 * radius),
+            (self.span[3] + 2 * radius).min(screen.height),
+        ];
+        let [left, right, top, bottom] = grown;
+        if left >= right || top >= bottom || radius == 0 {
+            return;
+        }
+        self.span = grown;
+        let mut sums: Vec<u32> = Vec::new();
+        for _ in 0..2 {
+            for row in top..bottom {
+                slide(&mut self.shade[row * screen.width + left..row * screen.width + right], radius, &mut sums);
+            }
+            let mut column = vec![0; bottom - top];
+            for x in left..right {
+                for (place, value) in column.iter_mut().enumerate() {
+                    *value = self.shade[(top + place) * screen.width + x];
+                }
+                slide(&mut column, radius, &mut sums);
+                for (place, value) in column.iter().enumerate() {
+                    self.shade[(top + place) * screen.width + x] = *value;
+                }
+            }
+        }
+    }
+
+    /// How much a sample is in the shadow.
+    fn at(&self, place: usize) -> f64 {
+        f64::from(self.shade[place]) / 255.0
+    }
+}
+
+/// Replaces each value by the mean of its neighbours up to a radius.
+fn slide(values: &mut [u8], radius: usize, sums: &mut Vec<u32>) {
+    sums.clear();
+    sums.push(0);
+    let mut sum = 0;
+    for &value in values.iter() {
+        sum += u32::from(value);
+        sums.push(sum);
+    }
+    let count = values.len();
+    let window = (2 * radius + 1) as u32;
+    for (place, value) in values.iter_mut().enumerate() {
+        let (first, last) = (place.saturating_sub(radius), (place + radius + 1).min(count));
+        *value = ((sums[last] - sums[first]) / window) as u8;
+    }
+}
+
+/// Draws a plane with squares which fade with the distance.
+pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Plane, shadow: Option<&Shadow>) {
+    let height = plane.height(camera.place);
+    if height <= 1e-9 {
+        return;
+    }
+    let extent = view.extent();
+    let square = crate::ticks::nice_length(0.3 * extent);
+    let first = unit(if plane.normal[0].abs() < 0.9 {
+        along([1.0, 0.0, 0.0], plane.normal, -plane.normal[0])
+    } else {
+        along([0.0, 0.0, 1.0], plane.normal, -plane.normal[2])
+    });
+    let second = cross(plane.normal, first);
+    let center = along(view.center(), plane.normal, -plane.height(view.center()));
+    let middle = [dot(first, between(plane.point, center)), dot(second, between(plane.point, center))];
+    let start = between(plane.point, camera.place);
+    let start = [dot(first, start), dot(second, start)];
+    let background = *screen.colours.first().unwrap_or(&[255; 3]);
+    let step = along([0.0; 3], camera.axes[0], 1.0 / camera.focus);
+    let sink = -dot(plane.normal, step);
+    let (fade_from, fade_over) = (0.9 * extent, 2.4 * extent);
+    let strength = if plane.is_floor() { 1.0 } else { 0.45 };
+    let seen = |place: usize| shadow.filter(|_| plane.is_floor()).map_or(0.0, |shadow| shadow.at(place));
+    for row in 0..screen.height {
+        let up = (camera.middle[1] - row as f64 - 0.5) / camera.focus;
+        let ray =
+            along(along(camera.axes[2], camera.axes[1], up), camera.axes[0], (0.5 - camera.middle[0]) / camera.focus);
+        let base = -dot(plane.normal, ray);
+        let (ray_first, step_first) = (dot(first, ray), dot(first, step));
+        let (ray_second, step_second) = (dot(second, ray), dot(second, step));
+        for column in 0..screen.width {
+            let x = column as f64;
+            let fall = base + x * sink;
+            if fall <= 1e-6 {
+                continue;
+            }
+            let distance = height / fall;
+            let u = start[0] + distance * (ray_first + x * step_first);
+            let v = start[1] + distance * (ray_second + x * step_second);
+            let away = ((u - middle[0]).powi(2) + (v - middle[1]).powi(2)).sqrt();
+            let fade = 1.0 - ((away - fade_from) / fade_over).clamp(0.0, 1.0);
+            let place = row * screen.width + column;
+            let near = (fall / height) as f32;
+            if fade <= 0.0 || near <= screen.near[place] {
+                continue;
+            }
+            let odd = ((u / square).floor() + (v / square).floor()) as i64 & 1;
+            let tone = mix(background, SQUARES[odd as usize], fade * fade * (3.0 - 2.0 * fade) * strength);
+            let dark = SHADOW * seen(place);
+            screen.colours[place] = if dark > 0.0 { mix(tone, [40, 46, 62], dark) } else { tone };
+            screen.near[place] = near * 0.9995;
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Light on the triangles of a surface.
+
+use super::camera::{Camera, Seen, between, cross, dot, unit};
+use super::raster::Screen;
+use crate::colour::ColourMap;
+
+/// The cosine of the angle between faces beyond which an edge is sharp.
+const SHARP: f64 = 0.55;
+
+/// The light of a scene, in the directions of the camera.
+pub(crate) struct Light {
+    /// The direction towards the light in the world.
+    pub(crate) world: [f64; 3],
+    /// The direction towards the light, as the camera sees it.
+    towards: [f32; 3],
+    /// The upward direction, as the camera sees it.
+    up: [f32; 3],
+}
+
+impl Light {
+    /// A light from above, from the left and a little from behind the camera.
+    pub(crate) fn new(camera: &Camera) -> Light {
+        let flat = unit([camera.axes[2][0], 0.0, camera.axes[2][2]]);
+        let world =
+            unit(std::array::from_fn(|axis| [0.0, 1.0, 0.0][axis] - 0.42 * camera.axes[0][axis] - 0.38 * flat[axis]));
+        let turned = |direction: [f64; 3]| camera.turn(direction).map(|value| value as f32);
+        Light { world, towards: turned(world), up: turned([0.0, 1.0, 0.0]) }
+    }
+}
+
+/// A surface to be filled.
+pub(crate) struct Surface<'a> {
+    /// The corners.
+    pub(crate) positions: &'a [[f64; 3]],
+    /// The triangles.
+    pub(crate) triangles: &'a [[u32; 3]],
+    /// Whether the light runs evenly over blunt edges.
+    pub(crate) smooth: bool,
+}
+
+/// The colour of a surface before the light.
+pub(crate) enum Colouring<'a> {
+    /// The same everywhere.
+    Plain([u8; 3]),
+    /// From a place on a colour map at each corner.
+    Mapped {
+        /// The colours of the map.
+        colours: Vec<[u8; 3]>,
+        /// The places of the corners, from 0 to 1.
+        places: &'a [f32],
+    },
+}
+
+impl<'a> Colouring<'a> {
+    /// The colours of a map at places.
+    pub(crate) fn mapped(map: ColourMap, places: &'a [f32]) -> Colouring<'a> {
+        let colours = (0..256).map(|step| map.colour(f64::from(step) / 255.0)).collect();
+        Colouring::Mapped { colours, places }
+    }
+}
+
+/// Fills a surface.
+pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface: &Surface, colouring: &Colouring) {
+    let Surface { positions, triangles, smooth } = *surface;
+    let seen: Vec<Option<Seen>> = positions.iter().map(|&position| camera.see(position)).collect();
+    let faces: Vec<[f64; 3]> = triangles
+        .iter()
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|node| positions[node as usize]);
+            cross(between(a, b), between(a, c))
+        })
+        .collect();
+    let mut normals = vec![[0.0_f64; 3]; positions.len()];
+    for (triangle, face) in triangles.iter().zip(&faces) {
+        for &node in triangle {
+            for axis in 0..3 {
+                normals[node as usize][axis] += face[axis];
+            }
+        }
+    }
+    normals.iter_mut().for_each(|normal| *normal = unit(*normal));
+    for (triangle, &face) in triangles.iter().zip(&faces) {
+        let [Some(a), Some(b), Some(c)] = triangle.map(|node| seen[node as usize]) else { continue };
+        let face = unit(face);
+        let towards = between(positions[triangle[0] as usize], camera.place);
+        let sign = if dot(face, towards) < 0.0 { -1.0 } else { 1.0 };
+        let corners = triangle.map(|node| {
+            let normal = normals[node as usize];
+            let chosen = if smooth && dot(normal, face) > SHARP { normal } else { face };
+            camera.turn(chosen).map(|value| (sign * value) as f32)
+        });
+        let shine = |weights: [f32; 3]| {
+            let normal: [f32; 3] =
+                std::array::from_fn(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum());
+            light.on(normal)
+        };
+        match colouring {
+            Colouring::Plain(colour) => screen.triangle([a, b, c], |weights| lit(*colour, shine(weights))),
+            Colouring::Mapped { colours, places } => {
+                let places = triangle.map(|node| places[node as usize]);
+                screen.triangle([a, b, c], |weights| {
+                    let place: f32 = (0..3).map(|corner| weights[corner] * places[corner]).sum();
+                    let step = (place.clamp(0.0, 1.0) * 255.0 + 0.5) as usize;
+                    lit(colours[step.min(255)], shine(weights))
+                });
+            }
+        }
+    }
+}
+
+impl Light {
+    /// The brightness and the gloss of a normal, as the camera sees it.
+    #[inline(always)]
+    fn on(&self, normal: [f32; 3]) -> [f32; 2] {
+        let product = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let scale = 1.0 / product(normal, normal).sqrt().max(1e-12);
+        let sun = (product(normal, self.towards) * scale).max(0.0);
+        let sky = 0.5 + 0.5 * product(normal, self.up) * scale;
+        // The mirror direction lies half way between the light and the camera.
+        let half = [self.towards[0], self.towards[1], self.towards[2] - 1.0];
+        let mirror = (product(normal, half) * scale / product(half, half).sqrt()).max(0.0);
+        let mut gloss = mirror * mirror;
+        gloss *= gloss;
+        gloss *= gloss;
+        gloss *= gloss;
+        [0.46 + 0.20 * sky + 0.40 * sun, 0.16 * gloss * gloss]
+    }
+}
+
+/// A colour in some light.
+#[inline(always)]
+fn lit(colour: [u8; 3], [brightness, gloss]: [f32; 2]) -> [u8; 3] {
+    colour.map(|channel| {
+        let value = f32::from(channel) * brightness;
+        (value + (255.0 - value) * gloss).clamp(0.0, 255.0) as u8
+    })
+}

@@ -1,0 +1,184 @@
+//! `[[load]]`, `[[command]]` and `[[probe]]`.
+
+use super::{BODY, Child, Holds, Section, child, field, section};
+use opruga_core::spec::{Allowed, Default, Field};
+
+const CURVE: Field = field(
+    "curve",
+    Allowed::Curve,
+    "s, 1",
+    Default::Absent,
+    "A factor over time, linear between its rows; 1 where the scene is silent.",
+);
+const LOAD_CHILDREN: &[Child] = &[
+    child("body", Holds::BodyReference, true, "The body."),
+    child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+];
+
+/// `[[load]]`, by `kind`.
+pub const LOADS: &[Section] = &[
+    Section {
+        spec: &section(
+            "force",
+            "The same force on every selected node",
+            "",
+            &[field("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "traction",
+            "A force per area of the boundary at rest",
+            "It is spread over the facets of the boundary all of whose nodes are selected.",
+            &[field("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "pressure",
+            "A pressure on the boundary, along its present inner normal",
+            "It acts on the facets of the boundary all of whose nodes are selected.",
+            &[field("value", Allowed::ANY, "Pa", Default::Required, "The pressure; positive presses inwards."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
+];
+
+const AT: Field = field("at", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it begins.");
+const UNTIL: Field = field("until", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it ends.");
+
+/// `[[command]]`, by `do`.
+pub const COMMANDS: &[Section] = &[
+    Section {
+        spec: &section(
+            "drag",
+            "Pull a node toward a moving pointer by a critically damped spring",
+            "",
+            &[
+                AT,
+                field(
+                    "until",
+                    Allowed::NOT_NEGATIVE,
+                    "s",
+                    Default::Absent,
+                    "When it ends; the end of the path where the scene is silent.",
+                ),
+                field("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
+                field(
+                    "stiffness",
+                    Allowed::POSITIVE,
+                    "N/m",
+                    Default::Absent,
+                    "Stiffness of the spring; chosen from the body where the scene is silent.",
+                ),
+                field(
+                    "largest_force",
+                    Allowed::POSITIVE,
+                    "N",
+                    Default::Absent,
+                    "The largest force; every time it acts is counted.",
+                ),
+            ],
+        ),
+        children: &[
+            child("body", Holds::BodyReference, true, "The body."),
+            child(
+                "node",
+                Holds::Node,
+                false,
+                "What is held: a node, the node nearest to the pointer at the beginning (so too where the scene is silent), or the nearest point of a facet.",
+            ),
+        ],
+    },
+    Section {
+        spec: &section(
+            "push",
+            "A force on nodes",
+            "",
+            &[AT, UNTIL, field("force", Allowed::Vector, "N", Default::Required, "The force on every node.")],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "pin",
+            "Hold nodes where they are at the beginning",
+            "",
+            &[
+                AT,
+                UNTIL,
+                field(
+                    "axes",
+                    Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
+                    "",
+                    Default::Absent,
+                    "The axes that are held; all where the scene is silent.",
+                ),
+            ],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
+            "set",
+            "Change a parameter",
+            "",
+            &[
+                AT,
+                field(
+                    "path",
+                    Allowed::Text,
+                    "",
+                    Default::Required,
+                    "The parameter: `body.NAME.models.KIND.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                ),
+            ],
+        ),
+        children: &[child("value", Holds::AnyValue, true, "Its new value.")],
+    },
+    Section {
+        spec: &section("add", "Add a body", "", &[AT]),
+        children: &[child("body", Holds::Table(&BODY), true, "The body, as in `[[body]]`, without copies.")],
+    },
+    Section {
+        spec: &section(
+            "remove",
+            "Take a body away",
+            "",
+            &[
+                AT,
+                field(
+                    "body",
+                    Allowed::Text,
+                    "",
+                    Default::Required,
+                    "The name of the body, of the scene or added before.",
+                ),
+            ],
+        ),
+        children: &[],
+    },
+];
+
+/// `[[probe]]`.
+pub const PROBE: Section = Section {
+    spec: &section(
+        "probe",
+        "Columns of diagnostics.csv that follow nodes",
+        "Of positions and velocities the mean over the nodes is written, of reactions the sum.",
+        &[field(
+            "name",
+            Allowed::Text,
+            "",
+            Default::Required,
+            "The first part of the names of its columns, unique in the scene.",
+        )],
+    ),
+    children: &[
+        child("body", Holds::BodyReference, true, "The body."),
+        child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+        child("record", Holds::Words(&["position", "velocity", "reaction"]), true, "What is written down."),
+    ],
+};
