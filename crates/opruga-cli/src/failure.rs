@@ -17,8 +17,10 @@ pub(crate) enum Failure {
     Write(WriteError),
     /// A checkpoint cannot be read.
     Checkpoint { error: CheckpointError, file: String },
-    /// A file cannot be drawn or encoded.
+    /// A picture cannot be drawn or encoded.
     Draw(String),
+    /// stdout, or a folder for the output, cannot be written.
+    Output(String),
     /// The call makes no sense.
     Call { message: String, hint: Option<String> },
     /// Ctrl-C or a signal to end; the files are closed.
@@ -51,7 +53,7 @@ impl Failure {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),
             Failure::World { error: WorldError::Diverged { .. } | WorldError::Step { .. }, .. } => 3,
             Failure::World { .. } | Failure::Call { .. } => 2,
-            Failure::Write(_) | Failure::Draw(_) => 4,
+            Failure::Write(_) | Failure::Draw(_) | Failure::Output(_) => 4,
             Failure::Checkpoint { .. } => 2,
             Failure::Interrupted => 130,
             Failure::ClosedPipe => 0,
@@ -76,6 +78,7 @@ impl Failure {
             Failure::Write(error) => error.to_json(),
             Failure::Checkpoint { error, file } => error.to_json(file),
             Failure::Draw(message) => plain("draw.failed", message.clone(), "", None),
+            Failure::Output(message) => plain("write.failed", message.clone(), "", None),
             Failure::Call { message, hint } => plain("call", message.clone(), "", hint.as_deref()),
             Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), "", None),
             Failure::ClosedPipe => Value::Null,
@@ -101,6 +104,7 @@ impl Failure {
             Failure::Write(error) => writeln!(err, "{error}"),
             Failure::Checkpoint { error, file } => writeln!(err, "{file}: error[{}]: {error}", error.code()),
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
+            Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
             Failure::Call { message, hint } => {
                 let _ = writeln!(err, "error: {message}");
                 hint.as_ref().map_or(Ok(()), |h| writeln!(err, "hint: {h}"))
@@ -118,6 +122,6 @@ pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
-        Err(e) => Err(Failure::Call { message: format!("stdout cannot be written: {e}"), hint: None }),
+        Err(e) => Err(Failure::Output(format!("stdout cannot be written: {e}"))),
     }
 }

@@ -92,7 +92,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         None => {
             let parent = PathBuf::from("out");
             if !parent.exists() {
-                let failed = |e: std::io::Error| Failure::call(format!("the folder `out` cannot be made: {e}"));
+                let failed = |e: std::io::Error| Failure::Output(format!("the folder `out` cannot be made: {e}"));
                 std::fs::create_dir(&parent).map_err(failed)?;
             }
             parent.join(&source.name)

@@ -1,6 +1,7 @@
 //! The language of Opruga: what models, integrators and obstacles are to one another.
 
 pub mod accumulator;
+pub mod check;
 pub mod contacts;
 pub mod error;
 pub mod integrator;
@@ -9,5 +10,6 @@ pub mod potential;
 pub mod spec;
 pub mod stability;
 pub mod state;
+pub mod stencil;
 pub mod system;
 pub mod tile;

@@ -1,0 +1,193 @@
+//! The program as its users meet it: files, exit codes, errors, interruption.
+#![allow(clippy::disallowed_methods)] // no physics here
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn opruga(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_opruga")).args(arguments).current_dir(folder).output().expect("the program runs")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_run_writes_every_file_and_its_summary_keeps_the_contract() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = opruga(folder.path(), &["run", "pressures", "--seconds", "0.5", "--out", "o", "--json"]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
+    for key in [
+        "schema", "scene", "dimension", "bodies", "nodes", "elements", "models", "integrator", "frame", "substeps", "h",
+        "steps", "time", "wall_seconds", "nanoseconds_per_node_step", "simd", "threads", "reproducibility", "energy",
+        "momentum", "state_hash", "warnings", "files",
+    ] {
+        assert!(summary.get(key).is_some(), "summary.json lacks {key}");
+    }
+    for key in [
+        "kinetic", "elastic", "gas", "gravity", "work_user", "loss_damping", "loss_friction", "loss_contact",
+        "loss_integrator", "closure",
+    ] {
+        assert!(summary["energy"][key].is_number(), "energy lacks {key}");
+    }
+    assert_eq!(summary["schema"], 1);
+    assert_eq!(summary["nodes"], 144);
+    assert_eq!(summary["state_hash"].as_str().expect("a text").len(), 16);
+    for file in summary["files"].as_array().expect("a list") {
+        let path = folder.path().join("o").join(file.as_str().expect("a name"));
+        assert!(path.metadata().expect("the file is there").len() > 0, "{}", path.display());
+    }
+    let table = std::fs::read_to_string(folder.path().join("o/diagnostics.csv")).expect("a table");
+    assert_eq!(table.lines().count(), 1 + 31, "a head, the start and thirty frames");
+    let last = std::fs::read_to_string(folder.path().join("o/final.csv")).expect("a table");
+    assert_eq!(last.lines().next(), Some("body,node,x,y,vx,vy"));
+    assert_eq!(last.lines().count(), 1 + 144);
+}
+
+#[test]
+fn zero_seconds_write_the_state_at_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = opruga(folder.path(), &["run", "pressures", "--seconds", "0", "--out", "o", "--no-pictures"]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let last = std::fs::read_to_string(folder.path().join("o/final.csv")).expect("a table");
+    let first = last.lines().nth(1).expect("a row");
+    let cells: Vec<&str> = first.split(',').collect();
+    assert_eq!(cells[0], "soft");
+    assert_eq!(cells[2].parse::<f64>(), Ok(0.5), "node 0 starts on the right");
+}
+
+#[test]
+fn a_resumed_run_ends_with_the_bits_of_an_uninterrupted_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let hash = |arguments: &[&str]| {
+        let output = opruga(folder.path(), arguments);
+        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+        let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
+        summary["state_hash"].as_str().expect("a text").to_string()
+    };
+    let set = "time.substeps=48";
+    let whole = hash(&["run", "pressures", "--seconds", "1", "--out", "a", "--no-pictures", "--json", "--set", set]);
+    hash(&["run", "pressures", "--seconds", "0.5", "--out", "b", "--no-pictures", "--json", "--set", set]);
+    let resume = ["run", "--resume", "b/checkpoint", "--seconds", "1", "--out", "c", "--no-pictures", "--json"];
+    assert_eq!(hash(&resume), whole);
+    let threads = ["run", "--resume", "b/checkpoint", "--seconds", "1", "--out", "d", "--no-pictures", "--json", "--threads", "3"];
+    assert_eq!(hash(&threads), whole);
+}
+
+#[test]
+fn errors_have_their_exit_codes_and_leave_old_files_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |arguments: &[&str]| opruga(folder.path(), arguments);
+    std::fs::write(folder.path().join("bad.toml"), "format = \"opruga-1\"\ndimension = 2\nstifness = 3\n").expect("a file");
+    let bad = at(&["run", "bad.toml", "--out", "o"]);
+    assert_eq!(code(&bad), 2);
+    assert!(text(&bad.stderr).contains("bad.toml:3:1"), "{}", text(&bad.stderr));
+    let json = at(&["check", "bad.toml", "--json"]);
+    assert_eq!(code(&json), 2);
+    let error: Value = serde_json::from_slice(&json.stderr).expect("stderr is JSON");
+    for key in ["code", "message", "file", "line", "column", "path", "value", "allowed", "hint"] {
+        assert!(error.get(key).is_some(), "the error lacks {key}");
+    }
+    assert_eq!(code(&at(&["run", "nothing-of-that-name"])), 4);
+    assert!(text(&at(&["run", "presures"]).stderr).contains("did you mean `pressures`"));
+    assert_eq!(code(&at(&["run", "--fps", "-3"])), 2);
+    assert_eq!(code(&at(&["run", "--threads", "0"])), 2);
+    assert_eq!(code(&at(&["run", "--threads", "257"])), 2);
+    assert_eq!(code(&at(&["bananas"])), 2);
+    assert_eq!(code(&at(&["--help"])), 0);
+    assert_eq!(code(&at(&["--version"])), 0);
+
+    assert_eq!(code(&at(&["run", "pressures", "--seconds", "0.1", "--out", "o", "--no-pictures"])), 0);
+    let before = std::fs::read(folder.path().join("o/final.csv")).expect("a file");
+    let again = at(&["run", "pressures", "--seconds", "0.2", "--out", "o", "--no-pictures"]);
+    assert_eq!(code(&again), 4);
+    assert!(text(&again.stderr).contains("--force"), "{}", text(&again.stderr));
+    assert_eq!(std::fs::read(folder.path().join("o/final.csv")).expect("a file"), before);
+    let unstable = at(&["run", "pressures", "--set", "time.substeps=1", "--out", "u", "--no-pictures"]);
+    assert_eq!(code(&unstable), 2);
+    assert!(text(&unstable.stderr).contains("substeps >="), "{}", text(&unstable.stderr));
+    let diverged = at(&[
+        "run", "pressures", "--set", "time.substeps=1", "--out", "v", "--no-pictures", "--allow-unstable",
+    ]);
+    assert_eq!(code(&diverged), 3);
+    assert!(text(&diverged.stderr).contains("node"), "{}", text(&diverged.stderr));
+}
+
+#[test]
+fn a_new_scene_runs_and_is_not_overwritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(code(&opruga(folder.path(), &["new", "mine"])), 0);
+    assert_eq!(code(&opruga(folder.path(), &["check", "mine.toml"])), 0);
+    assert_eq!(code(&opruga(folder.path(), &["new", "mine"])), 4);
+    let run = opruga(folder.path(), &["run", "mine.toml", "--seconds", "0.2", "--out", "o"]);
+    assert_eq!(code(&run), 0, "{}", text(&run.stderr));
+}
+
+#[test]
+fn lists_and_references_are_data_on_stdout() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let list = opruga(folder.path(), &["list", "--json"]);
+    let value: Value = serde_json::from_slice(&list.stdout).expect("JSON");
+    let kinds = |section: &str| value[section].as_array().expect("a list").len();
+    assert!(kinds("models") >= 2 && kinds("integrators") >= 5 && kinds("shapes") >= 7 && kinds("scenes") >= 10);
+    let reference = text(&opruga(folder.path(), &["reference"]).stdout);
+    assert!(reference.contains("mass_spring") && reference.contains("nRT"));
+    let schema = opruga(folder.path(), &["reference", "--schema"]);
+    let schema: Value = serde_json::from_slice(&schema.stdout).expect("JSON");
+    assert!(schema["$schema"].as_str().is_some_and(|s| s.contains("2020-12")));
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_opruga"))
+        .arg("reference")
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    drop(child.stdout.take());
+    let status = child.wait_with_output().expect("it ends");
+    assert_eq!(status.status.code(), Some(0));
+    assert!(!text(&status.stderr).contains("panicked"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_closes_its_files_and_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let child = Command::new(env!("CARGO_BIN_EXE_opruga"))
+        .args(["run", "thousand-balls", "--seconds", "1000", "--out", "o", "--no-pictures"])
+        .current_dir(folder.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    for file in ["summary.json", "final.csv", "diagnostics.csv", "checkpoint"] {
+        assert!(folder.path().join("o").join(file).metadata().is_ok_and(|m| m.len() > 0), "{file}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error_of_writing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
+    let output = Command::new(env!("CARGO_BIN_EXE_opruga"))
+        .args(["reference"])
+        .current_dir(folder.path())
+        .stdout(full)
+        .output()
+        .expect("the program runs");
+    assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
+}

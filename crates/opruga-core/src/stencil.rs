@@ -1,0 +1,531 @@
+//! Models made of stencils: few nodes each, one formula for all of them.
+//!
+//! A [`Kernel`] is the energy of one stencil of N nodes with its gradient, written once over [`Lane`]. [`Stencils`]
+//! lifts it to a [`Potential`] of a whole body, or of eight alike ones:
+//!
+//! ```text
+//! elements, sorted by their lowest node      0 1 2 3 4 5 6 7 …     eight at a time through the kernel
+//!                                            │ │ │ │ │ │ │ │
+//! slots: the force on each node of each      ▼ ▼ ▼ ▼ ▼ ▼ ▼ ▼
+//!                                             \│/     \│/
+//! nodes: slots by ascending element, corner    ●       ●           added up one after the other
+//! ```
+//!
+//! Every tile evaluates all elements that touch it (those across its border are evaluated by both tiles). So a node
+//! receives the same numbers in the same order whatever the tiles and the layout: its force has the same bits.
+
+mod dual;
+
+pub use dual::Dual;
+
+use crate::potential::{Definiteness, Potential, Sink, Views};
+use crate::state::{At, Layout, OrderedSum, Parameter, View};
+use crate::tile::{TILE, Tile};
+use core::fmt::Debug;
+use core::marker::PhantomData;
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+
+/// The blocks ∂²U/∂xₐ∂x_b of a stencil, `[a][b]` with rows i and columns j of the coordinates.
+pub type Blocks<const D: usize, const N: usize> = [[[[f64; D]; D]; N]; N];
+
+/// The law of one stencil of N nodes in D dimensions with K parameters.
+///
+/// Formulas are straight code over [`Lane`], without closures and without branches on values ([`Lane::select`]); methods
+/// should be `#[inline(always)]`, so that they become vector code inside of the loops here.
+pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug + Send + Sync + 'static {
+    /// The word that names the model.
+    const NAME: &'static str;
+    /// The energy U [J].
+    fn energy<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> S;
+    /// ∂U/∂x of every node [N].
+    fn gradient<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> [[S; D]; N];
+    /// The force of damping on every node [N] and the power that it takes [W]; asked only where the model is damped.
+    #[inline(always)]
+    fn damping<S: Lane>(_parameters: &[S; K], _x: &[[S; D]; N], _v: &[[S; D]; N]) -> ([[S; D]; N], S) {
+        ([[S::zero(); D]; N], S::zero())
+    }
+    /// ∂²U/∂x∂x; as it stands, the exact derivative of [`Kernel::gradient`] by dual numbers.
+    fn hessian(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
+        let constants = parameters.map(Dual::constant);
+        let mut at = x.map(|node| node.map(Dual::constant));
+        let mut out = [[[[0.0; D]; D]; N]; N];
+        for b in 0..N {
+            for j in 0..D {
+                at[b][j].slope = 1.0;
+                let slope = Self::gradient(&constants, &at);
+                at[b][j].slope = 0.0;
+                for a in 0..N {
+                    for i in 0..D {
+                        out[a][b][i][j] = slope[a][i].slope;
+                    }
+                }
+            }
+        }
+        out
+    }
+}
+
+/// All stencils of one kernel on one body, or on eight alike ones.
+#[derive(Debug)]
+pub struct Stencils<L, const N: usize, const K: usize> {
+    kernel: PhantomData<L>,
+    layout: Layout,
+    nodes: usize,
+    /// Nodes of each element; elements ascend by lowest node, then as rows.
+    elements: Vec<[u32; N]>,
+    parameters: [Parameter; K],
+    damped: bool,
+    /// Where the elements of each block of [`TILE`] places begin in `list`, and where the last ends.
+    blocks: Vec<u32>,
+    /// Elements that touch a block, ascending; for one body filled up to whole packs with its last element.
+    list: Vec<u32>,
+    /// For each pack of `list`: whether elements and all of their nodes are eight neighbours.
+    straight: Vec<bool>,
+    /// Where the slots of each node begin in `share`, and where the last ends.
+    share_start: Vec<u32>,
+    /// The slots that a node adds up: local node (upper bits) and place in the list of its block (lower bits).
+    share: Vec<u32>,
+}
+
+/// Bits of a share that hold the place in the list.
+const SHARE_BITS: u32 = 28;
+
+impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
+    /// Lays out stencils; `parameters` gives those of an element (by its number in `elements`) of a body.
+    ///
+    /// `damped` says whether [`Kernel::damping`] is asked.
+    pub fn new(
+        layout: Layout,
+        nodes: usize,
+        elements: &[[u32; N]],
+        damped: bool,
+        mut parameters: impl FnMut(usize, usize) -> [f64; K],
+    ) -> Stencils<L, N, K> {
+        assert!(N < 1 << (32 - SHARE_BITS), "a stencil has at most 15 nodes");
+        let lowest = |e: &[u32; N]| e.iter().copied().min().unwrap_or(0);
+        let mut order: Vec<u32> = (0..elements.len() as u32).collect();
+        order.sort_by_key(|&e| (lowest(&elements[e as usize]), elements[e as usize], e));
+        let sorted: Vec<[u32; N]> = order.iter().map(|&e| elements[e as usize]).collect();
+        let parameters = core::array::from_fn(|k| {
+            Parameter::from_items(layout, order.len(), |element, body| parameters(order[element] as usize, body)[k])
+        });
+
+        // Elements of every block, and of every node the slots in the block that the node lies in.
+        let block_nodes = TILE / layout.stride();
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); nodes.div_ceil(block_nodes)];
+        let mut share_start = vec![0u32; nodes + 1];
+        for (number, element) in sorted.iter().enumerate() {
+            for &node in element {
+                share_start[node as usize + 1] += 1;
+                let list = &mut lists[node as usize / block_nodes];
+                if list.last() != Some(&(number as u32)) {
+                    list.push(number as u32);
+                }
+            }
+        }
+        for node in 0..nodes {
+            share_start[node + 1] += share_start[node];
+        }
+        let mut next = share_start.clone();
+        let mut share = vec![0u32; share_start[nodes] as usize];
+        for (block, list) in lists.iter().enumerate() {
+            for (k, &element) in list.iter().enumerate() {
+                for (local, &node) in sorted[element as usize].iter().enumerate() {
+                    if node as usize / block_nodes == block {
+                        share[next[node as usize] as usize] = (local as u32) << SHARE_BITS | k as u32;
+                        next[node as usize] += 1;
+                    }
+                }
+            }
+        }
+
+        // One list for all blocks.
+        let mut blocks = vec![0u32];
+        let mut list = Vec::new();
+        for part in lists {
+            list.extend_from_slice(&part);
+            if let (Layout::Single, Some(&last)) = (layout, part.last()) {
+                list.resize(list.len().next_multiple_of(WIDTH), last);
+            }
+            blocks.push(list.len() as u32);
+        }
+        let mut straight = Vec::new();
+        if layout == Layout::Single {
+            for pack in list.chunks(WIDTH) {
+                straight.push(pack.iter().enumerate().all(|(l, &element)| {
+                    let (first, this) = (&sorted[pack[0] as usize], &sorted[element as usize]);
+                    element == pack[0] + l as u32 && (0..N).all(|a| this[a] == first[a] + l as u32)
+                }));
+            }
+        }
+        let kernel = PhantomData;
+        Stencils { kernel, layout, nodes, elements: sorted, parameters, damped, blocks, list, straight, share_start, share }
+    }
+
+    /// Nodes of every element, in the order of evaluation.
+    pub fn elements(&self) -> &[[u32; N]] {
+        &self.elements
+    }
+
+    /// Adds the forces of one block on its nodes in the range of the tile.
+    #[inline(always)]
+    fn add_block<P: Pack, const DAMPED: bool, const D: usize>(&self, block: usize, view: &View<D>, tile: &mut Tile<D>)
+    where
+        L: Kernel<D, N, K>,
+    {
+        let (from, until) = (self.blocks[block] as usize, self.blocks[block + 1] as usize);
+        let count = until - from;
+        let stride = self.layout.stride();
+        if tile.slots.len() < N * D * count * stride {
+            tile.slots.resize(N * D * count * stride, 0.0);
+        }
+        let slots = &mut tile.slots[..N * D * count * stride];
+
+        // Forces of all elements into slots.
+        let step = if self.layout == Layout::Single { WIDTH } else { 1 };
+        for k in (0..count).step_by(step) {
+            let items = &self.list[from + k..from + k + step];
+            let (p, x, v) = match self.layout {
+                Layout::Single if self.straight[(from + k) / WIDTH] => {
+                    self.load::<P, DAMPED, D>(view, self.elements[items[0] as usize], 1, items[0] as usize)
+                }
+                Layout::Single => self.gather::<P, DAMPED, D>(view, items),
+                Layout::Batch => {
+                    self.load::<P, DAMPED, D>(view, self.elements[items[0] as usize], WIDTH, items[0] as usize * WIDTH)
+                }
+            };
+            let gradient = L::gradient::<P>(&p, &x);
+            let mut force = [[P::zero(); D]; N];
+            for a in 0..N {
+                for d in 0..D {
+                    force[a][d] = -gradient[a][d];
+                }
+            }
+            if DAMPED {
+                let (drag, power) = L::damping::<P>(&p, &x, &v);
+                for a in 0..N {
+                    for d in 0..D {
+                        force[a][d] += drag[a][d];
+                    }
+                }
+                // The range of its first node enters the power of an element.
+                let each = power.to_array();
+                for l in 0..WIDTH {
+                    let item = items[l.min(step - 1)];
+                    let filling = step > 1 && l > 0 && item == items[l - 1];
+                    let owner = self.elements[item as usize][0] as usize * stride;
+                    if tile.range.contains(&owner) && !filling {
+                        tile.power[l] += each[l];
+                    }
+                }
+            }
+            for a in 0..N {
+                for d in 0..D {
+                    force[a][d].store(&mut slots[((a * D + d) * count + k) * stride..]);
+                }
+            }
+        }
+
+        // Slots onto nodes.
+        let start = (block * TILE).max(tile.range.start) / stride;
+        let end = ((block + 1) * TILE).min(tile.range.end).div_ceil(stride).min(self.nodes);
+        for node in start..end {
+            let shares = &self.share[self.share_start[node] as usize..self.share_start[node + 1] as usize];
+            let place = node * stride - tile.range.start;
+            for d in 0..D {
+                match self.layout {
+                    Layout::Single => {
+                        let mut sum = tile.force[d][place];
+                        for &share in shares {
+                            let (local, k) = split(share);
+                            sum += slots[(local * D + d) * count + k];
+                        }
+                        tile.force[d][place] = sum;
+                    }
+                    Layout::Batch => {
+                        let mut sum = P::load(&tile.force[d][place..]);
+                        for &share in shares {
+                            let (local, k) = split(share);
+                            sum += P::load(&slots[((local * D + d) * count + k) * WIDTH..]);
+                        }
+                        sum.store(&mut tile.force[d][place..]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Eight neighbouring elements of one body, or one element of eight bodies.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)] // inner part of a loop
+    fn load<P: Pack, const MOVING: bool, const D: usize>(
+        &self,
+        view: &View<D>,
+        nodes: [u32; N],
+        stride: usize,
+        item: usize,
+    ) -> ([P; K], [[P; D]; N], [[P; D]; N]) {
+        let mut p = [P::zero(); K];
+        for k in 0..K {
+            p[k] = self.parameters[k].load(item);
+        }
+        let (mut x, mut v) = ([[P::zero(); D]; N], [[P::zero(); D]; N]);
+        for a in 0..N {
+            let place = nodes[a] as usize * stride;
+            for d in 0..D {
+                x[a][d] = P::load(&view.x[d][place..]);
+                if MOVING {
+                    v[a][d] = P::load(&view.v[d][place..]);
+                }
+            }
+        }
+        (p, x, v)
+    }
+
+    /// Eight elements of one body, wherever they lie.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)] // inner part of a loop
+    fn gather<P: Pack, const MOVING: bool, const D: usize>(
+        &self,
+        view: &View<D>,
+        items: &[u32],
+    ) -> ([P; K], [[P; D]; N], [[P; D]; N]) {
+        let mut places = [[0u32; WIDTH]; N];
+        for l in 0..WIDTH {
+            let nodes = &self.elements[items[l] as usize];
+            for a in 0..N {
+                places[a][l] = nodes[a];
+            }
+        }
+        let mut p = [P::zero(); K];
+        for k in 0..K {
+            p[k] = self.parameters[k].load_at(At::Each(items));
+        }
+        let (mut x, mut v) = ([[P::zero(); D]; N], [[P::zero(); D]; N]);
+        for a in 0..N {
+            for d in 0..D {
+                x[a][d] = P::gather(view.x[d], &places[a]);
+                if MOVING {
+                    v[a][d] = P::gather(view.v[d], &places[a]);
+                }
+            }
+        }
+        (p, x, v)
+    }
+
+    /// The energy of all elements, with bits that do not depend on the layout.
+    #[inline(always)]
+    fn sum<P: Pack, const D: usize>(&self, view: &View<D>) -> P
+    where
+        L: Kernel<D, N, K>,
+    {
+        let mut sum = OrderedSum::<P>::new(self.layout);
+        let count = self.elements.len();
+        match self.layout {
+            Layout::Single => {
+                for k in (0..count).step_by(WIDTH) {
+                    let mut items = [0u32; WIDTH];
+                    for l in 0..WIDTH {
+                        items[l] = (k + l).min(count - 1) as u32;
+                    }
+                    let (p, x, _) = self.gather::<P, false, D>(view, &items);
+                    sum.add(k, count, L::energy::<P>(&p, &x));
+                }
+            }
+            Layout::Batch => {
+                for k in 0..count {
+                    let (p, x, _) = self.load::<P, false, D>(view, self.elements[k], WIDTH, k * WIDTH);
+                    sum.add(k * WIDTH, count * WIDTH, L::energy::<P>(&p, &x));
+                }
+            }
+        }
+        sum.total()
+    }
+}
+
+/// Local node and place in the list of the block.
+#[inline(always)]
+fn split(share: u32) -> (usize, usize) {
+    ((share >> SHARE_BITS) as usize, (share & ((1 << SHARE_BITS) - 1)) as usize)
+}
+
+impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potential<D> for Stencils<L, N, K> {
+    fn name(&self) -> &'static str {
+        L::NAME
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: self.damped }
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        for element in &self.elements {
+            let (mut low, mut high) = (element[0], element[0]);
+            for &node in element {
+                (low, high) = (low.min(node), high.max(node));
+            }
+            visit(low, high);
+        }
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        simd.run(Force { stencils: self, view, tile });
+    }
+    fn energy(&self, simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
+        simd.run(Energy { stencils: self, view })
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        for (number, nodes) in self.elements.iter().enumerate() {
+            for body in 0..self.layout.stride() {
+                let item = self.layout.place(number, body);
+                let parameters = self.parameters.each_ref().map(|p| p.at(item));
+                let places = nodes.map(|n| self.layout.place(n as usize, body));
+                let mut blocks = L::hessian(&parameters, &places.map(|p| view.position(p)));
+                if keep == Definiteness::Clamped {
+                    clamp(&mut blocks);
+                }
+                for a in 0..N {
+                    for b in 0..N {
+                        sink.block(places[a], places[b], blocks[a][b]);
+                    }
+                }
+            }
+        }
+    }
+    fn heap_bytes(&self) -> usize {
+        let numbers = self.blocks.capacity() + self.list.capacity() + self.share_start.capacity() + self.share.capacity();
+        let parameters: usize = self.parameters.iter().map(Parameter::heap_bytes).sum();
+        4 * (numbers + N * self.elements.capacity()) + self.straight.capacity() + parameters
+    }
+}
+
+struct Force<'a, 'b, 'c, L, const D: usize, const N: usize, const K: usize> {
+    stencils: &'a Stencils<L, N, K>,
+    view: &'a View<'a, D>,
+    tile: &'b mut Tile<'c, D>,
+}
+impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work for Force<'_, '_, '_, L, D, N, K> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        self.tile.settle::<P>();
+        let blocks = self.stencils.blocks.len() - 1;
+        let last = self.tile.range.end.div_ceil(TILE).min(blocks);
+        for block in self.tile.range.start / TILE..last {
+            if self.stencils.damped {
+                self.stencils.add_block::<P, true, D>(block, self.view, self.tile);
+            } else {
+                self.stencils.add_block::<P, false, D>(block, self.view, self.tile);
+            }
+        }
+    }
+}
+
+struct Energy<'a, L, const D: usize, const N: usize, const K: usize> {
+    stencils: &'a Stencils<L, N, K>,
+    view: &'a View<'a, D>,
+}
+impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work for Energy<'_, L, D, N, K> {
+    type Output = [f64; WIDTH];
+    #[inline(always)]
+    fn run<P: Pack>(self) -> [f64; WIDTH] {
+        let sum = self.stencils.sum::<P, D>(self.view);
+        let mut out = [0.0; WIDTH];
+        match self.stencils.layout {
+            Layout::Single => out[0] = sum.to_array()[0],
+            Layout::Batch => sum.store(&mut out),
+        }
+        out
+    }
+}
+
+/// The most rows of a stencil's Hessian.
+const MOST_ROWS: usize = 24;
+
+/// Removes the negative eigenvalues of a symmetric block matrix (cyclic Jacobi rotations).
+pub fn clamp<const D: usize, const N: usize>(blocks: &mut Blocks<D, N>) {
+    const { assert!(N * D <= MOST_ROWS, "room for the rows of a stencil") }
+    let rows = N * D;
+    let mut a = [[0.0; MOST_ROWS]; MOST_ROWS];
+    let mut vectors = [[0.0; MOST_ROWS]; MOST_ROWS];
+    for p in 0..rows {
+        for q in 0..rows {
+            a[p][q] = 0.5 * (blocks[p / D][q / D][p % D][q % D] + blocks[q / D][p / D][q % D][p % D]);
+        }
+        vectors[p][p] = 1.0;
+    }
+    for _ in 0..30 {
+        let (mut off, mut all) = (0.0, 0.0);
+        for p in 0..rows {
+            for q in 0..rows {
+                all += a[p][q] * a[p][q];
+                off += if p == q { 0.0 } else { a[p][q] * a[p][q] };
+            }
+        }
+        if off <= 1e-30 * all {
+            break;
+        }
+        for p in 0..rows {
+            for q in p + 1..rows {
+                rotate(&mut a, &mut vectors, rows, p, q);
+            }
+        }
+    }
+    // Sum of λ v vᵀ over the positive eigenvalues.
+    let mut out = [[0.0; MOST_ROWS]; MOST_ROWS];
+    for k in 0..rows {
+        if a[k][k] > 0.0 {
+            for p in 0..rows {
+                for q in 0..rows {
+                    out[p][q] += a[k][k] * vectors[p][k] * vectors[q][k];
+                }
+            }
+        }
+    }
+    for p in 0..rows {
+        for q in 0..rows {
+            blocks[p / D][q / D][p % D][q % D] = out[p][q];
+        }
+    }
+}
+
+type Square = [[f64; MOST_ROWS]; MOST_ROWS];
+
+/// One Jacobi rotation, which makes the entry (p, q) zero.
+fn rotate(a: &mut Square, vectors: &mut Square, rows: usize, p: usize, q: usize) {
+    if a[p][q] == 0.0 {
+        return;
+    }
+    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+    let t = if theta < 0.0 { -1.0 } else { 1.0 } / (theta.abs() + (theta * theta + 1.0).sqrt());
+    let c = 1.0 / (t * t + 1.0).sqrt();
+    let s = t * c;
+    for k in 0..rows {
+        let (x, y) = (a[k][p], a[k][q]);
+        (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+    }
+    for k in 0..rows {
+        let (x, y) = (a[p][k], a[q][k]);
+        (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+        let (x, y) = (vectors[k][p], vectors[k][q]);
+        (vectors[k][p], vectors[k][q]) = (c * x - s * y, s * x + c * y);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The clamped matrix of diag(2, −3) turned by 30° is 2 n nᵀ.
+    #[test]
+    fn clamp_drops_the_negative_eigenvalue() {
+        let (c, s) = (0.75f64.sqrt(), 0.5);
+        let n = [c, s];
+        let m = [-s, c];
+        let entry = |i: usize, j: usize| 2.0 * n[i] * n[j] - 3.0 * m[i] * m[j];
+        let mut blocks: Blocks<2, 1> = [[[[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]]];
+        clamp(&mut blocks);
+        for i in 0..2 {
+            for j in 0..2 {
+                assert!((blocks[0][0][i][j] - 2.0 * n[i] * n[j]).abs() < 1e-14);
+            }
+        }
+    }
+}
