@@ -1,7 +1,7 @@
 //! A collider: a shape, how it moves, and how it answers to touch.
 
 use crate::facets::{Facets, Flaw};
-use crate::motion::Motion;
+use crate::motion::{Frame, Motion};
 use crate::shape::{Ball, Capsule, Cuboid, HalfSpace};
 use crate::vector::{add, dot, identity, length, magnitude, rotation, scaled, subtract, turning};
 use opruga_core::error::BuildError;
@@ -50,6 +50,8 @@ pub(crate) enum Form<const D: usize> {
 pub(crate) struct Collider<const D: usize> {
     pub(crate) law: Law,
     pub(crate) motion: Motion<D>,
+    /// Where it is in every step, if it stands still.
+    pub(crate) still: Option<Frame<D>>,
     pub(crate) form: Form<D>,
     pub(crate) parts: Vec<Part<D>>,
     /// The box around a bounded shape at rest.
@@ -134,11 +136,12 @@ impl<const D: usize> Collider<D> {
                 }
             }
         }
-        Ok(Collider { law, motion, form, parts, bounds })
+        let still = motion.is_still().then(|| Frame::new(&motion, 0.0, 0.0));
+        Ok(Collider { law, motion, still, form, parts, bounds })
     }
     /// Whether it stands still.
     pub(crate) fn is_static(&self) -> bool {
-        self.motion.path.is_empty() && !self.motion.turns
+        self.still.is_some()
     }
     /// Where it may be within an interval of time.
     pub(crate) fn reach(&self, from: f64, to: f64) -> Reach<D> {
@@ -184,17 +187,21 @@ impl<const D: usize> Collider<D> {
                 for d in 0..D {
                     ahead += (least[d] * plane.normal[d]).larger(most[d] * plane.normal[d]);
                 }
-                !(plane.least_gap(low, high) - ahead >= margin)
+                let clear = plane.least_gap(low, high) - ahead >= margin;
+                !clear
             }
             // A hollow that turns about a point beside its centre gets anywhere.
             Part::Ball(ball) if ball.sign < 0.0 => {
                 let mut far = [0.0; D];
                 for d in 0..D {
-                    let below = (ball.center[d] + most[d] - low[d]).abs().larger((ball.center[d] + least[d] - low[d]).abs());
-                    let above = (high[d] - ball.center[d] - least[d]).abs().larger((high[d] - ball.center[d] - most[d]).abs());
+                    let below =
+                        (ball.center[d] + most[d] - low[d]).abs().larger((ball.center[d] + least[d] - low[d]).abs());
+                    let above =
+                        (high[d] - ball.center[d] - least[d]).abs().larger((high[d] - ball.center[d] - most[d]).abs());
                     far[d] = below.larger(above);
                 }
-                self.motion.turns || !(ball.radius - length(&far) >= margin)
+                let clear = ball.radius - length(&far) >= margin;
+                self.motion.turns || !clear
             }
             _ => {
                 let Some([from, to]) = &self.bounds else { return true };
@@ -280,7 +287,11 @@ fn cuboid<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>,
     };
     if half.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
         let message = if corners[0] {
-            format!("`max` is {} and `min` is {}; allowed: every coordinate of `max` above that of `min`", refuse.shown("max"), refuse.shown("min"))
+            format!(
+                "`max` is {} and `min` is {}; allowed: every coordinate of `max` above that of `min`",
+                refuse.shown("max"),
+                refuse.shown("min")
+            )
         } else {
             format!("`size` is {}; allowed: lengths above 0", refuse.shown("size"))
         };
@@ -319,7 +330,11 @@ fn capsule<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>
     let along = subtract(&b, &a);
     let square = dot(&along, &along);
     if !(square > 1e-280 && square.is_finite()) {
-        let message = format!("`a` is {} and `b` is {}; allowed: two different points (one point is a `ball`)", refuse.shown("a"), refuse.shown("b"));
+        let message = format!(
+            "`a` is {} and `b` is {}; allowed: two different points (one point is a `ball`)",
+            refuse.shown("a"),
+            refuse.shown("b")
+        );
         return Err(refuse.error("collider.no_direction", message));
     }
     // Of the coordinate axes the one that is most at a right angle, made fully so.
@@ -350,8 +365,12 @@ fn points<const D: usize>(values: &Values, refuse: &Refusal) -> Result<(Vec<[f64
         points.push(point);
     }
     // Squares of lengths must stay finite.
-    if points.is_empty() || !(magnitude(&subtract(&high, &low)) < 1e100) {
-        let message = format!("`points` has {} points from {low:?} to {high:?}; allowed: at least one, within 1e100 m of each other", points.len());
+    let fits = magnitude(&subtract(&high, &low)) < 1e100;
+    if points.is_empty() || !fits {
+        let message = format!(
+            "`points` has {} points from {low:?} to {high:?}; allowed: at least one, within 1e100 m of each other",
+            points.len()
+        );
         return Err(refuse.error("collider.points", message));
     }
     Ok((points, scaled(&add(&low, &high), 0.5)))
@@ -361,13 +380,24 @@ fn convex<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>,
     let (points, center) = points::<D>(values, refuse)?;
     let (facets, faces) = Facets::convex(&points).map_err(|_| {
         let what = if D == 2 { "area" } else { "volume" };
-        refuse.error("collider.flat_hull", format!("the hull of the {} `points` has no {what}; allowed: points that are not all on one {}", points.len(), if D == 2 { "line" } else { "plane" }))
+        refuse.error(
+            "collider.flat_hull",
+            format!(
+                "the hull of the {} `points` has no {what}; allowed: points that are not all on one {}",
+                points.len(),
+                if D == 2 { "line" } else { "plane" }
+            ),
+        )
     })?;
     let form = if D == 2 {
         // Faces run clockwise one after the other; their second corners are the polygon counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
     } else {
-        Form::Triangles { points, triangles: faces.iter().map(|f| [f[0] as u32, f[1] as u32, f[D - 1] as u32]).collect(), solid: true }
+        Form::Triangles {
+            points,
+            triangles: faces.iter().map(|f| [f[0] as u32, f[1] as u32, f[D - 1] as u32]).collect(),
+            solid: true,
+        }
     };
     Ok((form, vec![Part::Facets(facets)], center))
 }
@@ -390,7 +420,11 @@ fn polyline<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D
     let facets = Facets::surface(&segments).map_err(|flaw| match flaw {
         Flaw::Degenerate(k) => refuse.error(
             "collider.degenerate_facet",
-            format!("points {k} and {} are both {:?}; allowed: segments of a length above 0", (k + 1) % points.len(), points[k]),
+            format!(
+                "points {k} and {} are both {:?}; allowed: segments of a length above 0",
+                (k + 1) % points.len(),
+                points[k]
+            ),
         ),
         Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
     })?;
@@ -401,7 +435,8 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Bu
     let (points, center) = points::<D>(values, refuse)?;
     let numbers = values.integers("triangles");
     if numbers.is_empty() || !numbers.len().is_multiple_of(3) {
-        let message = format!("`triangles` has {} numbers; allowed: three per triangle, at least one triangle", numbers.len());
+        let message =
+            format!("`triangles` has {} numbers; allowed: three per triangle, at least one triangle", numbers.len());
         return Err(refuse.error("collider.triangles", message));
     }
     let mut corners = Vec::with_capacity(numbers.len() / 3);
@@ -419,9 +454,10 @@ fn triangle_mesh<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Bu
         triangles.push([triangle[0], triangle[1], triangle[2]]);
     }
     let facets = Facets::surface(&corners).map_err(|flaw| match flaw {
-        Flaw::Degenerate(k) => {
-            refuse.error("collider.degenerate_facet", format!("triangle {k} with points {:?} has no area; allowed: triangles with an area", triangles[k]))
-        }
+        Flaw::Degenerate(k) => refuse.error(
+            "collider.degenerate_facet",
+            format!("triangle {k} with points {:?} has no area; allowed: triangles with an area", triangles[k]),
+        ),
         Flaw::Flat => refuse.error("collider.points", "the points have no extent".to_string()),
     })?;
     Ok((Form::Triangles { points, triangles, solid: false }, vec![Part::Facets(facets)], center))

@@ -2,7 +2,7 @@
 
 use crate::collider::{Collider, Law, Part};
 use crate::facets::Facets;
-use crate::motion::{Carry, Pose};
+use crate::motion::{Carry, Frame, Pose};
 use crate::picture::{Picture, picture};
 use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
 use crate::shape::{Shape, entry};
@@ -83,7 +83,10 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                     {
                         continue;
                     }
-                    let frame = frame.get_or_insert_with(|| Frame::new(collider, moved.time, moved.h));
+                    let frame = match &collider.still {
+                        Some(frame) => frame,
+                        None => frame.get_or_insert_with(|| Frame::new(&collider.motion, moved.time, moved.h)),
+                    };
                     if hold_back(simd, part, collider, frame, moved, &mut held, used) {
                         touched = true;
                         // A node may have been pushed out of the box.
@@ -102,9 +105,6 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
 
 /// How often the colliders act at most in a step.
 const ROUNDS: usize = 4;
-
-/// Places of the first look.
-const LOOK: usize = 4 * WIDTH;
 
 /// Which nodes of a tile have been held back in this step: a bit each.
 struct Held([u8; TILE / WIDTH]);
@@ -132,20 +132,6 @@ impl Held {
     }
 }
 
-/// Where a collider is at the end of a step and how it got there.
-struct Frame<const D: usize> {
-    pose: Pose<D>,
-    carry: Carry<D>,
-}
-
-impl<const D: usize> Frame<D> {
-    fn new(collider: &Collider<D>, time: f64, h: f64) -> Frame<D> {
-        let pose = collider.motion.pose(time);
-        let carry = if collider.is_static() { pose } else { collider.motion.pose(time - h) }.carry_to(&pose);
-        Frame { pose, carry }
-    }
-}
-
 /// Lets one part of a collider hold back the nodes of a tile; says whether it touched any.
 #[allow(clippy::too_many_arguments)]
 fn hold_back<const D: usize>(
@@ -163,7 +149,9 @@ fn hold_back<const D: usize>(
         Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
         Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
         Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
-        Part::Facets(facets) => hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used),
+        Part::Facets(facets) => {
+            hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used)
+        }
     }
 }
 
@@ -292,32 +280,24 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         let far = P::splat(far * far);
 
         // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
-        let near = P::splat(law.thickness + largest_rounding(law));
-        let mut any = false;
+        let look =
+            Look { shape, carry: self.carry, near: P::splat(law.thickness + largest_rounding(law)), far, has_far_side };
         let mut k = 0;
-        while k < used && !any {
-            let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
-            let count = if k + LOOK <= used { LOOK } else { WIDTH };
-            for k in (k..k + count).step_by(WIDTH) {
-                let x = lanes!(P, d => tile.x.load::<P>(d, k));
-                let mut gap = shape.gap(&x);
-                if k + WIDTH > used {
-                    gap = P::select(P::first(used - k), gap, P::splat(f64::INFINITY));
-                }
-                least = gap.smaller(least);
-                if has_far_side {
-                    let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
-                    most = dot(&way, &way).larger(most);
-                }
-            }
-            any = P::any(least.less(near)) || (has_far_side && P::any(far.less(most)));
-            k += count;
+        let mut near = false;
+        while k + 4 * WIDTH <= used && !near {
+            near = look.any_near::<4>(&tile, k, P::first(WIDTH));
+            k += 4 * WIDTH;
         }
-        if !any {
+        while k < used && !near {
+            near = look.any_near::<1>(&tile, k, P::first(used - k));
+            k += WIDTH;
+        }
+        if !near {
             return false;
         }
 
-        let (mut losses, mut frictions, mut works) = (P::load(&**loss_contact), P::load(&**loss_friction), P::load(&**work_colliders));
+        let (mut losses, mut frictions, mut works) =
+            (P::load(&**loss_contact), P::load(&**loss_friction), P::load(&**work_colliders));
         let mut touched = false;
         for k in (0..used).step_by(WIDTH) {
             let x = lanes!(P, d => tile.x.load::<P>(d, k));
@@ -331,7 +311,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
                 continue;
             }
             let (mut gap, mut normal) = shape.gap_and_normal(&x);
-            gap = gap - thickness;
+            gap -= thickness;
             if any_fast {
                 let mut found = Found { gap: gap.to_array(), normal: arrays(&normal) };
                 let fast = P::select(fast, P::one(), P::zero()).to_array();
@@ -342,7 +322,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             let v = lanes!(P, d => tile.v.load::<P>(d, k));
             let mass = tile.mass.load::<P>(k);
             let obstacle = self.pose.velocity_at(&x);
-            let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, held: self.held.pack(k), h: P::splat(*h) };
+            let meeting =
+                Meeting { x, v, before, mass, gap, normal, obstacle, held: self.held.pack(k), h: P::splat(*h) };
             let hit = P::both(meets(law, &meeting), nodes);
             if !P::any(hit) {
                 continue;
@@ -362,6 +343,34 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         frictions.store(&mut **loss_friction);
         works.store(&mut **work_colliders);
         touched
+    }
+}
+
+/// The first look at the nodes of a tile.
+struct Look<'a, P, T, const D: usize> {
+    shape: &'a T,
+    carry: &'a Carry<D>,
+    near: P,
+    far: P,
+    has_far_side: bool,
+}
+
+impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
+    /// Whether any node of `N` packs deserves a second look: near the shape, or fast.
+    #[inline(always)]
+    fn any_near<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
+        let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
+        for n in 0..N {
+            let k = start + n * WIDTH;
+            let x = lanes!(P, d => tile.x.load::<P>(d, k));
+            least = self.shape.gap(&x).smaller(least);
+            if self.has_far_side {
+                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
+                most = dot(&way, &way).larger(most);
+            }
+        }
+        P::any(P::both(least.less(self.near), nodes))
+            || (self.has_far_side && P::any(P::both(self.far.less(most), nodes)))
     }
 }
 
@@ -421,7 +430,14 @@ impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
 }
 
 /// Facets against the nodes of a tile, one node at a time.
-fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &Carry<D>, moved: &mut Moved<D>, held: &mut Held, used: usize) -> bool {
+fn hold_back_by_facets<const D: usize>(
+    surface: &Placed<D>,
+    law: &Law,
+    carry: &Carry<D>,
+    moved: &mut Moved<D>,
+    held: &mut Held,
+    used: usize,
+) -> bool {
     let mut touched = false;
     for k in 0..used {
         let place = moved.range.start + k;
@@ -440,7 +456,8 @@ fn hold_back_by_facets<const D: usize>(surface: &Placed<D>, law: &Law, carry: &C
         let obstacle = surface.pose.velocity_at(&x);
         let bit = 1u8 << (k % WIDTH);
         let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
-        let meeting = Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
+        let meeting =
+            Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
         if !meets(law, &meeting) {
             continue;
         }

@@ -132,7 +132,8 @@ impl<const D: usize> Facets<D> {
                 }
             }
         }
-        let tree: Arc<dyn Tree<D>> = if D == 2 { Arc::new(PlaneTree::new(corners)) } else { Arc::new(SpaceTree::new(corners)) };
+        let tree: Arc<dyn Tree<D>> =
+            if D == 2 { Arc::new(PlaneTree::new(corners)) } else { Arc::new(SpaceTree::new(corners)) };
         Ok(Facets { tree, facets, solid, low, high, half_width: f64::INFINITY })
     }
     /// The least distance that nodes keep, so that rounding never puts them on the other side [m].
@@ -156,12 +157,18 @@ impl<const D: usize> Facets<D> {
     ///
     /// Nodes keep the distance `margin` from the surface.
     pub(crate) fn touch(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
-        if self.solid { self.touch_solid(x, before, margin, reach) } else { self.touch_surface(x, before, margin, reach) }
+        if self.solid {
+            self.touch_solid(x, before, margin, reach)
+        } else {
+            self.touch_surface(x, before, margin, reach)
+        }
     }
     fn touch_solid(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
         let way = subtract(x, before);
         let far = 0.5 * self.half_width;
-        if dot(&way, &way) > far * far && let Some(found) = entry(self, margin, before, x) {
+        if dot(&way, &way) > far * far
+            && let Some(found) = entry(self, margin, before, x)
+        {
             return found;
         }
         let (gap, normal) = self.gap_and_normal(x);
@@ -250,7 +257,8 @@ impl<const D: usize> Facet<D> {
             }
             let determinant = dot(&normal, &normal);
             // Triangles of less height than a hundred-millionth of their length have no normal worth the name.
-            if !(determinant > 1e-16 * ee * ff) {
+            let is_proper = determinant > 1e-16 * ee * ff;
+            if !is_proper {
                 return None;
             }
             weights[0] = lanes!(f64, d => (ff * e[d] - ef * f[d]) / determinant);

@@ -30,7 +30,9 @@ fn size<const D: usize>(points: &[[f64; D]]) -> f64 {
 fn polygon<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-12 * size(points);
     let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])).then(a.cmp(&b)));
+    order.sort_by(|&a, &b| {
+        points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])).then(a.cmp(&b))
+    });
     // Whether b lies to the right of the way from a to c by more than rounding: then it is a corner.
     let is_corner = |a: usize, b: usize, c: usize| {
         let (u, w) = (subtract(&points[c], &points[a]), subtract(&points[b], &points[a]));
@@ -80,7 +82,7 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     // A tetrahedron of points far apart.
     let (a, _) = farthest(&|p| -p[0]);
     let (b, far) = farthest(&|p| length(&subtract(p, &points[a])));
-    if !(far > 0.0) {
+    if far.is_nan() || far <= 0.0 {
         return None;
     }
     let axis = scaled(&subtract(&points[b], &points[a]), 1.0 / far);
@@ -88,12 +90,12 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
         let arm = subtract(p, &points[a]);
         length(&subtract(&arm, &scaled(&axis, dot(&arm, &axis))))
     });
-    if !(far > tolerance) {
+    if far.is_nan() || far <= tolerance {
         return None;
     }
     let base = face(points, [a, b, c])?;
     let (d, far) = farthest(&|p| (dot(p, &base.normal) - base.offset).abs());
-    if !(far > tolerance) {
+    if far.is_nan() || far <= tolerance {
         return None;
     }
     let up = dot(&points[d], &base.normal) > base.offset;
@@ -129,7 +131,10 @@ fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     }
     // What rounding may have spoiled is refused: every edge has two faces, every point lies behind every face.
     let allowed = 10.0 * tolerance;
-    let edges: Vec<[usize; 2]> = faces.iter().flat_map(|f| [[f.corners[0], f.corners[1]], [f.corners[1], f.corners[2]], [f.corners[2], f.corners[0]]]).collect();
+    let edges: Vec<[usize; 2]> = faces
+        .iter()
+        .flat_map(|f| [[f.corners[0], f.corners[1]], [f.corners[1], f.corners[2]], [f.corners[2], f.corners[0]]])
+        .collect();
     let mut sorted = edges.clone();
     sorted.sort_unstable();
     let closed = edges.iter().all(|e| sorted.binary_search(&[e[1], e[0]]).is_ok());
@@ -146,7 +151,7 @@ fn face<const D: usize>(points: &[[f64; D]], corners: [usize; 3]) -> Option<Face
         normal[d] = e[(d + 1) % D] * f[(d + 2) % D] - e[(d + 2) % D] * f[(d + 1) % D];
     }
     let size = length(&normal);
-    if !(size > 0.0) {
+    if size.is_nan() || size <= 0.0 {
         return None;
     }
     let normal = scaled(&normal, 1.0 / size);

@@ -45,7 +45,26 @@ pub(crate) struct Carry<const D: usize> {
     to: [f64; D],
 }
 
+/// Where a collider is at the end of a step and how it got there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<const D: usize> {
+    pub(crate) pose: Pose<D>,
+    pub(crate) carry: Carry<D>,
+}
+
+impl<const D: usize> Frame<D> {
+    /// The frame of the step of `h` that ends at `time`.
+    pub(crate) fn new(motion: &Motion<D>, time: f64, h: f64) -> Frame<D> {
+        let pose = motion.pose(time);
+        Frame { carry: motion.pose(time - h).carry_to(&pose), pose }
+    }
+}
+
 impl<const D: usize> Motion<D> {
+    /// Whether there is none.
+    pub(crate) fn is_still(&self) -> bool {
+        self.path.is_empty() && !self.turns
+    }
     /// Where the collider is at a time.
     pub(crate) fn pose(&self, time: f64) -> Pose<D> {
         let (shift, velocity) = along_path::<D>(&self.path, time);
@@ -80,7 +99,11 @@ impl<const D: usize> Motion<D> {
 impl<const D: usize> Pose<D> {
     /// A point of the shape at rest, where it is now.
     pub(crate) fn place(&self, x: &[f64; D]) -> [f64; D] {
-        if self.upright { add(x, &self.shift) } else { add(&turned(&self.turn, &subtract(x, &self.pivot)), &self.center) }
+        if self.upright {
+            add(x, &self.shift)
+        } else {
+            add(&turned(&self.turn, &subtract(x, &self.pivot)), &self.center)
+        }
     }
     /// A direction of the shape at rest, as it is now.
     pub(crate) fn direct(&self, n: &[f64; D]) -> [f64; D] {

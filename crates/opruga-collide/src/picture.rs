@@ -65,12 +65,16 @@ pub(crate) fn picture<const D: usize>(collider: &Collider<D>, time: f64) -> Pict
     let pose = collider.motion.pose(time);
     let all = |points: &[[f64; D]]| points.iter().map(|p| pose.place(p)).collect();
     match &collider.form {
-        Form::HalfSpace { point, normal } => Picture::HalfSpace { point: pose.place(point), normal: pose.direct(normal) },
+        Form::HalfSpace { point, normal } => {
+            Picture::HalfSpace { point: pose.place(point), normal: pose.direct(normal) }
+        }
         Form::Box { shape, inside } => {
             let shape = shape.posed(&pose);
             Picture::Box { corners: (0..1 << D).map(|bits| shape.corner(bits)).collect(), inside: *inside }
         }
-        Form::Ball { center, radius, inside } => Picture::Ball { center: pose.place(center), radius: *radius, inside: *inside },
+        Form::Ball { center, radius, inside } => {
+            Picture::Ball { center: pose.place(center), radius: *radius, inside: *inside }
+        }
         Form::Capsule { a, b, radius } => Picture::Capsule { a: pose.place(a), b: pose.place(b), radius: *radius },
         Form::Polygon { points } => Picture::Polygon { points: all(points) },
         Form::Polyline { points, closed } => Picture::Polyline { points: all(points), closed: *closed },

@@ -81,7 +81,12 @@ pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) ->
 
 /// Holds back a node where `hit` holds (what comes out elsewhere has no meaning but is finite if what comes in is).
 #[inline(always)]
-pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(surface: &T, law: &Law, hit: S::Mask, node: &Meeting<S, D>) -> Parting<S, D> {
+pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
+    surface: &T,
+    law: &Law,
+    hit: S::Mask,
+    node: &Meeting<S, D>,
+) -> Parting<S, D> {
     let (zero, half) = (S::zero(), S::splat(0.5));
     let u = subtract(&node.v, &node.obstacle);
     let un = dot(&u, &node.normal);

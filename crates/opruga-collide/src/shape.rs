@@ -122,7 +122,12 @@ impl<const D: usize> Shape<D> for Ball<D> {
 
 impl<const D: usize> Capsule<D> {
     pub(crate) fn posed(&self, pose: &Pose<D>) -> Self {
-        Capsule { start: pose.place(&self.start), along: pose.direct(&self.along), aside: pose.direct(&self.aside), ..*self }
+        Capsule {
+            start: pose.place(&self.start),
+            along: pose.direct(&self.along),
+            aside: pose.direct(&self.aside),
+            ..*self
+        }
     }
     /// From the nearest point of the segment to `x`.
     #[inline(always)]
@@ -223,7 +228,12 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
 ///
 /// Sphere tracing: the signed distance says how far one may go along the segment without meeting the surface.
 #[inline(never)]
-pub(crate) fn entry<T: Shape<D>, const D: usize>(shape: &T, margin: f64, a: &[f64; D], b: &[f64; D]) -> Option<(f64, [f64; D])> {
+pub(crate) fn entry<T: Shape<D>, const D: usize>(
+    shape: &T,
+    margin: f64,
+    a: &[f64; D],
+    b: &[f64; D],
+) -> Option<(f64, [f64; D])> {
     let way = subtract(b, a);
     let far = length(&way);
     let close = 1e-9 * (shape.half_width() + margin);
@@ -242,7 +252,7 @@ pub(crate) fn entry<T: Shape<D>, const D: usize>(shape: &T, margin: f64, a: &[f6
             return (dot(&way, &normal) < 0.0 && behind < 0.0).then_some((behind, normal));
         }
         gone += gap;
-        if !(gone <= far) {
+        if gone.is_nan() || gone > far {
             return None;
         }
     }

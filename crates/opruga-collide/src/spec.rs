@@ -4,7 +4,13 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
-const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+const fn field(
+    name: &'static str,
+    range: Allowed,
+    unit: &'static str,
+    default: Default,
+    documentation: &'static str,
+) -> Field {
     Field { name, range, unit, default, documentation }
 }
 
@@ -52,11 +58,24 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space",
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. Given by two opposite corners, or by \
 centre and size and then possibly turned. A node inside leaves through the nearest face; one that is faster than a quarter of the smallest side \
 per step leaves through the face by which it came in.";
-const MIN: Field = field("min", Allowed::Vector, "m", Default::Absent, "Corner with the least coordinates; with `max`, instead of `center` and `size`.");
+const MIN: Field = field(
+    "min",
+    Allowed::Vector,
+    "m",
+    Default::Absent,
+    "Corner with the least coordinates; with `max`, instead of `center` and `size`.",
+);
 const MAX: Field = field("max", Allowed::Vector, "m", Default::Absent, "Corner with the greatest coordinates.");
-const CENTER: Field = field("center", Allowed::Vector, "m", Default::Absent, "Centre of the box; with `size`, instead of `min` and `max`.");
+const CENTER: Field = field(
+    "center",
+    Allowed::Vector,
+    "m",
+    Default::Absent,
+    "Centre of the box; with `size`, instead of `min` and `max`.",
+);
 const SIZE: Field = field("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.");
-const INSIDE_BOX: Field = field("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
+const INSIDE_BOX: Field =
+    field("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
 
 collider! {
     /// The parameters of `box` in 2D.

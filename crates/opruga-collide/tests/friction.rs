@@ -107,7 +107,11 @@ fn a_conveyor_takes_a_node_along() {
     // A floor that moves at 1 m/s: the node slides until it has that speed, after v/(µ g).
     let floor = values::<2>(
         "half_space",
-        &[("normal", vector(&[0.0, 1.0])), ("friction", number(0.5)), ("motion", rows(&[&[0.0, 0.0, 0.0], &[10.0, 10.0, 0.0]]))],
+        &[
+            ("normal", vector(&[0.0, 1.0])),
+            ("friction", number(0.5)),
+            ("motion", rows(&[&[0.0, 0.0, 0.0], &[10.0, 10.0, 0.0]])),
+        ],
     );
     let mut system = particles(&[[0.0, 0.0]], &[[0.0, 0.0]], 2.0, &[floor]);
     system.gravity = weight();

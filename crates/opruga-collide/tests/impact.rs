@@ -17,7 +17,13 @@ fn floor(fields: &[(&str, Value)]) -> Values {
 }
 
 /// What the pass took and gave is the change of kinetic energy, for any shape, motion and state.
-fn one_pass<const D: usize>(list: &[Values], x: &[[f64; D]], v: &[[f64; D]], h: f64, time: f64) -> (Columns<D>, Columns<D>, f64) {
+fn one_pass<const D: usize>(
+    list: &[Values],
+    x: &[[f64; D]],
+    v: &[[f64; D]],
+    h: f64,
+    time: f64,
+) -> (Columns<D>, Columns<D>, f64) {
     let places = Layout::Single.places(x.len());
     let (mut cx, mut cv) = (Columns::zeros(places), Columns::zeros(places));
     let mut before: Vec<Vec<f64>> = vec![vec![0.0; places]; D];
@@ -57,7 +63,8 @@ fn one_pass<const D: usize>(list: &[Values], x: &[[f64; D]], v: &[[f64; D]], h: 
 #[test]
 fn a_ball_bounces_back_with_its_fraction_of_speed() {
     for e in [0.0, 0.3, 1.0] {
-        let (_, v, change) = one_pass::<2>(&[floor(&[("restitution", number(e))])], &[[0.0, 1e-3]], &[[0.7, -2.0]], H, H);
+        let (_, v, change) =
+            one_pass::<2>(&[floor(&[("restitution", number(e))])], &[[0.0, 1e-3]], &[[0.7, -2.0]], H, H);
         assert_eq!(v.at(0)[0], 0.7);
         assert!((v.at(0)[1] - 2.0 * e).abs() < 1e-15);
         assert!((change + 0.5 * 4.0 * (1.0 - e * e)).abs() < 1e-14);
@@ -69,7 +76,12 @@ fn the_floor_of_the_thesis() {
     // y points down, floor at y = 500; on crossing y = 500 and v_y = −½ v_y, also when the node lies on it.
     let plane = values::<2>(
         "half_space",
-        &[("point", vector(&[0.0, 500.0])), ("normal", vector(&[0.0, -1.0])), ("restitution", number(0.5)), ("rest_speed", number(0.0))],
+        &[
+            ("point", vector(&[0.0, 500.0])),
+            ("normal", vector(&[0.0, -1.0])),
+            ("restitution", number(0.5)),
+            ("rest_speed", number(0.0)),
+        ],
     );
     let mut system = particles(&[[200.0, 495.0]], &[[3.0, 0.0]], 1.0, &[plane]);
     system.gravity = [0.0, 100.0];
@@ -141,13 +153,40 @@ fn the_energy_of_a_pass_is_accounted_for() {
     };
     for (kind, own) in [
         ("half_space", vec![("normal", vector(&[0.2, 1.0, -0.3]))]),
-        ("box", vec![("center", vector(&[0.0, 0.1, 0.0])), ("size", vector(&[1.0, 1.2, 0.8])), ("rotation", vector(&[0.1, 0.5, 0.2]))]),
+        (
+            "box",
+            vec![
+                ("center", vector(&[0.0, 0.1, 0.0])),
+                ("size", vector(&[1.0, 1.2, 0.8])),
+                ("rotation", vector(&[0.1, 0.5, 0.2])),
+            ],
+        ),
         ("box", vec![("min", vector(&[-0.7; 3])), ("max", vector(&[0.8; 3])), ("inside", Value::Boolean(true))]),
         ("ball", vec![("radius", number(0.8))]),
         ("ball", vec![("radius", number(0.8)), ("inside", Value::Boolean(true))]),
         ("capsule", vec![("a", vector(&[-0.5, 0.0, 0.1])), ("b", vector(&[0.5, 0.2, 0.0])), ("radius", number(0.4))]),
-        ("convex", vec![("points", rows(&[&[0.9, 0.0, 0.0], &[-0.9, 0.0, 0.1], &[0.0, 0.9, 0.0], &[0.0, -0.9, 0.0], &[0.0, 0.1, 0.9], &[0.0, 0.0, -0.9]]))]),
-        ("triangle_mesh", vec![("points", rows(&[&[-2.0, 0.0, -2.0], &[2.0, 0.0, -2.0], &[0.0, 0.1, 2.0]])), ("triangles", Value::Integers(vec![0, 1, 2])), ("thickness", number(0.2))]),
+        (
+            "convex",
+            vec![(
+                "points",
+                rows(&[
+                    &[0.9, 0.0, 0.0],
+                    &[-0.9, 0.0, 0.1],
+                    &[0.0, 0.9, 0.0],
+                    &[0.0, -0.9, 0.0],
+                    &[0.0, 0.1, 0.9],
+                    &[0.0, 0.0, -0.9],
+                ]),
+            )],
+        ),
+        (
+            "triangle_mesh",
+            vec![
+                ("points", rows(&[&[-2.0, 0.0, -2.0], &[2.0, 0.0, -2.0], &[0.0, 0.1, 2.0]])),
+                ("triangles", Value::Integers(vec![0, 1, 2])),
+                ("thickness", number(0.2)),
+            ],
+        ),
     ] {
         for (e, mu) in [(0.0, 0.0), (0.6, 0.0), (0.0, 0.4), (0.5, 0.3), (1.0, 5.0)] {
             let mut fields = own.clone();
@@ -204,7 +243,10 @@ fn nodes_settle_in_a_corner() {
         assert!((local[0] + 1.0).abs() < 1e-12 && (local[1] + 1.0).abs() < 1e-12, "{local:?}");
         assert!(v[0].abs() + v[1].abs() < 1e-12, "{v:?}");
     }
-    let room = values::<3>("box", &[("min", vector(&[-1.0; 3])), ("max", vector(&[1.0; 3])), ("inside", Value::Boolean(true))]);
+    let room = values::<3>(
+        "box",
+        &[("min", vector(&[-1.0; 3])), ("max", vector(&[1.0; 3])), ("inside", Value::Boolean(true))],
+    );
     let mut system = particles(&[[0.3, 0.1, -0.2], [5.0, -7.0, 3.0]], &[[0.0; 3]; 2], 1.0, &[room]);
     system.gravity = [-4.0, -9.0, 2.0];
     run(&mut system, H, 4800);
@@ -216,7 +258,9 @@ fn nodes_settle_in_a_corner() {
 #[test]
 fn an_acute_wedge_of_two_planes_holds() {
     // Two planes at 60°: normals (±cos 30°, sin 30°).
-    let side = |s: f64| values::<2>("half_space", &[("normal", vector(&[s * 0.75f64.sqrt(), 0.5])), ("friction", number(0.2))]);
+    let side = |s: f64| {
+        values::<2>("half_space", &[("normal", vector(&[s * 0.75f64.sqrt(), 0.5])), ("friction", number(0.2))])
+    };
     let mut system = particles(&[[0.2, 1.0]], &[[0.0, 0.0]], 1.0, &[side(1.0), side(-1.0)]);
     system.gravity = [0.0, -G];
     run(&mut system, H, 9600);

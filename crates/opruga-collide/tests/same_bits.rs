@@ -21,7 +21,10 @@ fn zoo<const D: usize>() -> Vec<Values> {
         own
     };
     let facets = if D == 2 {
-        values::<D>("polyline", &with(vec![("points", rows(&[&[-2.0, -1.0], &[-0.5, -1.3], &[1.0, -0.9]]))], law(0.3, 0.4)))
+        values::<D>(
+            "polyline",
+            &with(vec![("points", rows(&[&[-2.0, -1.0], &[-0.5, -1.3], &[1.0, -0.9]]))], law(0.3, 0.4)),
+        )
     } else {
         values::<D>(
             "triangle_mesh",
@@ -37,12 +40,54 @@ fn zoo<const D: usize>() -> Vec<Values> {
     };
     let hull = [[1.2, 0.2, 0.0], [1.8, 0.1, 0.3], [1.5, 0.9, 0.1], [1.4, 0.4, -0.8], [1.5, 0.4, 0.9]];
     vec![
-        values::<D>("half_space", &with(vec![("point", v([0.0, -2.0, 0.0])), ("normal", v([0.1, 1.0, 0.05]))], law(0.5, 0.3))),
-        values::<D>("box", &with(vec![("center", v([0.0, -1.4, 0.0])), ("size", v([1.0, 0.4, 1.0])), ("spin", spin(2.0))], law(0.0, 0.7))),
-        values::<D>("box", &with(vec![("min", v([-3.0; 3])), ("max", v([3.0; 3])), ("inside", Value::Boolean(true))], law(0.9, 0.0))),
-        values::<D>("ball", &with(vec![("center", v([-1.5, 0.0, 0.0])), ("radius", number(0.5)), ("motion", path([[0.0, 0.0, 0.0, 0.0], [0.5, 1.0, 0.2, 0.1], [1.0, 0.0, 0.0, 0.0]]))], law(0.8, 0.2))),
-        values::<D>("capsule", &with(vec![("a", v([-1.0, 0.8, 0.0])), ("b", v([0.3, 1.0, 0.2])), ("radius", number(0.2)), ("spin", spin(-3.0))], law(0.1, 0.1))),
-        values::<D>("convex", &with(vec![("points", Value::Rows(hull.iter().map(|p| p[..D].to_vec()).collect())), ("thickness", number(0.05))], law(0.4, 0.5))),
+        values::<D>(
+            "half_space",
+            &with(vec![("point", v([0.0, -2.0, 0.0])), ("normal", v([0.1, 1.0, 0.05]))], law(0.5, 0.3)),
+        ),
+        values::<D>(
+            "box",
+            &with(
+                vec![("center", v([0.0, -1.4, 0.0])), ("size", v([1.0, 0.4, 1.0])), ("spin", spin(2.0))],
+                law(0.0, 0.7),
+            ),
+        ),
+        values::<D>(
+            "box",
+            &with(vec![("min", v([-3.0; 3])), ("max", v([3.0; 3])), ("inside", Value::Boolean(true))], law(0.9, 0.0)),
+        ),
+        values::<D>(
+            "ball",
+            &with(
+                vec![
+                    ("center", v([-1.5, 0.0, 0.0])),
+                    ("radius", number(0.5)),
+                    ("motion", path([[0.0, 0.0, 0.0, 0.0], [0.5, 1.0, 0.2, 0.1], [1.0, 0.0, 0.0, 0.0]])),
+                ],
+                law(0.8, 0.2),
+            ),
+        ),
+        values::<D>(
+            "capsule",
+            &with(
+                vec![
+                    ("a", v([-1.0, 0.8, 0.0])),
+                    ("b", v([0.3, 1.0, 0.2])),
+                    ("radius", number(0.2)),
+                    ("spin", spin(-3.0)),
+                ],
+                law(0.1, 0.1),
+            ),
+        ),
+        values::<D>(
+            "convex",
+            &with(
+                vec![
+                    ("points", Value::Rows(hull.iter().map(|p| p[..D].to_vec()).collect())),
+                    ("thickness", number(0.05)),
+                ],
+                law(0.4, 0.5),
+            ),
+        ),
         facets,
     ]
 }
@@ -63,7 +108,11 @@ fn rain<const D: usize>(simd: Simd, layout: Layout) -> System<D> {
 }
 fn same_bits<const D: usize>() {
     let reference = rain::<D>(Simd::Baseline, Layout::Single);
-    assert!(reference.work.contact.iter().all(|w| *w > 0.0) && sum(&reference.work.friction) > 0.0 && sum(&reference.work.user) != 0.0);
+    assert!(
+        reference.work.contact.iter().all(|w| *w > 0.0)
+            && sum(&reference.work.friction) > 0.0
+            && sum(&reference.work.user) != 0.0
+    );
     for simd in [Simd::Baseline, Simd::Avx2, Simd::Avx512] {
         let single = rain::<D>(simd, Layout::Single);
         assert_eq!(single.work, reference.work, "{simd:?}");
@@ -120,7 +169,12 @@ impl<const D: usize> Potential<D> for Jelly {
 
 #[test]
 fn a_body_at_rest_does_not_tremble() {
-    let slope = |e: f64, mu: f64| values::<2>("half_space", &[("normal", vector(&[0.2, 1.0])), ("restitution", number(e)), ("friction", number(mu))]);
+    let slope = |e: f64, mu: f64| {
+        values::<2>(
+            "half_space",
+            &[("normal", vector(&[0.2, 1.0])), ("restitution", number(e)), ("friction", number(mu))],
+        )
+    };
     for (e, mu) in [(0.0, 0.5), (0.8, 0.5)] {
         let ring: Vec<[f64; 2]> = (0..12)
             .map(|k| {
@@ -140,7 +194,15 @@ fn a_body_at_rest_does_not_tremble() {
         // A flat: the ring would roll down the slope, a square of floor and wall holds it.
         system.contacts = Some(std::sync::Arc::new(colliders::<2>(&[
             slope(e, mu),
-            values::<2>("half_space", &[("point", vector(&[1.0, 0.0])), ("normal", vector(&[-1.0, 0.2])), ("restitution", number(e)), ("friction", number(mu))]),
+            values::<2>(
+                "half_space",
+                &[
+                    ("point", vector(&[1.0, 0.0])),
+                    ("normal", vector(&[-1.0, 0.2])),
+                    ("restitution", number(e)),
+                    ("friction", number(mu)),
+                ],
+            ),
         ])));
         system.add(Box::new(Jelly(springs)));
         system.plan(0);

@@ -28,13 +28,28 @@ fn nodes_end_on_the_surface() {
     near(after(&plate, [-0.3, -0.45], [0.0; 2], H).0, [-0.3, -0.5]);
     near(after(&plate, [1.1, 0.1], [0.0; 2], H).0, [1.1, 0.1]);
     // A margin rounds the corner: the node lies at 45° from it.
-    let round = values::<2>("box", &[("min", vector(&[-1.0, -0.5])), ("max", vector(&[1.0, 0.5])), ("thickness", number(0.2))]);
+    let round =
+        values::<2>("box", &[("min", vector(&[-1.0, -0.5])), ("max", vector(&[1.0, 0.5])), ("thickness", number(0.2))]);
     let corner = 0.2 * 0.5f64.sqrt();
     near(after(&round, [1.1, 0.6], [0.0; 2], H).0, [1.0 + corner, 0.5 + corner]);
     // Turned by 90° (from x to y) the long side points up.
-    let turned = values::<2>("box", &[("center", vector(&[0.0, 0.0])), ("size", vector(&[2.0, 1.0])), ("rotation", number(core::f64::consts::FRAC_PI_2))]);
+    let turned = values::<2>(
+        "box",
+        &[
+            ("center", vector(&[0.0, 0.0])),
+            ("size", vector(&[2.0, 1.0])),
+            ("rotation", number(core::f64::consts::FRAC_PI_2)),
+        ],
+    );
     near(after(&turned, [0.0, 0.9], [0.0; 2], H).0, [0.0, 1.0]);
-    let turned = values::<3>("box", &[("center", vector(&[0.0; 3])), ("size", vector(&[4.0, 2.0, 2.0])), ("rotation", vector(&[0.0, 0.0, core::f64::consts::FRAC_PI_2]))]);
+    let turned = values::<3>(
+        "box",
+        &[
+            ("center", vector(&[0.0; 3])),
+            ("size", vector(&[4.0, 2.0, 2.0])),
+            ("rotation", vector(&[0.0, 0.0, core::f64::consts::FRAC_PI_2])),
+        ],
+    );
     near(after(&turned, [0.1, 1.9, 0.2], [0.0; 3], H).0, [0.1, 2.0, 0.2]);
 
     let ball = values::<3>("ball", &[("center", vector(&[1.0, 0.0, 0.0])), ("radius", number(2.0))]);
@@ -43,15 +58,20 @@ fn nodes_end_on_the_surface() {
     near(after(&bowl, [0.0, -2.5, 0.0], [0.0; 3], H).0, [0.0, -2.0, 0.0]);
     near(after(&bowl, [0.0, -1.5, 0.0], [0.0; 3], H).0, [0.0, -1.5, 0.0]);
 
-    let capsule = values::<2>("capsule", &[("a", vector(&[-1.0, 0.0])), ("b", vector(&[1.0, 0.0])), ("radius", number(0.5))]);
+    let capsule =
+        values::<2>("capsule", &[("a", vector(&[-1.0, 0.0])), ("b", vector(&[1.0, 0.0])), ("radius", number(0.5))]);
     near(after(&capsule, [0.3, 0.1], [0.0; 2], H).0, [0.3, 0.5]);
     near(after(&capsule, [1.2, 0.0], [0.0; 2], H).0, [1.5, 0.0]);
 
-    let triangle = values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[2.0, 0.0], &[0.5, 0.3], &[0.0, 2.0], &[0.0, 1.0]]))]);
+    let triangle =
+        values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[2.0, 0.0], &[0.5, 0.3], &[0.0, 2.0], &[0.0, 1.0]]))]);
     near(after(&triangle, [0.1, 0.5], [0.0; 2], H).0, [0.0, 0.5]);
     near(after(&triangle, [1.0, 0.9], [0.0; 2], H).0, [1.05, 0.95]);
     near(after(&triangle, [1.2, 1.2], [0.0; 2], H).0, [1.2, 1.2]);
-    let round = values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[2.0, 0.0], &[0.0, 2.0]])), ("thickness", number(0.1))]);
+    let round = values::<2>(
+        "convex",
+        &[("points", rows(&[&[0.0, 0.0], &[2.0, 0.0], &[0.0, 2.0]])), ("thickness", number(0.1))],
+    );
     near(after(&round, [2.05, 0.0], [0.0; 2], H).0, [2.1, 0.0]);
 
     let cube: Vec<Vec<f64>> = (0..8).map(|k| (0..3).map(|d| f64::from(k >> d & 1)).collect()).collect();
@@ -64,10 +84,33 @@ fn nodes_end_on_the_surface() {
 fn degenerate_places_have_a_direction() {
     for list in [
         values::<3>("ball", &[("radius", number(1.0)), ("friction", number(0.5)), ("restitution", number(0.5))]),
-        values::<3>("capsule", &[("a", vector(&[-1.0, 0.0, 0.0])), ("b", vector(&[1.0, 0.0, 0.0])), ("radius", number(1.0)), ("friction", number(0.5))]),
-        values::<3>("box", &[("min", vector(&[-1.0; 3])), ("max", vector(&[1.0; 3])), ("friction", number(0.5)), ("thickness", number(0.1))]),
+        values::<3>(
+            "capsule",
+            &[
+                ("a", vector(&[-1.0, 0.0, 0.0])),
+                ("b", vector(&[1.0, 0.0, 0.0])),
+                ("radius", number(1.0)),
+                ("friction", number(0.5)),
+            ],
+        ),
+        values::<3>(
+            "box",
+            &[
+                ("min", vector(&[-1.0; 3])),
+                ("max", vector(&[1.0; 3])),
+                ("friction", number(0.5)),
+                ("thickness", number(0.1)),
+            ],
+        ),
         values::<3>("ball", &[("radius", number(1.0)), INSIDE, ("friction", number(0.5))]),
-        values::<3>("triangle_mesh", &[("points", rows(&[&[-1.0, 0.0, -1.0], &[1.0, 0.0, -1.0], &[0.0, 0.0, 2.0]])), ("triangles", Value::Integers(vec![0, 1, 2])), ("thickness", number(0.1))]),
+        values::<3>(
+            "triangle_mesh",
+            &[
+                ("points", rows(&[&[-1.0, 0.0, -1.0], &[1.0, 0.0, -1.0], &[0.0, 0.0, 2.0]])),
+                ("triangles", Value::Integers(vec![0, 1, 2])),
+                ("thickness", number(0.1)),
+            ],
+        ),
     ] {
         for v in [[0.0; 3], [1e-300, 0.0, 0.0], [1.0, -2.0, 0.5]] {
             for x in [[0.0; 3], [1e-200, 0.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 0.0], [1e300, 1e300, 0.0]] {
@@ -79,7 +122,12 @@ fn degenerate_places_have_a_direction() {
     // As documented: up from the centre of a ball.
     near(after(&values::<2>("ball", &[("radius", number(1.0))]), [0.0; 2], [0.0; 2], H).0, [0.0, 1.0]);
     // Numbers that are none stay alone.
-    let mut system = particles(&[[f64::NAN, 0.0], [0.0, 0.5]], &[[0.0; 2]; 2], 1.0, &[values::<2>("ball", &[("radius", number(1.0))])]);
+    let mut system = particles(
+        &[[f64::NAN, 0.0], [0.0, 0.5]],
+        &[[0.0; 2]; 2],
+        1.0,
+        &[values::<2>("ball", &[("radius", number(1.0))])],
+    );
     step(&mut system, H);
     near(at(&system, 1).0, [0.0, 1.0]);
 }
@@ -87,16 +135,29 @@ fn degenerate_places_have_a_direction() {
 #[test]
 fn fast_nodes_do_not_tunnel() {
     let square = rows(&[&[-1.0, -0.01], &[1.0, -0.01], &[1.0, 0.01], &[-1.0, 0.01]]);
-    let cube: Vec<Vec<f64>> = (0..8).map(|k| vec![f64::from(k & 1) * 2.0 - 1.0, f64::from(k >> 1 & 1) * 0.02 - 0.01]).collect();
+    let cube: Vec<Vec<f64>> =
+        (0..8).map(|k| vec![f64::from(k & 1) * 2.0 - 1.0, f64::from(k >> 1 & 1) * 0.02 - 0.01]).collect();
     for (name, collider, top) in [
         ("box", values::<2>("box", &[("min", vector(&[-1.0, -0.01])), ("max", vector(&[1.0, 0.01]))]), 0.01),
-        ("capsule", values::<2>("capsule", &[("a", vector(&[-1.0, 0.0])), ("b", vector(&[1.0, 0.0])), ("radius", number(0.01))]), 0.01),
+        (
+            "capsule",
+            values::<2>(
+                "capsule",
+                &[("a", vector(&[-1.0, 0.0])), ("b", vector(&[1.0, 0.0])), ("radius", number(0.01))],
+            ),
+            0.01,
+        ),
         ("ball", values::<2>("ball", &[("radius", number(0.02))]), 0.02),
         ("convex", values::<2>("convex", &[("points", Value::Rows(cube))]), 0.01),
         ("polyline", values::<2>("polyline", &[("points", square), ("closed", Value::Boolean(true))]), 0.01),
     ] {
         for speed in [5.0, 13.0, 40.0, 1000.0, 1e6] {
-            let mut system = particles(&[[if name == "ball" { 0.0 } else { 0.001 }, 0.5]], &[[0.0, -speed]], 1.0, std::slice::from_ref(&collider));
+            let mut system = particles(
+                &[[if name == "ball" { 0.0 } else { 0.001 }, 0.5]],
+                &[[0.0, -speed]],
+                1.0,
+                std::slice::from_ref(&collider),
+            );
             run(&mut system, H, 200);
             let (x, v) = at(&system, 0);
             // Stopped on the upper side.
@@ -110,7 +171,10 @@ fn thin_surfaces_hold_on_both_sides() {
     for side in [1.0, -1.0] {
         // Along an edge between two segments, onto a vertex, and into the middle.
         for x in [0.0, 0.3, -1.0] {
-            let line = values::<2>("polyline", &[("points", rows(&[&[-2.0, 0.0], &[0.0, 0.0], &[2.0, 0.0]])), ("friction", number(0.3))]);
+            let line = values::<2>(
+                "polyline",
+                &[("points", rows(&[&[-2.0, 0.0], &[0.0, 0.0], &[2.0, 0.0]])), ("friction", number(0.3))],
+            );
             let mut system = particles(&[[x, side]], &[[0.0, 0.0]], 1.0, &[line]);
             system.gravity = [0.0, -side * G];
             run(&mut system, H, 9600);
@@ -121,7 +185,10 @@ fn thin_surfaces_hold_on_both_sides() {
         for x in [[0.5, 0.5], [0.2, 0.2], [0.9, 0.1]] {
             let square = values::<3>(
                 "triangle_mesh",
-                &[("points", rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0], &[1.0, 0.0, 1.0], &[0.0, 0.0, 1.0]])), ("triangles", Value::Integers(vec![0, 1, 2, 0, 2, 3]))],
+                &[
+                    ("points", rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0], &[1.0, 0.0, 1.0], &[0.0, 0.0, 1.0]])),
+                    ("triangles", Value::Integers(vec![0, 1, 2, 0, 2, 3])),
+                ],
             );
             let mut system = particles(&[[x[0], side, x[1]]], &[[0.0; 3]], 1.0, &[square]);
             system.gravity = [0.0, -side * G, 0.0];
@@ -135,7 +202,10 @@ fn thin_surfaces_hold_on_both_sides() {
 #[test]
 fn a_groove_keeps_its_nodes() {
     // A narrow V: pushed out of one flank a node must not slip through the other.
-    let groove = values::<2>("polyline", &[("points", rows(&[&[-0.1, 1.0], &[0.0, 0.0], &[0.1, 1.0]])), ("friction", number(0.2))]);
+    let groove = values::<2>(
+        "polyline",
+        &[("points", rows(&[&[-0.1, 1.0], &[0.0, 0.0], &[0.1, 1.0]])), ("friction", number(0.2))],
+    );
     let start: Vec<[f64; 2]> = (0..7).map(|k| [0.01 * k as f64 - 0.03, 0.9]).collect();
     let mut system = particles(&start, &[[3.0, -5.0]; 7], 1.0, &[groove]);
     system.gravity = [0.0, -G];
@@ -165,7 +235,10 @@ fn a_moving_mesh_takes_nodes_along() {
         let (x, v) = at(&system, node);
         assert!((x[1] - 1.5).abs() < 1e-6 && (v[1] - 3.0).abs() < 1e-12, "{x:?} {v:?}");
     }
-    let paddle = values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]])), ("pivot", vector(&[0.0, 0.0])), ("spin", number(20.0))]);
+    let paddle = values::<2>(
+        "polyline",
+        &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]])), ("pivot", vector(&[0.0, 0.0])), ("spin", number(20.0))],
+    );
     let mut system = particles(&[[0.5, 0.1]], &[[0.0; 2]], 1.0, &[paddle]);
     run(&mut system, H, 20);
     let (x, v) = at(&system, 0);
@@ -175,11 +248,16 @@ fn a_moving_mesh_takes_nodes_along() {
 
 #[test]
 fn reach_is_never_no_where_something_touches() {
-    let far = |list: &[Values], low: [f64; 2], high: [f64; 2], t: [f64; 2]| colliders::<2>(list).reach(t[0], t[1], &low, &high);
+    let far = |list: &[Values], low: [f64; 2], high: [f64; 2], t: [f64; 2]| {
+        colliders::<2>(list).reach(t[0], t[1], &low, &high)
+    };
     let floor = values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("thickness", number(0.1))]);
     assert!(!far(std::slice::from_ref(&floor), [-1.0, 0.2], [1.0, 2.0], [0.0, 1.0]));
     assert!(far(&[floor], [-1.0, 0.05], [1.0, 2.0], [0.0, 1.0]));
-    let rising = values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("motion", rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 1.0], &[2.0, 0.0, 0.0]]))]);
+    let rising = values::<2>(
+        "half_space",
+        &[("normal", vector(&[0.0, 1.0])), ("motion", rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 1.0], &[2.0, 0.0, 0.0]]))],
+    );
     assert!(!far(std::slice::from_ref(&rising), [0.0, 0.5], [1.0, 2.0], [0.0, 0.4]));
     assert!(far(std::slice::from_ref(&rising), [0.0, 0.5], [1.0, 2.0], [0.0, 2.0]));
     assert!(!far(&[rising], [0.0, 0.5], [1.0, 2.0], [2.0, 5.0]));
@@ -189,7 +267,16 @@ fn reach_is_never_no_where_something_touches() {
     let bowl = values::<2>("ball", &[("radius", number(5.0)), INSIDE]);
     assert!(!far(std::slice::from_ref(&bowl), [-1.0; 2], [1.0; 2], [0.0, 1.0]));
     assert!(far(&[bowl], [3.0; 2], [4.0; 2], [0.0, 1.0]));
-    let arm = values::<2>("capsule", &[("a", vector(&[0.0, 0.0])), ("b", vector(&[2.0, 0.0])), ("radius", number(0.1)), ("spin", number(1.0)), ("pivot", vector(&[0.0, 0.0]))]);
+    let arm = values::<2>(
+        "capsule",
+        &[
+            ("a", vector(&[0.0, 0.0])),
+            ("b", vector(&[2.0, 0.0])),
+            ("radius", number(0.1)),
+            ("spin", number(1.0)),
+            ("pivot", vector(&[0.0, 0.0])),
+        ],
+    );
     assert!(far(std::slice::from_ref(&arm), [-2.0, -0.1], [-1.9, 0.1], [0.0, 0.1]));
     assert!(!far(&[arm], [-3.0, -0.1], [-2.9, 0.1], [0.0, 0.1]));
     assert!(!far(&[], [0.0; 2], [0.0; 2], [0.0, 1.0]));
@@ -199,15 +286,34 @@ fn reach_is_never_no_where_something_touches() {
 fn pictures_show_where_things_are() {
     let list = [
         values::<2>("half_space", &[("point", vector(&[1.0, 2.0])), ("normal", vector(&[0.0, 3.0]))]),
-        values::<2>("box", &[("min", vector(&[0.0; 2])), ("max", vector(&[2.0; 2])), INSIDE, ("motion", rows(&[&[0.0, 0.0, 0.0], &[1.0, 1.0, 0.0]]))]),
+        values::<2>(
+            "box",
+            &[
+                ("min", vector(&[0.0; 2])),
+                ("max", vector(&[2.0; 2])),
+                INSIDE,
+                ("motion", rows(&[&[0.0, 0.0, 0.0], &[1.0, 1.0, 0.0]])),
+            ],
+        ),
         values::<2>("ball", &[("radius", number(2.0))]),
-        values::<2>("capsule", &[("a", vector(&[0.0, 0.0])), ("b", vector(&[2.0, 0.0])), ("radius", number(0.1)), ("spin", number(core::f64::consts::PI))]),
+        values::<2>(
+            "capsule",
+            &[
+                ("a", vector(&[0.0, 0.0])),
+                ("b", vector(&[2.0, 0.0])),
+                ("radius", number(0.1)),
+                ("spin", number(core::f64::consts::PI)),
+            ],
+        ),
         values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0], &[0.2, 0.2], &[0.0, 1.0]]))]),
         values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]]))]),
     ];
     let pictures = colliders::<2>(&list).pictures(0.5);
     assert_eq!(pictures[0], Picture::HalfSpace { point: [1.0, 2.0], normal: [0.0, 1.0] });
-    assert_eq!(pictures[1], Picture::Box { corners: vec![[0.5, 0.0], [2.5, 0.0], [0.5, 2.0], [2.5, 2.0]], inside: true });
+    assert_eq!(
+        pictures[1],
+        Picture::Box { corners: vec![[0.5, 0.0], [2.5, 0.0], [0.5, 2.0], [2.5, 2.0]], inside: true }
+    );
     assert_eq!(pictures[2], Picture::Ball { center: [0.0; 2], radius: 2.0, inside: false });
     let Picture::Capsule { a, b, .. } = pictures[3] else { panic!() };
     near(a, [1.0, -1.0]);
@@ -229,22 +335,40 @@ fn refusals_name_collider_and_value() {
     let e = refused::<3>(values::<3>("box", &[("min", vector(&[0.0; 3])), ("max", vector(&[1.0, -1.0, 1.0]))]));
     assert_eq!(e.code, "collider.empty_box");
     assert!(e.message.contains("[1.0, -1.0, 1.0]"));
-    let e = refused::<2>(values::<2>("box", &[("min", vector(&[0.0; 2])), ("max", vector(&[1.0; 2])), INSIDE, ("thickness", number(0.5))]));
+    let e = refused::<2>(values::<2>(
+        "box",
+        &[("min", vector(&[0.0; 2])), ("max", vector(&[1.0; 2])), INSIDE, ("thickness", number(0.5))],
+    ));
     assert_eq!(e.code, "collider.no_room");
     let e = refused::<2>(values::<2>("ball", &[("radius", number(1.0)), INSIDE, ("thickness", number(1.0))]));
     assert_eq!(e.code, "collider.no_room");
-    let e = refused::<3>(values::<3>("capsule", &[("a", vector(&[1.0; 3])), ("b", vector(&[1.0; 3])), ("radius", number(1.0))]));
+    let e = refused::<3>(values::<3>(
+        "capsule",
+        &[("a", vector(&[1.0; 3])), ("b", vector(&[1.0; 3])), ("radius", number(1.0))],
+    ));
     assert_eq!(e.code, "collider.no_direction");
-    let e = refused::<2>(values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[1.0, 1.0], &[2.0, 2.0], &[2.0, 2.0]]))]));
+    let e =
+        refused::<2>(values::<2>("convex", &[("points", rows(&[&[0.0, 0.0], &[1.0, 1.0], &[2.0, 2.0], &[2.0, 2.0]]))]));
     assert_eq!(e.code, "collider.flat_hull");
     let flat = rows(&[&[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[1.0, 1.0, 0.0], &[1.0, 1.0, 0.0]]);
     assert_eq!(refused::<3>(values::<3>("convex", &[("points", flat)])).code, "collider.flat_hull");
-    assert_eq!(refused::<3>(values::<3>("convex", &[("points", rows(&[&[1.0, 0.0, 0.0]]))])).code, "collider.flat_hull");
+    assert_eq!(
+        refused::<3>(values::<3>("convex", &[("points", rows(&[&[1.0, 0.0, 0.0]]))])).code,
+        "collider.flat_hull"
+    );
     let e = refused::<2>(values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0], &[1.0, 0.0]]))]));
     assert_eq!((e.code, e.message.contains("points 1 and 2")), ("collider.degenerate_facet", true));
-    let e = refused::<2>(values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]])), ("closed", Value::Boolean(true))]));
+    let e = refused::<2>(values::<2>(
+        "polyline",
+        &[("points", rows(&[&[0.0, 0.0], &[1.0, 0.0]])), ("closed", Value::Boolean(true))],
+    ));
     assert_eq!(e.code, "collider.points");
-    let mesh = |numbers: &[u32]| values::<3>("triangle_mesh", &[("points", rows(&[&[0.0; 3], &[1.0; 3], &[2.0; 3]])), ("triangles", Value::Integers(numbers.to_vec()))]);
+    let mesh = |numbers: &[u32]| {
+        values::<3>(
+            "triangle_mesh",
+            &[("points", rows(&[&[0.0; 3], &[1.0; 3], &[2.0; 3]])), ("triangles", Value::Integers(numbers.to_vec()))],
+        )
+    };
     assert_eq!(refused::<3>(mesh(&[0, 1, 3])).message, "`triangles` names point 3; allowed: 0 to 2");
     assert_eq!(refused::<3>(mesh(&[0, 1])).code, "collider.triangles");
     assert_eq!(refused::<3>(mesh(&[0, 1, 2])).code, "collider.degenerate_facet");
@@ -270,7 +394,8 @@ fn hulls_of_many_points_hold_all_of_them() {
         assert_eq!(points.len(), count);
     }
     // A grid of points with many of them on faces and edges.
-    let grid: Vec<Vec<f64>> = (0..125).map(|k| vec![(k % 5) as f64 * 0.1, (k / 5 % 5) as f64 * 0.1, (k / 25) as f64 * 0.1]).collect();
+    let grid: Vec<Vec<f64>> =
+        (0..125).map(|k| vec![(k % 5) as f64 * 0.1, (k / 5 % 5) as f64 * 0.1, (k / 25) as f64 * 0.1]).collect();
     let cube = values::<3>("convex", &[("points", Value::Rows(grid))]);
     near(after(&cube, [0.2, 0.39, 0.2], [0.0; 3], H).0, [0.2, 0.4, 0.2]);
 }

@@ -64,11 +64,19 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
 fn nanoseconds_per_node() {
     let floor = |mu: f64| values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("friction", number(mu))]);
     let far = values::<2>("ball", &[("center", vector(&[9.0, 0.0])), ("radius", number(1.0))]);
-    let room = values::<2>("box", &[("min", vector(&[-9.0; 2])), ("max", vector(&[9.0; 2])), ("inside", Value::Boolean(true))]);
+    let room = values::<2>(
+        "box",
+        &[("min", vector(&[-9.0; 2])), ("max", vector(&[9.0; 2])), ("inside", Value::Boolean(true))],
+    );
     let near_ball = values::<2>("ball", &[("center", vector(&[0.5, 0.0])), ("radius", number(0.5))]);
-    let near_box = values::<2>("box", &[("min", vector(&[0.2, -1.0])), ("max", vector(&[0.8, 0.5])), ("rotation", number(0.001))]);
-    let near_capsule = values::<2>("capsule", &[("a", vector(&[0.2, 0.0])), ("b", vector(&[0.8, 0.0])), ("radius", number(0.5))]);
-    let line = values::<2>("polyline", &[("points", rows(&[&[0.0, 0.0], &[0.2, 0.4], &[0.5, 0.0], &[0.7, 0.6], &[1.0, 0.0]]))]);
+    let near_box =
+        values::<2>("box", &[("min", vector(&[0.2, -1.0])), ("max", vector(&[0.8, 0.5])), ("rotation", number(0.001))]);
+    let near_capsule =
+        values::<2>("capsule", &[("a", vector(&[0.2, 0.0])), ("b", vector(&[0.8, 0.0])), ("radius", number(0.5))]);
+    let line = values::<2>(
+        "polyline",
+        &[("points", rows(&[&[0.0, 0.0], &[0.2, 0.4], &[0.5, 0.0], &[0.7, 0.6], &[1.0, 0.0]]))],
+    );
     for simd in [Simd::Baseline, Simd::Avx2, Simd::Avx512] {
         println!("{simd:?}, ns per node:");
         for (name, list, height) in [

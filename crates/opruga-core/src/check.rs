@@ -834,7 +834,7 @@ impl<const D: usize> Suite<'_, D> {
         let best = Simd::best();
         let body = &self.bodies[0];
         let nodes = body.x.len();
-        let mut damping = |v: &dyn Fn(usize) -> [f64; D]| -> Answer<(Vec<f64>, f64, f64)> {
+        let damping = |v: &dyn Fn(usize) -> [f64; D]| -> Answer<(Vec<f64>, f64, f64)> {
             let mut state = body.clone();
             let rest = self.case(potential, &body.still()).plain(best)?.0;
             for (node, entry) in state.v.iter_mut().enumerate() {

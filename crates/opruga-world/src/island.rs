@@ -1,6 +1,6 @@
 //! Bodies that are stepped together, and the frame that they step through on their own.
 
-use crate::ledger::{Account1, take_stock};
+use crate::ledger::{Stock, Survey, survey, take_stock};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
@@ -15,8 +15,11 @@ pub(crate) struct Island<const D: usize> {
     pub(crate) system: System<D>,
     /// The bodies, by their place in the world.
     pub(crate) bodies: Vec<usize>,
-    pub(crate) stock: Account1<D>,
+    pub(crate) stock: Stock,
+    pub(crate) survey: Survey<D>,
     pub(crate) work: Work8,
+    /// How the last frame ended.
+    pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
 }
 
@@ -40,23 +43,36 @@ pub(crate) struct FramePlan<'a, const D: usize> {
 
 impl<const D: usize> Island<D> {
     pub(crate) fn new(system: System<D>, bodies: Vec<usize>) -> Self {
-        let mut island = Island { system, bodies, stock: Account1::default(), work: Work8::default(), last: None };
+        let survey = survey(&system);
+        let mut island = Island { system, bodies, stock: Stock::default(), survey, work: Work8::default(), outcome: Ok(()), last: None };
         island.stock = take_stock(&mut island.system);
         island
+    }
+
+    /// Looks at the state again after it was changed from outside.
+    pub(crate) fn refresh(&mut self) {
+        self.survey = survey(&self.system);
+        self.stock = take_stock(&mut self.system);
     }
 
     /// Steps through a frame; on failure the island is at its last good frame and the reason names substep and node.
     pub(crate) fn frame(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
         self.save(plan.start);
-        let near = self.reaches(plan);
+        let swept = self.swept(plan);
+        let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);
         // A body that left the region swept by its velocities might have met an obstacle: once more, looking at all.
-        if outcome.is_ok() && !near && plan.colliders.is_some() && self.left_swept_region(plan) {
+        if let Ok(after) = &outcome
+            && !near
+            && plan.colliders.is_some()
+            && left(&swept, &after.position)
+        {
             self.restore();
             outcome = self.attempt(plan, true);
         }
         match outcome {
-            Ok(()) => {
+            Ok(survey) => {
+                self.survey = survey;
                 self.system.time = plan.start + f64::from(plan.substeps) * plan.h;
                 self.work = std::mem::take(&mut self.system.work);
                 self.stock = take_stock(&mut self.system);
@@ -72,7 +88,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<(), StepError> {
+    fn attempt(&mut self, plan: &FramePlan<D>, near: bool) -> Result<Survey<D>, StepError> {
         self.system.work = Work8::default();
         self.system.contacts = None;
         if let (true, Some(colliders)) = (near, plan.colliders) {
@@ -82,7 +98,11 @@ impl<const D: usize> Island<D> {
             self.system.time = plan.start + f64::from(substep) * plan.h;
             plan.integrator.step(&mut self.system, plan.h)?;
         }
-        self.check_finite(plan.start)
+        let survey = survey(&self.system);
+        if survey.finite {
+            return Ok(survey);
+        }
+        Err(self.culprit(plan.start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: plan.start }))
     }
 
     /// Repeats the frame, looking at every substep.
@@ -94,38 +114,26 @@ impl<const D: usize> Island<D> {
             if let Err(error) = plan.integrator.step(&mut self.system, plan.h) {
                 return Some(error);
             }
-            if let Err(error) = self.check_finite(time) {
+            if let Some(error) = self.culprit(time) {
                 return Some(error);
             }
         }
         None
     }
 
-    fn check_finite(&self, time: f64) -> Result<(), StepError> {
+    /// The first node that is not finite.
+    fn culprit(&self, time: f64) -> Option<StepError> {
         let system = &self.system;
-        let end = system.nodes * system.layout.stride();
-        // 0·x is zero for finite x and not a number for all others; eight partial sums let it run at full speed.
-        let mut sums = [0.0; 8];
-        for column in system.state.x.0.iter().chain(&system.state.v.0) {
-            for chunk in column[..end.next_multiple_of(8)].chunks_exact(8) {
-                for l in 0..8 {
-                    sums[l] += chunk[l] * 0.0;
-                }
-            }
-        }
-        if sums.iter().all(|s| *s == 0.0) {
-            return Ok(());
-        }
         for node in 0..system.nodes {
             for body in 0..system.bodies {
                 let place = system.layout.place(node, body);
                 let (x, v) = (system.state.x.at(place), system.state.v.at(place));
                 if x.iter().chain(&v).any(|c| !c.is_finite()) {
-                    return Err(StepError::Diverged { body, node: node as u32, time });
+                    return Some(StepError::Diverged { body, node: node as u32, time });
                 }
             }
         }
-        Ok(())
+        None
     }
 
     fn save(&mut self, time: f64) {
@@ -167,11 +175,25 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Whether the bodies may meet an obstacle within the frame: bounds swept by v·dt + ½g·dt² and a margin.
-    fn reaches(&self, plan: &FramePlan<D>) -> bool {
+    /// Whether the bodies may meet an obstacle within the frame.
+    fn reaches(&self, plan: &FramePlan<D>, swept: &[[f64; D]; 2]) -> bool {
         let Some(colliders) = plan.colliders else { return false };
-        let Some((low, high)) = self.swept(plan) else { return true };
-        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &low, &high)
+        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
+    }
+
+    /// Bounds swept within the frame by v·dt + ½g·dt² and a margin.
+    fn swept(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
+        let [mut low, mut high] = self.survey.position;
+        let [slow, fast] = self.survey.velocity;
+        let dt = f64::from(plan.substeps) * plan.h;
+        for d in 0..D {
+            let fall = 0.5 * self.system.gravity[d] * dt * dt;
+            // A body may deform at its own speed; the margin is a tenth of its size.
+            let margin = 0.1 * (high[d] - low[d]) + fall.abs();
+            low[d] += (slow[d] * dt).smaller(0.0) - margin;
+            high[d] += (fast[d] * dt).larger(0.0) + margin;
+        }
+        [low, high]
     }
 
     /// Bytes on the heap.
@@ -179,51 +201,9 @@ impl<const D: usize> Island<D> {
         let kept = 2 * D * self.last.as_ref().map_or(0, |s| s.x.0[0].capacity()) * 8;
         self.system.heap_bytes() + kept
     }
+}
 
-    /// The bounds of positions.
-    pub(crate) fn bounds(columns: &Columns<D>, places: usize) -> ([f64; D], [f64; D]) {
-        let mut low = [f64::INFINITY; D];
-        let mut high = [f64::NEG_INFINITY; D];
-        for d in 0..D {
-            let (mut lows, mut highs) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
-            let (packs, rest) = columns.0[d][..places].as_chunks::<8>();
-            for pack in packs {
-                for l in 0..8 {
-                    lows[l] = if pack[l] < lows[l] { pack[l] } else { lows[l] };
-                    highs[l] = if pack[l] > highs[l] { pack[l] } else { highs[l] };
-                }
-            }
-            for x in rest.iter().chain(&lows) {
-                low[d] = low[d].smaller(*x);
-            }
-            for x in rest.iter().chain(&highs) {
-                high[d] = high[d].larger(*x);
-            }
-        }
-        (low, high)
-    }
-
-    fn swept(&self, plan: &FramePlan<D>) -> Option<([f64; D], [f64; D])> {
-        let saved = self.last.as_ref()?;
-        let system = &self.system;
-        let places = system.nodes * system.layout.stride();
-        let (mut low, mut high) = Self::bounds(&saved.x, places);
-        let (slow, fast) = Self::bounds(&saved.v, places);
-        let dt = f64::from(plan.substeps) * plan.h;
-        for d in 0..D {
-            let fall = 0.5 * system.gravity[d] * dt * dt;
-            // A body may deform at its own speed; the margin is a tenth of its size.
-            let margin = 0.1 * (high[d] - low[d]) + fall.abs();
-            low[d] += (slow[d] * dt).smaller(0.0) - margin;
-            high[d] += (fast[d] * dt).larger(0.0) + margin;
-        }
-        Some((low, high))
-    }
-
-    fn left_swept_region(&self, plan: &FramePlan<D>) -> bool {
-        let Some((low, high)) = self.swept(plan) else { return true };
-        let system = &self.system;
-        let (least, most) = Self::bounds(&system.state.x, system.nodes * system.layout.stride());
-        (0..D).any(|d| least[d] < low[d] || most[d] > high[d])
-    }
+/// Whether positions lie outside of a region.
+fn left<const D: usize>(region: &[[f64; D]; 2], position: &[[f64; D]; 2]) -> bool {
+    (0..D).any(|d| position[0][d] < region[0][d] || position[1][d] > region[1][d])
 }

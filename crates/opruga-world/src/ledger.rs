@@ -2,8 +2,8 @@
 
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
-use opruga_core::system::{Stage, System, Work8};
-use opruga_math::{Lane, Pack, WIDTH, Work, lanes, sum_in_fixed_order};
+use opruga_core::system::{System, Work8};
+use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes, sum_in_fixed_order};
 
 /// Energy of the world and what entered and left it since the start [J]; every channel is measured by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,14 +57,24 @@ impl<const D: usize> Default for Vector<D> {
     }
 }
 
-/// What one island has and did.
+/// Energies of one island at the end of a frame [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Account1<const D: usize> {
-    pub(crate) kinetic: f64,
+pub(crate) struct Stock {
     pub(crate) elastic: f64,
     pub(crate) gas: f64,
+}
+
+/// One look at all nodes of an island: motion, bounds, and whether every number is finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Survey<const D: usize> {
+    pub(crate) kinetic: f64,
     pub(crate) gravity: f64,
     pub(crate) momentum: Momentum<D>,
+    /// Lowest and highest position [m].
+    pub(crate) position: [[f64; D]; 2],
+    /// Lowest and highest velocity [m/s].
+    pub(crate) velocity: [[f64; D]; 2],
+    pub(crate) finite: bool,
 }
 
 /// Adds the numbers that belong to real bodies.
@@ -75,9 +85,9 @@ pub(crate) fn total_of<const D: usize>(system: &System<D>, parts: &[f64; WIDTH])
     }
 }
 
-/// Takes stock of a system in its present state.
-pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Account1<D> {
-    let mut out = Account1::default();
+/// The energies of the models of a system in its present state.
+pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
+    let mut out = Stock::default();
     let time = system.time;
     let view = View {
         x: system.state.x.slices(),
@@ -87,66 +97,126 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Account1<D> 
         time,
     };
     for member in &mut system.members {
+        if !member.potential.views().energy {
+            continue;
+        }
         // A model that refused the state would have ended the frame.
         let _ = member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch);
-        if member.potential.views().energy {
-            let energy = member.potential.energy(system.simd, &view, &member.scratch);
-            let energy = match system.layout {
-                Layout::Single => sum_in_fixed_order(&energy),
-                Layout::Batch => energy[..system.bodies].iter().sum(),
-            };
-            match member.potential.account() {
-                Account::Gas => out.gas += energy,
-                _ => out.elastic += energy,
-            }
+        let energy = member.potential.energy(system.simd, &view, &member.scratch);
+        let energy = match system.layout {
+            Layout::Single => sum_in_fixed_order(&energy),
+            Layout::Batch => energy[..system.bodies].iter().sum(),
+        };
+        match member.potential.account() {
+            Account::Gas => out.gas += energy,
+            _ => out.elastic += energy,
         }
-    }
-    let motion = system.simd.run(Motion { system: &*system });
-    out.kinetic = total_of(system, &motion[0]);
-    let weight: [f64; D] = core::array::from_fn(|d| total_of(system, &motion[1 + d]));
-    for d in 0..D {
-        out.gravity -= system.gravity[d] * weight[d];
-        out.momentum.linear.0[d] = total_of(system, &motion[4 + d]);
-    }
-    for axis in 0..3 {
-        out.momentum.angular[axis] = total_of(system, &motion[7 + axis]);
     }
     out
 }
 
-/// ½mv², m x (three), m v (three), m x × v (three), eight partial sums each.
-struct Motion<'a, const D: usize> {
+/// Looks at all nodes of a system once.
+pub(crate) fn survey<const D: usize>(system: &System<D>) -> Survey<D> {
+    let sums = system.simd.run(Look { system });
+    let mut momentum = Momentum::default();
+    let mut gravity = 0.0;
+    for d in 0..D {
+        gravity -= system.gravity[d] * total_of(system, &sums.weight[d]);
+        momentum.linear.0[d] = total_of(system, &sums.linear[d]);
+    }
+    for axis in 0..3 {
+        momentum.angular[axis] = total_of(system, &sums.angular[axis]);
+    }
+    let least = |lanes: &[[f64; WIDTH]; D]| lanes.map(|l| l.into_iter().fold(f64::INFINITY, Lane::smaller));
+    let most = |lanes: &[[f64; WIDTH]; D]| lanes.map(|l| l.into_iter().fold(f64::NEG_INFINITY, Lane::larger));
+    Survey {
+        kinetic: total_of(system, &sums.kinetic),
+        gravity,
+        momentum,
+        position: [least(&sums.position[0]), most(&sums.position[1])],
+        velocity: [least(&sums.velocity[0]), most(&sums.velocity[1])],
+        finite: sums.finite.iter().all(|x| *x == 0.0),
+    }
+}
+
+/// What [`survey`] finds, eight partial results each.
+struct Looked<const D: usize> {
+    kinetic: [f64; WIDTH],
+    weight: [[f64; WIDTH]; D],
+    linear: [[f64; WIDTH]; D],
+    angular: [[f64; WIDTH]; 3],
+    position: [[[f64; WIDTH]; D]; 2],
+    velocity: [[[f64; WIDTH]; D]; 2],
+    finite: [f64; WIDTH],
+}
+
+struct Look<'a, const D: usize> {
     system: &'a System<D>,
 }
-impl<const D: usize> Work for Motion<'_, D> {
-    type Output = [[f64; WIDTH]; 10];
+impl<const D: usize> Work for Look<'_, D> {
+    type Output = Looked<D>;
     #[inline(always)]
-    fn run<P: Pack>(self) -> Self::Output {
+    fn run<P: Pack>(self) -> Looked<D> {
         let system = self.system;
-        let view = system.view(Stage::Current, system.time);
         let end = system.nodes * system.layout.stride();
-        let mut sums = [P::zero(); 10];
-        for place in (0..end).step_by(WIDTH) {
-            let mass: P = system.mass.load(place);
-            let mass = if place + WIDTH <= end { mass } else { P::select(P::first(end - place), mass, P::zero()) };
-            let x: [P; D] = lanes!(P, d => P::load(&view.x[d][place..]));
-            let v: [P; D] = lanes!(P, d => P::load(&view.v[d][place..]));
+        let packed = end.next_multiple_of(WIDTH);
+        let x = Strip::<D>::new(&system.state.x.slices(), 0, packed);
+        let v = Strip::<D>::new(&system.state.v.slices(), 0, packed);
+        let masses = system.mass.strip(0, packed);
+        let (mut kinetic, mut finite) = (P::zero(), P::zero());
+        let (mut weight, mut linear, mut angular) = ([P::zero(); D], [P::zero(); D], [P::zero(); 3]);
+        let (mut low, mut high) = ([P::splat(f64::INFINITY); D], [P::splat(f64::NEG_INFINITY); D]);
+        let (mut slow, mut fast) = (low, high);
+        for k in (0..packed).step_by(WIDTH) {
+            let mut mass: P = masses.load(k);
+            let mut position: [P; D] = lanes!(P, d => x.load(d, k));
+            let mut velocity: [P; D] = lanes!(P, d => v.load(d, k));
+            if k + WIDTH > end {
+                // Behind the last node: no mass, and the place of the first node of the pack.
+                let real = P::first(end - k);
+                mass = P::select(real, mass, P::zero());
+                for d in 0..D {
+                    position[d] = P::select(real, position[d], P::splat(position[d].to_array()[0]));
+                    velocity[d] = P::select(real, velocity[d], P::splat(velocity[d].to_array()[0]));
+                }
+            }
             let mut square = P::zero();
             for d in 0..D {
-                square += v[d] * v[d];
-                sums[1 + d] += mass * x[d];
-                sums[4 + d] += mass * v[d];
+                let momentum = mass * velocity[d];
+                square += velocity[d] * momentum;
+                weight[d] += mass * position[d];
+                linear[d] += momentum;
+                low[d] = position[d].smaller(low[d]);
+                high[d] = position[d].larger(high[d]);
+                slow[d] = velocity[d].smaller(slow[d]);
+                fast[d] = velocity[d].larger(fast[d]);
+                // Zero times a number is zero, times anything else it is not.
+                finite += (position[d] + velocity[d]) * P::zero();
             }
-            sums[0] += P::splat(0.5) * mass * square;
-            sums[9] += mass * (x[0] * v[1] - x[1] * v[0]);
+            kinetic += square;
+            angular[2] += mass * (position[0] * velocity[1] - position[1] * velocity[0]);
             if D == 3 {
-                sums[7] += mass * (x[1] * v[D - 1] - x[D - 1] * v[1]);
-                sums[8] += mass * (x[D - 1] * v[0] - x[0] * v[D - 1]);
+                let z = D - 1;
+                angular[0] += mass * (position[1] * velocity[z] - position[z] * velocity[1]);
+                angular[1] += mass * (position[z] * velocity[0] - position[0] * velocity[z]);
             }
         }
-        let mut out = [[0.0; WIDTH]; 10];
-        for n in 0..10 {
-            sums[n].store(&mut out[n]);
+        let mut out = Looked {
+            kinetic: (kinetic * P::splat(0.5)).to_array(),
+            weight: [[0.0; WIDTH]; D],
+            linear: [[0.0; WIDTH]; D],
+            angular: [angular[0].to_array(), angular[1].to_array(), angular[2].to_array()],
+            position: [[[0.0; WIDTH]; D]; 2],
+            velocity: [[[0.0; WIDTH]; D]; 2],
+            finite: finite.to_array(),
+        };
+        for d in 0..D {
+            out.weight[d] = weight[d].to_array();
+            out.linear[d] = linear[d].to_array();
+            out.position[0][d] = low[d].to_array();
+            out.position[1][d] = high[d].to_array();
+            out.velocity[0][d] = slow[d].to_array();
+            out.velocity[1][d] = fast[d].to_array();
         }
         out
     }
@@ -180,7 +250,10 @@ impl Flows {
         self.limited_velocities += work.limited_velocities;
     }
     /// The ledger for the present stock.
-    pub(crate) fn ledger<const D: usize>(&mut self, stock: &[Account1<D>]) -> (Energy, Momentum<D>) {
+    pub(crate) fn ledger<'a, const D: usize>(
+        &mut self,
+        islands: impl Iterator<Item = (&'a Stock, &'a Survey<D>)>,
+    ) -> (Energy, Momentum<D>) {
         let mut energy = Energy {
             work_user: self.user,
             work_gas: self.gas,
@@ -190,16 +263,16 @@ impl Flows {
             ..Energy::default()
         };
         let mut momentum = Momentum::default();
-        for island in stock {
-            energy.kinetic += island.kinetic;
-            energy.elastic += island.elastic;
-            energy.gas += island.gas;
-            energy.gravity += island.gravity;
+        for (stock, survey) in islands {
+            energy.kinetic += survey.kinetic;
+            energy.elastic += stock.elastic;
+            energy.gas += stock.gas;
+            energy.gravity += survey.gravity;
             for d in 0..D {
-                momentum.linear.0[d] += island.momentum.linear.0[d];
+                momentum.linear.0[d] += survey.momentum.linear.0[d];
             }
             for axis in 0..3 {
-                momentum.angular[axis] += island.momentum.angular[axis];
+                momentum.angular[axis] += survey.momentum.angular[axis];
             }
         }
         let given = self.start + self.user + self.gas;

@@ -5,7 +5,7 @@ use crate::build::{BodyState, Builder, group, initial_state, rest_volume};
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
-use crate::ledger::{Account1, Energy, Flows, Momentum};
+use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
@@ -156,12 +156,11 @@ impl<const D: usize> World<D> {
     }
 
     fn stock_energy(&self) -> f64 {
-        self.islands.iter().map(|i| i.stock.kinetic + i.stock.elastic + i.stock.gas + i.stock.gravity).sum()
+        self.islands.iter().map(|i| i.survey.kinetic + i.stock.elastic + i.stock.gas + i.survey.gravity).sum()
     }
 
     pub(crate) fn refresh_ledger(&mut self) {
-        let stock: Vec<Account1<D>> = self.islands.iter().map(|i| i.stock).collect();
-        (self.energy, self.momentum) = self.flows.ledger(&stock);
+        (self.energy, self.momentum) = self.flows.ledger(self.islands.iter().map(|i| (&i.stock, &i.survey)));
     }
 
     /// Copies the state of every body out of the islands.
@@ -292,21 +291,22 @@ impl<const D: usize> World<D> {
             h: self.h(),
         };
         let islands = &mut self.islands;
-        let outcomes: Vec<Result<(), StepError>> = match &self.pool {
-            None => islands.iter_mut().map(|i| i.frame(&plan)).collect(),
-            Some(pool) => pool.install(|| islands.par_iter_mut().map(|i| i.frame(&plan)).collect()),
-        };
-        let failed: Vec<usize> = (0..outcomes.len()).filter(|i| outcomes[*i].is_err()).collect();
-        if let Some(&first) = failed.first() {
+        let step = |island: &mut Island<D>| island.outcome = island.frame(&plan);
+        match &self.pool {
+            None => islands.iter_mut().for_each(step),
+            Some(pool) => pool.install(|| islands.par_iter_mut().for_each(step)),
+        }
+        if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
             // All islands go back to the same frame.
-            for (island, outcome) in self.islands.iter_mut().zip(&outcomes) {
-                if outcome.is_ok() {
+            for island in &mut self.islands {
+                if island.outcome.is_ok() {
                     island.restore();
+                    island.refresh();
                 }
                 island.work = Default::default();
             }
             let body = |local: usize| self.blueprint.bodies[self.islands[first].bodies[local]].name.clone();
-            return Err(match &outcomes[first] {
+            return Err(match &self.islands[first].outcome {
                 Err(StepError::Diverged { body: local, node, time }) => {
                     WorldError::Diverged { body: body(*local), node: *node, time: *time, last: self.time() }
                 }
@@ -406,6 +406,11 @@ impl<const D: usize> World<D> {
         let place = island.system.layout.place(node as usize, lane);
         island.system.state.x.set(place, position);
         island.system.state.v.set(place, velocity);
+        island.refresh();
+        // Nobody's work or loss.
+        let before = self.energy.total();
+        self.flows.start += self.stock_energy() - before;
+        self.refresh_ledger();
     }
     /// The mass of a node [kg].
     pub fn node_mass(&self, body: usize, node: u32) -> f64 {

@@ -62,7 +62,14 @@ pub fn particles<const D: usize>(x: &[[f64; D]], v: &[[f64; D]], mass: f64, list
     laid_out(Simd::best(), Layout::Single, x, v, mass, list)
 }
 /// Particles of one body, or the same eight times side by side.
-pub fn laid_out<const D: usize>(simd: Simd, layout: Layout, x: &[[f64; D]], v: &[[f64; D]], mass: f64, list: &[Values]) -> System<D> {
+pub fn laid_out<const D: usize>(
+    simd: Simd,
+    layout: Layout,
+    x: &[[f64; D]],
+    v: &[[f64; D]],
+    mass: f64,
+    list: &[Values],
+) -> System<D> {
     let places = layout.places(x.len());
     let (mut cx, mut cv) = (Columns::zeros(places), Columns::zeros(places));
     for node in 0..x.len() {

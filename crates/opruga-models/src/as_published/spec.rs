@@ -1,0 +1,40 @@
+//! Parameters of the published program.
+
+use opruga_core::spec::{Allowed, Default, Field, Spec};
+
+const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+    Field { name, range, unit, default, documentation }
+}
+
+/// The parameters of `as_published`.
+pub const SPEC: Spec = Spec {
+    kind: "as_published",
+    summary: "the published program of the thesis, slips included: springs, its \"volume\", doubled pressure, ramp, pointer",
+    documentation: "One step of the program in D. Križaić's thesis (2012, 3.3 and 4), in its pixels with y downwards, for use with \
+`symplectic_euler`, a step of 0.001 s, `node_mass = 1` and world gravity 0 (the model brings its own). Its floor is an ordinary collider: a half-space \
+at y = 500 with normal [0, -1], restitution 0.5, friction 0. It is no potential: energy is not conserved, and its work is entered as work from outside. \
+An edge of no length makes its forces infinite or no number, as published. For the physics use `mass_spring` with `pressure`; the eleven differences \
+(E1 to E11) are told in the documentation of the module.",
+    dimensions: &[2],
+    fields: &[
+        field("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),
+        field("damping", Allowed::NOT_NEGATIVE, "kg/s", Default::Number(40.0), "Damping constant KD along each spring."),
+        field("final_pressure", Allowed::NOT_NEGATIVE, "", Default::Number(100.0), "FINAL_PRESSURE, reached in steps of a hundredth of it."),
+        field("factor", Allowed::ANY, "", Default::Number(1000.0), "The stray factor on the pressure force (E3)."),
+        field("gravity_y", Allowed::ANY, "px/s²", Default::Number(10.0), "GY, downwards positive; acts once the ramp has ended (E5)."),
+        field(
+            "pointer",
+            Allowed::Path,
+            "px",
+            Default::Absent,
+            "Where the mouse is over time: `[[t, x, y], …]`, straight between its points; the button is held from the first to the last.",
+        ),
+        field(
+            "held",
+            Allowed::Curve,
+            "s",
+            Default::Absent,
+            "When the button is held instead: `[[press, release], …]`; at each press the vertex nearest to the pointer is taken.",
+        ),
+    ],
+};

@@ -1,0 +1,196 @@
+//! # Bending
+//!
+//! Outlines, chains and shells that resist a change of their angles, as thin walls do (Grinspun et al. 2003; for
+//! outlines the two-dimensional counterpart). Over all hinges, nodes between two edges or edges between two triangles,
+//!
+//! U = Σ ½ k (θ − θ₀)²,  f = −k (θ − θ₀) ∇θ − c θ̇ ∇θ.
+//!
+//! θ comes from atan2 of its sine and cosine, so that it is accurate at every angle; ∇θ is exact and the Hessian is its
+//! exact derivative by dual numbers. How k follows from a modulus and a thickness, and what happens to degenerate
+//! hinges, is said in [`SPEC`].
+//!
+//! Two closed forms hold for the outline with k = EI/ℓ: the ring buckles under the outer pressure 3EI/R³ (Lévy), and a
+//! clamped strip bends by PL³/3EI. On a regular triangular lattice a shell has the flexural rigidity E t³/12 in every
+//! direction and a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988).
+//!
+//! Limits: chains in space resist bending but no twist, and their damping does not act on a change of the plane in
+//! which they bend; a chain in space with a rest angle has no force where it is exactly straight.
+
+mod angle;
+mod hinge;
+mod spec;
+mod turn;
+
+pub use spec::SPEC;
+
+use angle::{cross, dot, in_space, minus};
+use hinge::Hinge;
+use opruga_core::error::BuildError;
+use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::spec::{Spec, Values};
+use opruga_core::state::View;
+use opruga_core::stencil::Stencils;
+use opruga_core::tile::Tile;
+use opruga_math::{Simd, WIDTH};
+use turn::Turn;
+
+/// The kind `bending`.
+#[derive(Debug)]
+pub struct BendingModel;
+
+/// Hinges of one body, or of eight alike ones.
+#[derive(Debug)]
+pub struct Bending {
+    /// Of outlines and chains.
+    turns: Stencils<Turn, 3, 4>,
+    /// Of surfaces.
+    hinges: Stencils<Hinge, 4, 4>,
+    damped: bool,
+}
+
+impl<const D: usize> Model<D> for BendingModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let refuse = |code, message: String| BuildError::new(SPEC.kind, code, message);
+        let mesh = ingredients.mesh;
+        for values in ingredients.values {
+            match (values.number("stiffness"), values.number("modulus"), values.number("thickness")) {
+                (Some(_), None, None) | (None, Some(_), Some(_)) => {}
+                (None, Some(_), None) => {
+                    return Err(refuse("model.one_of", "`modulus` needs `thickness`".into()));
+                }
+                (Some(_), None, Some(_)) => {
+                    return Err(refuse("model.one_of", "`thickness` goes with `modulus`, not with `stiffness`".into()));
+                }
+                _ => {
+                    let message = "exactly one of `stiffness` and `modulus` must be given";
+                    return Err(refuse("model.one_of", message.into()));
+                }
+            }
+        }
+        let turns = mesh.bends().map_err(|e| refuse("model.mesh", e.to_string()))?;
+        let hinges = mesh.hinges().map_err(|e| refuse("model.not_manifold", e.to_string()))?;
+        if turns.is_empty() && hinges.is_empty() {
+            let message = "the body has nothing to bend: no node between two edges of an outline or chain, no edge between two triangles";
+            return Err(refuse("model.no_hinges", message.into()));
+        }
+
+        // The rest shape: for each hinge cos θ₀ and sin θ₀, and k per E t³/12 (E π t⁴/64 for a chain in space).
+        let at = |node: u32| in_space(&mesh.positions[node as usize]);
+        let mut turn_shapes = Vec::with_capacity(turns.len());
+        for &[before, node, after] in &turns {
+            let (u, w) = (minus(&at(node), &at(before)), minus(&at(after), &at(node)));
+            let normal = cross(&u, &w);
+            let mut sine = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
+            let cosine = dot(&u, &w);
+            if D == 3 && cosine > 0.0 && sine < 1e-9 * cosine {
+                // Straight but for rounding: then every direction of bending is alike.
+                sine = 0.0;
+            }
+            let length = 0.5 * (dot(&u, &u).sqrt() + dot(&w, &w).sqrt());
+            let depth = if D == 2 { ingredients.thickness } else { 1.0 };
+            turn_shapes.push(Shape::new(sine, cosine, depth / length));
+        }
+        let mut hinge_shapes = Vec::with_capacity(hinges.len());
+        for &[a, b, c, d] in &hinges {
+            let (e, ac, ad) = (minus(&at(b), &at(a)), minus(&at(c), &at(a)), minus(&at(d), &at(a)));
+            let (n1, n2) = (cross(&e, &ac), cross(&ad, &e));
+            let square = dot(&e, &e);
+            let areas = 0.5 * (dot(&n1, &n1).sqrt() + dot(&n2, &n2).sqrt());
+            hinge_shapes.push(Shape::new(-square.sqrt() * dot(&n1, &ad), dot(&n1, &n2), square / areas));
+        }
+        let shapes = turn_shapes.iter().chain(&hinge_shapes);
+        if let Some(number) = shapes.clone().position(|s| !(s.cosine.is_finite() && s.factor.is_finite())) {
+            let message = format!("hinge {number} has an edge without length or a triangle without area at rest");
+            return Err(refuse("model.zero_length", message));
+        }
+
+        let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];
+        let damped = ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0);
+        let (layout, nodes) = (ingredients.layout, mesh.positions.len());
+        Ok(Box::new(Bending {
+            turns: Stencils::new(layout, nodes, &turns, damped, |hinge, body| {
+                turn_shapes[hinge].parameters(values(body), D == 3)
+            }),
+            hinges: Stencils::new(layout, nodes, &hinges, damped, |hinge, body| {
+                hinge_shapes[hinge].parameters(values(body), false)
+            }),
+            damped,
+        }))
+    }
+}
+
+/// A hinge at rest.
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    sine: f64,
+    cosine: f64,
+    /// Stiffness per flexural rigidity [1/m in the plane and for chains, 1 for surfaces].
+    factor: f64,
+}
+
+impl Shape {
+    /// From sine and cosine times a common factor.
+    fn new(sine: f64, cosine: f64, factor: f64) -> Shape {
+        let length = (sine * sine + cosine * cosine).sqrt();
+        Shape { sine: sine / length, cosine: cosine / length, factor }
+    }
+    /// k, c, cos θ₀, sin θ₀.
+    fn parameters(&self, values: &Values, round: bool) -> [f64; 4] {
+        let stiffness = match (values.number("modulus"), values.number("thickness")) {
+            (Some(modulus), Some(t)) => {
+                let inertia = if round { core::f64::consts::PI * t * t * t * t / 64.0 } else { t * t * t / 12.0 };
+                modulus * inertia * self.factor
+            }
+            _ => values.number("stiffness").unwrap_or(0.0),
+        };
+        let straight = values.text("rest") == Some("straight");
+        let (cosine, sine) = if straight { (1.0, 0.0) } else { (self.cosine, self.sine) };
+        [stiffness, values.number("damping").unwrap_or(0.0), cosine, sine]
+    }
+}
+
+impl Bending {
+    fn parts<const D: usize>(&self) -> [&dyn Potential<D>; 2] {
+        [&self.turns, &self.hinges]
+    }
+}
+
+impl<const D: usize> Potential<D> for Bending {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: self.damped }
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        for part in self.parts::<D>() {
+            part.spans(visit);
+        }
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        for part in self.parts::<D>() {
+            part.add_force(simd, view, scratch, tile);
+        }
+    }
+    fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        let mut energy = [0.0; WIDTH];
+        for part in self.parts::<D>() {
+            let own = part.energy(simd, view, scratch);
+            for l in 0..WIDTH {
+                energy[l] += own[l];
+            }
+        }
+        energy
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        for part in self.parts::<D>() {
+            part.hessian(view, scratch, keep, sink);
+        }
+    }
+    fn heap_bytes(&self) -> usize {
+        self.parts::<D>().iter().map(|part| part.heap_bytes()).sum()
+    }
+}

@@ -1,0 +1,88 @@
+//! # Drag
+//!
+//! Every node is braked in proportion to its mass and velocity, as in a thin, resting air:
+//!
+//! f_i = −λ m_i v_i, so a_i = −λ v_i and v falls as e^(−λt).
+//!
+//! By design it brakes rigid motion as well: a falling body tends to the speed g/λ, a flying one loses momentum. Where
+//! only oscillations are to die out, damping along springs or of bending is the right choice; they are zero under rigid
+//! motion. There is no energy, and dissipated power is λ Σ m v². Also known as mass-proportional (Rayleigh) damping.
+
+mod spec;
+
+pub use spec::SPEC;
+
+use opruga_core::error::BuildError;
+use opruga_core::potential::{Ingredients, Model, Potential, Views};
+use opruga_core::spec::Spec;
+use opruga_core::state::{Parameter, View};
+use opruga_core::tile::Tile;
+use opruga_math::{Pack, Simd, WIDTH, Work};
+
+/// The kind `drag`.
+#[derive(Debug)]
+pub struct DragModel;
+
+/// Drag on the nodes of one body, or of eight.
+#[derive(Debug)]
+pub struct Drag {
+    /// λ of each body [1/s].
+    rate: Parameter,
+    mass: Parameter,
+}
+
+impl<const D: usize> Model<D> for DragModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let rate = ingredients.by_body(|values| values.number("rate").unwrap_or(0.0));
+        Ok(Box::new(Drag { rate: Parameter::by_body(rate), mass: ingredients.mass.clone() }))
+    }
+}
+
+impl<const D: usize> Potential<D> for Drag {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn views(&self) -> Views {
+        Views { energy: false, hessian: false, damping: true }
+    }
+    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
+        simd.run(Force { drag: self, view, tile });
+    }
+    fn heap_bytes(&self) -> usize {
+        self.rate.heap_bytes() + self.mass.heap_bytes()
+    }
+}
+
+struct Force<'a, 'b, 'c, const D: usize> {
+    drag: &'a Drag,
+    view: &'a View<'a, D>,
+    tile: &'b mut Tile<'c, D>,
+}
+impl<const D: usize> Work for Force<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let Force { drag, view, tile } = self;
+        tile.settle::<P>();
+        let start = tile.range.start;
+        let end = view.nodes * view.layout.stride();
+        let mut power = P::from_array(*tile.power);
+        for place in tile.range.clone().step_by(WIDTH) {
+            let strength = drag.rate.load::<P>(place) * drag.mass.load::<P>(place);
+            // Places behind the last node carry nothing.
+            let strength = P::select(P::first(end.saturating_sub(place)), strength, P::zero());
+            for d in 0..D {
+                let v = P::load(&view.v[d][place..]);
+                let force = strength * v;
+                power += force * v;
+                let k = place - start;
+                (P::load(&tile.force[d][k..]) - force).store(&mut tile.force[d][k..]);
+            }
+        }
+        power.store(tile.power);
+    }
+}

@@ -1,0 +1,19 @@
+//! Parameters of the drag.
+
+use opruga_core::spec::{Allowed, Default, Field, Spec};
+
+/// The parameters of `drag`.
+pub const SPEC: Spec = Spec {
+    kind: "drag",
+    summary: "braking of every node in proportion to its mass and velocity",
+    documentation: "Force −λ m v on every node: v falls as e^(−λt). Brakes rigid motion by design: a falling body tends to the speed g/λ. \
+For oscillations alone use `damping` of `mass_spring` or `bending`, which are zero under rigid motion.",
+    dimensions: &[2, 3],
+    fields: &[Field {
+        name: "rate",
+        range: Allowed::NOT_NEGATIVE,
+        unit: "1/s",
+        default: Default::Required,
+        documentation: "Rate λ at which velocities fall.",
+    }],
+};

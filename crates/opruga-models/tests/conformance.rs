@@ -1,0 +1,130 @@
+//! Every model in the plane and in space, one line each.
+
+mod support;
+
+use opruga_core::check::{Options, conformance};
+use opruga_mesh::Mesh;
+use opruga_models::as_published::AsPublishedModel as AsPublished;
+use opruga_models::bending::BendingModel as Bending;
+use opruga_models::drag::DragModel as Drag;
+use opruga_models::mass_spring::MassSpring;
+use opruga_models::pressure::PressureModel as Pressure;
+
+fn ring(vertices: u32) -> Mesh<2> {
+    Mesh::ring(0.5, vertices, [0.2, 2.0], 0.1).unwrap()
+}
+fn plate() -> Mesh<2> {
+    Mesh::grid([0.0, 1.0], [1.0, 0.6], [5, 3]).unwrap()
+}
+fn chain<const D: usize>() -> Mesh<D> {
+    let at = |k: u32| core::array::from_fn(|d| [0.1 * f64::from(k), 0.05 * f64::from(k % 3), 0.03 * f64::from(k % 2)][d]);
+    Mesh::polyline(&(0..29).map(at).collect::<Vec<_>>(), false).unwrap()
+}
+fn sphere() -> Mesh<3> {
+    Mesh::icosphere(0.5, 1).unwrap()
+}
+fn cloth() -> Mesh<3> {
+    Mesh::sheet([0.0, 1.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [5, 4]).unwrap()
+}
+fn block() -> Mesh<3> {
+    Mesh::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap()
+}
+/// One state of a mesh that needs several tiles; small, since there are as many differences as coordinates.
+fn once() -> Options {
+    Options { states: 1, ..Options::default() }
+}
+fn mirrored() -> Options {
+    Options { mirrored: true, ..Options::default() }
+}
+fn shrunk() -> Options {
+    Options { stretch: 0.05, noise: 0.01, coincident: false, ..Options::default() }
+}
+
+#[test]
+fn mass_spring_in_the_plane() {
+    let soft = values!(mass_spring, stiffness: 300.0);
+    let damped = [values!(mass_spring, stiffness: 300.0, damping: 2.0), values!(mass_spring, stiffness: 50.0, damping: 3.0)];
+    conformance("ring", &MassSpring, &[soft.clone()], &ring(36), &Options::default()).assert();
+    conformance("ring of five", &MassSpring, &damped, &ring(5), &Options::default()).assert();
+    conformance("long ring", &MassSpring, &damped, &ring(130), &once()).assert();
+    conformance("chain", &MassSpring, &damped, &chain::<2>(), &Options::default()).assert();
+    let modulus = values!(mass_spring, modulus: 800.0, damping: 1.0, edges: "shear");
+    conformance("plate", &MassSpring, &[modulus], &plate(), &Options::default()).assert();
+    conformance("mirrored", &MassSpring, &[soft], &plate(), &mirrored()).assert();
+}
+
+#[test]
+fn mass_spring_in_space() {
+    let damped = [values!(mass_spring, stiffness: 300.0, damping: 2.0), values!(mass_spring, stiffness: 50.0)];
+    conformance("sphere", &MassSpring, &damped, &sphere(), &Options::default()).assert();
+    conformance("cloth", &MassSpring, &damped, &cloth(), &Options::default()).assert();
+    conformance("block", &MassSpring, &damped, &block(), &Options::default()).assert();
+    conformance("chain", &MassSpring, &damped, &chain::<3>(), &Options::default()).assert();
+}
+
+#[test]
+fn pressure_in_the_plane() {
+    let isothermal = [values!(pressure, nRT: 70.0), values!(pressure, pressure: 200.0, ambient: 150.0)];
+    conformance("isothermal", &Pressure, &isothermal, &ring(36), &Options::default()).assert();
+    conformance("of five", &Pressure, &isothermal, &ring(5), &Options::default()).assert();
+    let adiabatic = values!(pressure, pressure: 200.0, process: "adiabatic", ambient: 90.0);
+    conformance("adiabatic", &Pressure, &[adiabatic.clone()], &ring(37), &Options::default()).assert();
+    conformance("plate", &Pressure, &[adiabatic.clone()], &plate(), &Options::default()).assert();
+    conformance("inside out", &Pressure, &[adiabatic.clone()], &ring(36), &mirrored()).assert();
+    conformance("inside out", &Pressure, &isothermal[..1], &ring(36), &mirrored()).assert();
+    conformance("nearly empty", &Pressure, &[adiabatic], &ring(36), &shrunk()).assert();
+    let capped = values!(pressure, nRT: 70.0, largest_pressure: 20.0, ambient: 7.0);
+    conformance("capped", &Pressure, &[capped], &ring(36), &Options::default()).assert();
+}
+
+#[test]
+fn pressure_in_space() {
+    let isothermal = [values!(pressure, nRT: 70.0), values!(pressure, pressure: 200.0, ambient: 150.0)];
+    conformance("isothermal", &Pressure, &isothermal, &sphere(), &Options::default()).assert();
+    let adiabatic = values!(pressure, pressure: 200.0, process: "adiabatic", gamma: 1.67, ambient: 90.0);
+    conformance("adiabatic", &Pressure, &[adiabatic.clone()], &sphere(), &Options::default()).assert();
+    conformance("block", &Pressure, &[adiabatic.clone()], &block(), &once()).assert();
+    conformance("inside out", &Pressure, &[adiabatic.clone()], &sphere(), &mirrored()).assert();
+    conformance("nearly empty", &Pressure, &[adiabatic], &sphere(), &shrunk()).assert();
+    let capped = values!(pressure, nRT: 70.0, process: "adiabatic", largest_pressure: 20.0, ambient: 7.0);
+    conformance("capped", &Pressure, &[capped], &sphere(), &Options::default()).assert();
+}
+
+#[test]
+fn bending_in_the_plane() {
+    let damped = [values!(bending, stiffness: 0.3, damping: 0.02), values!(bending, modulus: 5e4, thickness: 0.02, damping: 0.01)];
+    conformance("ring", &Bending, &damped, &ring(36), &Options::default()).assert();
+    conformance("of three", &Bending, &damped, &ring(3), &Options::default()).assert();
+    conformance("long ring", &Bending, &damped, &ring(130), &once()).assert();
+    conformance("chain", &Bending, &damped, &chain::<2>(), &Options::default()).assert();
+    let straight = values!(bending, stiffness: 0.3, rest: "straight");
+    conformance("straight", &Bending, &[straight], &plate(), &Options::default()).assert();
+    conformance("inside out", &Bending, &damped, &ring(36), &mirrored()).assert();
+}
+
+#[test]
+fn bending_in_space() {
+    let damped = [values!(bending, stiffness: 0.3, damping: 0.02), values!(bending, modulus: 5e4, thickness: 0.02, damping: 0.01)];
+    conformance("sphere", &Bending, &damped, &sphere(), &Options::default()).assert();
+    conformance("cloth", &Bending, &damped, &cloth(), &Options::default()).assert();
+    conformance("chain", &Bending, &damped, &chain::<3>(), &Options::default()).assert();
+    let straight = values!(bending, stiffness: 0.3, rest: "straight");
+    conformance("straight", &Bending, &[straight.clone()], &chain::<3>(), &Options::default()).assert();
+    conformance("block", &Bending, &[straight], &block(), &once()).assert();
+    conformance("inside out", &Bending, &damped, &sphere(), &mirrored()).assert();
+}
+
+/// Drag brakes rigid motion by design: it claims no row on it.
+#[test]
+fn drag() {
+    let options = Options { rigid: false, ..Options::default() };
+    conformance("drag", &Drag, &[values!(drag, rate: 0.7)], &ring(36), &options).assert();
+    conformance("drag", &Drag, &[values!(drag, rate: 0.7), values!(drag, rate: 0.0)], &sphere(), &options).assert();
+}
+
+/// The published forces are no potential, turn with no body and are not finite for edges without length.
+#[test]
+fn as_published_in_the_plane() {
+    let options = Options { rigid: false, coincident: false, ..Options::default() };
+    conformance("published", &AsPublished, &[values!(as_published)], &ring(36), &options).assert();
+}
