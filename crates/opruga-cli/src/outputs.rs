@@ -162,18 +162,17 @@ impl Outputs<'_> {
     pub(crate) fn write<const D: usize>(&self, world: &mut World<D>, recorder: Recorder) -> Result<String, Failure> {
         let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), "checkpoint".into()];
         self.folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
-        let bodies: Vec<(String, Vec<[f64; D]>, Vec<[f64; D]>)> = world
-            .bodies()
-            .map(|body| {
-                let nodes = 0..world.node_count(body) as u32;
-                (
-                    world.blueprint().bodies[body].name.clone(),
-                    nodes.clone().map(|n| world.position(body, n)).collect(),
-                    nodes.map(|n| world.velocity(body, n)).collect(),
-                )
-            })
-            .collect();
-        let rows = bodies.iter().map(|(name, positions, velocities)| FinalBody { name, positions, velocities });
+        let numbers: Vec<usize> = world.bodies().collect();
+        let nodes = |body: usize| 0..world.node_count(body) as u32;
+        let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
+            numbers.iter().map(|&b| nodes(b).map(|n| vector(b, n)).collect()).collect()
+        };
+        let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
+        let rows = numbers.iter().zip(x.iter().zip(&v)).map(|(&body, (positions, velocities))| FinalBody {
+            name: &world.blueprint().bodies[body].name,
+            positions,
+            velocities,
+        });
         self.folder.write("final.csv", false, |out| write_final(out, rows))?;
         let saved =
             SavedRun { name: self.source.name.clone(), overrides: self.set.to_vec(), snapshot: world.snapshot() };

@@ -37,6 +37,9 @@
 //! **Limits.** Nodes meet colliders; edges and facets between nodes do not: an obstacle finer than the mesh can poke
 //! through between two nodes. The tilted or curved surface is taken at the end of the step: first order in h.
 
+// Units stand in brackets, [m], which rustdoc takes for links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 mod collider;
 mod contacts;
 mod facets;

@@ -11,11 +11,12 @@
 //! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products
 //! as a power iteration from the same start vector, but the best combination of all of them; a power iteration still
 //! misses 2 % after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz
-//! value plus its residual is taken; the step found from it is lowered by 2 %. Negative eigenvalues (a body about to buckle) are no matter of the step.
+//! value plus its residual is taken; the step found from it is lowered by 2 %. Negative eigenvalues (a body about to
+//! buckle) are no matter of the step.
 //!
-//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 obeys μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the pairs
-//! (ω², c) of all modes lie in the joint numerical range of K and C, whatever their eigenvectors. Around it a polygon is
-//! drawn, from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 obeys μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So
+//! the pairs (ω², c) of all modes lie in the joint numerical range of K and C, whatever their eigenvectors. Around it a
+//! polygon is drawn, from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
@@ -34,7 +35,7 @@ use crate::integrator::{Integrator, spectral_radius};
 use crate::state::{Columns, Layout, View};
 use crate::system::System;
 use crate::tile::Tile;
-use opruga_math::{Lane, WIDTH};
+use opruga_math::{Lane, WIDTH, sum_in_fixed_order};
 
 /// Limits are lowered by this factor, for small changes of the state.
 const SAFETY: f64 = 0.98;
@@ -286,16 +287,17 @@ impl<'a, const D: usize> Probe<'a, D> {
             column.fill(0.0);
         }
         for sign in [-1.0, 1.0] {
+            let along = sign * step;
             for i in 0..D {
-                for p in 0..d.0[i].len() {
-                    self.x.0[i][p] = self.system.state.x.0[i][p] + sign * step * d.0[i][p];
+                for ((x, start), d) in self.x.0[i].iter_mut().zip(&self.system.state.x.0[i]).zip(&d.0[i]) {
+                    *x = start + along * d;
                 }
             }
             self.evaluate(false)?;
             let weight = -sign * factor / (2.0 * step);
             for i in 0..D {
-                for p in 0..d.0[i].len() {
-                    out.0[i][p] += weight * self.force.0[i][p];
+                for (out, force) in out.0[i].iter_mut().zip(&self.force.0[i]) {
+                    *out += weight * force;
                 }
             }
         }
@@ -316,14 +318,15 @@ impl<'a, const D: usize> Probe<'a, D> {
         let step = 1.0 / largest(d);
         self.x.clone_from(&self.system.state.x);
         for i in 0..D {
-            for p in 0..d.0[i].len() {
-                self.v.0[i][p] = step * d.0[i][p];
+            for (v, d) in self.v.0[i].iter_mut().zip(&d.0[i]) {
+                *v = step * d;
             }
         }
         self.evaluate(true)?;
+        let weight = 1.0 / step;
         for i in 0..D {
-            for p in 0..d.0[i].len() {
-                out.0[i][p] += (self.at_rest.0[i][p] - self.force.0[i][p]) / step;
+            for ((out, rest), force) in out.0[i].iter_mut().zip(&self.at_rest.0[i]).zip(&self.force.0[i]) {
+                *out += weight * (rest - force);
             }
         }
         Ok(())
@@ -332,13 +335,28 @@ impl<'a, const D: usize> Probe<'a, D> {
 
 /// The largest entry, by absolute value.
 fn largest<const D: usize>(columns: &Columns<D>) -> f64 {
-    let mut most = f64::MIN_POSITIVE;
+    let mut most = [f64::MIN_POSITIVE; WIDTH];
     for column in &columns.0 {
-        for value in column {
-            most = value.abs().larger(most);
+        for values in column.chunks_exact(WIDTH) {
+            for l in 0..WIDTH {
+                most[l] = values[l].abs().larger(most[l]);
+            }
         }
     }
-    most
+    most.into_iter().fold(0.0, Lane::larger)
+}
+
+/// The scalar product, in eight partial sums.
+fn dot<const D: usize>(a: &Columns<D>, b: &Columns<D>) -> f64 {
+    let mut sums = [0.0; WIDTH];
+    for i in 0..D {
+        for (a, b) in a.0[i].chunks_exact(WIDTH).zip(b.0[i].chunks_exact(WIDTH)) {
+            for l in 0..WIDTH {
+                sums[l] += a[l] * b[l];
+            }
+        }
+    }
+    sum_in_fixed_order(&sums)
 }
 
 /// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
@@ -360,29 +378,26 @@ fn extremes<const D: usize>(
     let mut found = [None, None];
     for iteration in 1..=MOST_PRODUCTS.min(freedom) {
         for i in 0..D {
-            for p in 0..d.0[i].len() {
-                d.0[i][p] = weights.0[i][p] * q.0[i][p];
-                r.0[i][p] = 0.0;
+            for ((d, w), q) in d.0[i].iter_mut().zip(&weights.0[i]).zip(&q.0[i]) {
+                *d = w * q;
             }
+            r.0[i].fill(0.0);
         }
         product(&d, &mut r)?;
         // What the product has in the direction of the last two vectors is the new row of the tridiagonal matrix.
-        let mut alpha = 0.0;
         let beta = matrix.beta.last().copied().unwrap_or(0.0);
         for i in 0..D {
-            for p in 0..r.0[i].len() {
-                r.0[i][p] = weights.0[i][p] * r.0[i][p] - beta * before.0[i][p];
-                alpha += r.0[i][p] * q.0[i][p];
+            for ((r, w), before) in r.0[i].iter_mut().zip(&weights.0[i]).zip(&before.0[i]) {
+                *r = w * *r - beta * before;
             }
         }
-        let mut square = 0.0;
+        let alpha = dot(&r, &q);
         for i in 0..D {
-            for p in 0..r.0[i].len() {
-                r.0[i][p] -= alpha * q.0[i][p];
-                square += r.0[i][p] * r.0[i][p];
+            for (r, q) in r.0[i].iter_mut().zip(&q.0[i]) {
+                *r -= alpha * q;
             }
         }
-        let beta = square.sqrt();
+        let beta = dot(&r, &r).sqrt();
         if !(alpha.is_finite() && beta.is_finite()) {
             let message = "the forces around the state are not finite, so no stable step can be given".into();
             return Err(StepError::Model { model: "stability", message });
@@ -404,10 +419,11 @@ fn extremes<const D: usize>(
         if found[1].is_some() && (!both || found[0].is_some()) {
             break;
         }
+        core::mem::swap(&mut before, &mut q);
+        let factor = 1.0 / beta;
         for i in 0..D {
-            for p in 0..r.0[i].len() {
-                before.0[i][p] = q.0[i][p];
-                q.0[i][p] = r.0[i][p] / beta;
+            for (q, r) in q.0[i].iter_mut().zip(&r.0[i]) {
+                *q = factor * r;
             }
         }
     }

@@ -51,10 +51,8 @@ impl<'a, const N: usize> StripMut<'a, N> {
     #[inline(always)]
     pub fn new(columns: [&'a mut [f64]; N], start: usize, length: usize) -> Self {
         let mut pointers = [core::ptr::null_mut(); N];
-        let mut n = 0;
-        for column in columns {
-            pointers[n] = column[start..start + length].as_mut_ptr();
-            n += 1;
+        for (pointer, column) in pointers.iter_mut().zip(columns) {
+            *pointer = column[start..start + length].as_mut_ptr();
         }
         StripMut { start: pointers, length, borrow: PhantomData }
     }

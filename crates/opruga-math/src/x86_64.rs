@@ -39,7 +39,7 @@ macro_rules! split_registers {
     ($(#[$note:meta])* $type:ident, $register:ty, $count:literal, $width:literal, $prefix:ident,
      add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, set $set:ident, sqrt $sqrt:ident,
      andnot $andnot:ident, and $and:ident, load $load:ident, store $store:ident,
-     less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, any $any:ident, shift $shift:expr) => {
+     less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, any $any:ident, shift $shift:expr, min $min:ident, max $max:ident) => {
         $(#[$note])*
         #[derive(Clone, Copy)]
         #[repr(C, align(64))]
@@ -60,6 +60,10 @@ macro_rules! split_registers {
             fn sqrt(self) -> Self { $type(registers!($set, $count, r => $sqrt(self.0[r]))) }
             #[inline(always)]
             fn abs(self) -> Self { $type(registers!($set, $count, r => $andnot($set(-0.0), self.0[r]))) }
+            #[inline(always)]
+            fn smaller(self, other: Self) -> Self { $type(registers!($set, $count, r => $min(self.0[r], other.0[r]))) }
+            #[inline(always)]
+            fn larger(self, other: Self) -> Self { $type(registers!($set, $count, r => $max(self.0[r], other.0[r]))) }
             #[inline(always)]
             fn less(self, other: Self) -> Self::Mask { registers!($set, $count, r => $less(self.0[r], other.0[r])) }
             #[inline(always)]
@@ -138,7 +142,7 @@ split_registers! {
     andnot _mm_andnot_pd, and _mm_and_pd, load _mm_loadu_pd, store _mm_storeu_pd,
     less |a, b| _mm_cmplt_pd(a, b), less_or_equal |a, b| _mm_cmple_pd(a, b),
     select |m, y, n| _mm_or_pd(_mm_and_pd(m, y), _mm_andnot_pd(m, n)), any _mm_movemask_pd,
-    shift |before, r| _mm_shuffle_pd::<0b01>(before, r)
+    shift |before, r| _mm_shuffle_pd::<0b01>(before, r), min _mm_min_pd, max _mm_max_pd
 }
 split_registers! {
     /// Eight numbers in two registers of AVX2.
@@ -147,7 +151,8 @@ split_registers! {
     andnot _mm256_andnot_pd, and _mm256_and_pd, load _mm256_loadu_pd, store _mm256_storeu_pd,
     less |a, b| _mm256_cmp_pd::<_CMP_LT_OQ>(a, b), less_or_equal |a, b| _mm256_cmp_pd::<_CMP_LE_OQ>(a, b),
     select |m, y, n| _mm256_blendv_pd(n, y, m), any _mm256_movemask_pd,
-    shift |before, r| _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(before, r), r)
+    shift |before, r| _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(before, r), r),
+    min _mm256_min_pd, max _mm256_max_pd
 }
 
 /// Eight numbers in one register of AVX-512.
@@ -175,6 +180,14 @@ impl Lane for Avx512 {
     #[inline(always)]
     fn abs(self) -> Self {
         Avx512(unsafe { _mm512_abs_pd(self.0) })
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Avx512(unsafe { _mm512_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Avx512(unsafe { _mm512_max_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {

@@ -355,7 +355,7 @@ fn nearest_shares<const D: usize>(corners: &[[f64; D]], point: &[f64; D]) -> Vec
         let edge = minus(b, a);
         let square = dot(&edge, &edge);
         let s = if square > 0.0 { dot(&minus(point, a), &edge) / square } else { 0.0 };
-        if s < 0.0 { 0.0 } else if s > 1.0 { 1.0 } else { s }
+        s.clamp(0.0, 1.0)
     };
     if corners.len() == 2 {
         let s = on_segment(&corners[0], &corners[1]);

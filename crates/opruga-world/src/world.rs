@@ -79,7 +79,6 @@ pub struct World<const D: usize> {
     pub(crate) momentum: Momentum<D>,
     /// Frames since the start.
     pub(crate) frames: u64,
-    /// Time at which the present frame length began, and frames since then.
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
     pool: Option<rayon::ThreadPool>,
@@ -235,12 +234,12 @@ impl<const D: usize> World<D> {
             let blueprint = &self.blueprint.bodies[body];
             let key = (Arc::as_ptr(&blueprint.mesh) as usize, blueprint.models.clone());
             let dragged = self.islands[number].system.members.len() > blueprint.models.len() + 1;
-            if !dragged && seen.iter().any(|k| *k == key) {
+            if !dragged && seen.contains(&key) {
                 continue;
             }
             seen.push(key);
             let name = blueprint.name.clone();
-            let stability = estimate(&mut self.islands[number].system, &*self.integrator)
+            let stability = estimate(&self.islands[number].system, &*self.integrator)
                 .map_err(|e| WorldError::Step { body: name.clone(), message: e.to_string() })?;
             match stability.largest_stable_step {
                 Some(limit) if h > limit => {

@@ -158,7 +158,7 @@ fn a_diverging_world_names_body_and_node_and_stays_at_its_last_good_frame() {
     let mut blueprint = rings(3, 36, "symplectic_euler");
     blueprint.time.substeps = 1;
     let refused = World::new(blueprint.clone(), Options::default());
-    let message = refused.err().expect("the step is too long").to_string();
+    let message = refused.expect_err("the step is too long").to_string();
     assert!(message.contains("the largest stable step is"), "{message}");
     let mut world = World::new(blueprint, Options { allow_unstable: true, ..Options::default() }).expect("allowed");
     let error = loop {

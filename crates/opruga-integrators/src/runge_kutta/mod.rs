@@ -72,7 +72,7 @@ impl<const D: usize> Integrator<D> for RungeKutta {
         SPEC.kind
     }
     fn work_columns(&self) -> usize {
-        3
+        2
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
         // 1 + A (1 + A/2 (1 + A/3 (1 + A/4))) with A = h [[0, 1], [−ω², −c]].
@@ -92,7 +92,7 @@ impl<const D: usize> Integrator<D> for RungeKutta {
         system.advance(Stage::Current, 0.0, sixth, None, &FirstStage { span: half })?;
         system.advance(Stage::Work(0), half, third, None, &SecondStage { h })?;
         system.advance(Stage::Work(1), half, third, None, &ThirdStage { h })?;
-        system.advance(Stage::Work(2), h, sixth, Some(h), &End { h })?;
+        system.advance(Stage::Work(0), h, sixth, Some(h), &End { h })?;
         system.finish_step(h);
         Ok(())
     }
@@ -133,42 +133,53 @@ impl<const D: usize> Update<D> for SecondStage {
     }
 }
 
-/// y₃ = y₀ + h k₂ into work 2.
+/// y₃ = y₀ + h k₂ into work 0, and the end without the acceleration a₃ into work 1.
 struct ThirdStage {
     h: f64,
 }
 impl<const D: usize> Update<D> for ThirdStage {
     fn writes(&self) -> Stage {
-        Stage::Work(2)
+        Stage::Work(0)
     }
     fn time(&self) -> f64 {
         self.h
     }
     #[inline(always)]
     fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>) {
-        let h = P::splat(self.h);
+        let (h, sixth, third) = (P::splat(self.h), P::splat(self.h / 6.0), P::splat(1.0 / 3.0));
         let (start, length) = (range.start, range.len());
         let force = Strip::<D>::new(force, 0, length);
         let inverse_mass = inverse_mass.strip(start, length);
         let x0 = Strip::<D>::new(&state.x.slices(), start, length);
         let v0 = Strip::<D>::new(&state.v.slices(), start, length);
-        let (first, third) = state.work.split_at_mut(2);
-        let v2 = Strip::<D>::new(&first[1][1].slices(), start, length);
-        let [x3, v3] = &mut third[0];
-        let (mut x3, mut v3) = (x3.strip_mut(start, length), v3.strip_mut(start, length));
+        let (first, second) = state.work.split_at_mut(1);
+        let [x3, v1] = &mut first[0];
+        let [end, v2] = &mut second[0];
+        let (mut x3, mut v1) = (x3.strip_mut(start, length), v1.strip_mut(start, length));
+        let (mut end, mut v2) = (end.strip_mut(start, length), v2.strip_mut(start, length));
         for k in (0..length).step_by(WIDTH) {
             let kick = h * inverse_mass.load::<P>(k);
-            let position = lanes!(P, d => x0.load::<P>(d, k) + v2.load::<P>(d, k) * h);
-            let velocity = lanes!(P, d => v0.load::<P>(d, k) + force.load::<P>(d, k) * kick);
+            let position = lanes!(P, d => x0.load::<P>(d, k));
+            let a = lanes!(P, d => v0.load::<P>(d, k));
+            let b = lanes!(P, d => v1.load::<P>(d, k));
+            let c = lanes!(P, d => v2.load::<P>(d, k));
+            let change = lanes!(P, d => force.load::<P>(d, k) * kick);
             for d in 0..D {
-                x3.store(d, k, position[d]);
-                v3.store(d, k, velocity[d]);
+                let last = a[d] + change[d];
+                x3.store(d, k, position[d] + c[d] * h);
+                v1.store(d, k, last);
+                // x = x₀ + h/6 (v₀ + 2 v₁ + 2 v₂ + v₃).
+                let middle = b[d] + c[d];
+                end.store(d, k, position[d] + ((a[d] + last) + (middle + middle)) * sixth);
+                // v = v₀ + ⅓ ((v₁ − v₀) + 2 (v₂ − v₀) + h a₂) + h/6 a₃: differences first, so that v₀ is not rounded.
+                let again = c[d] - a[d];
+                v2.store(d, k, a[d] + (((b[d] - a[d]) + change[d]) + (again + again)) * third);
             }
         }
     }
 }
 
-/// The end of the step.
+/// The end of the step, from work 1 and the last acceleration.
 struct End {
     h: f64,
 }
@@ -181,31 +192,22 @@ impl<const D: usize> Update<D> for End {
     }
     #[inline(always)]
     fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>) {
-        let (sixth, half_step, third) = (P::splat(self.h / 6.0), P::splat(0.5 * self.h), P::splat(1.0 / 3.0));
+        let sixth = P::splat(self.h / 6.0);
         let (start, length) = (range.start, range.len());
         let force = Strip::<D>::new(force, 0, length);
         let inverse_mass = inverse_mass.strip(start, length);
-        let v1 = Strip::<D>::new(&state.work[0][1].slices(), start, length);
-        let v2 = Strip::<D>::new(&state.work[1][1].slices(), start, length);
-        let v3 = Strip::<D>::new(&state.work[2][1].slices(), start, length);
+        let [end, almost] = &state.work[1];
+        let end = Strip::<D>::new(&end.slices(), start, length);
+        let almost = Strip::<D>::new(&almost.slices(), start, length);
         let mut x = state.x.strip_mut(start, length);
         let mut v = state.v.strip_mut(start, length);
         for k in (0..length).step_by(WIDTH) {
-            let kick = half_step * inverse_mass.load::<P>(k);
-            let position = lanes!(P, d => x.load::<P>(d, k));
-            let a = lanes!(P, d => v.load::<P>(d, k));
-            let b = lanes!(P, d => v1.load::<P>(d, k));
-            let c = lanes!(P, d => v2.load::<P>(d, k));
-            let e = lanes!(P, d => v3.load::<P>(d, k));
-            let change = lanes!(P, d => force.load::<P>(d, k) * kick);
+            let kick = sixth * inverse_mass.load::<P>(k);
+            let position = lanes!(P, d => end.load::<P>(d, k));
+            let velocity = lanes!(P, d => almost.load::<P>(d, k) + force.load::<P>(d, k) * kick);
             for d in 0..D {
-                // x = x₀ + h/6 (v₀ + 2 v₁ + 2 v₂ + v₃).
-                let middle = b[d] + c[d];
-                x.store(d, k, position[d] + ((a[d] + e[d]) + (middle + middle)) * sixth);
-                // v = v₀ + ⅓ ((v₁ − v₀) + 2 (v₂ − v₀) + (v₃ − v₀) + ½h a₃): differences first, so that v₀ is not rounded.
-                let again = c[d] - a[d];
-                let late = (e[d] - a[d]) + change[d];
-                v.store(d, k, a[d] + (((b[d] - a[d]) + (again + again)) + late) * third);
+                x.store(d, k, position[d]);
+                v.store(d, k, velocity[d]);
             }
         }
     }

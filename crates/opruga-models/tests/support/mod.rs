@@ -9,7 +9,7 @@ use opruga_math::{Simd, sum_in_fixed_order};
 use opruga_mesh::Mesh;
 
 /// Anything that a parameter may be given as.
-pub trait IntoValue {
+pub(crate) trait IntoValue {
     /// As a value.
     fn value(self) -> Value;
 }
@@ -30,7 +30,7 @@ impl<const N: usize> IntoValue for &[[f64; N]] {
 }
 
 /// The defaults of a model with some parameters set.
-pub fn values(spec: &Spec, set: Vec<(&str, Value)>) -> Values {
+pub(crate) fn values(spec: &Spec, set: Vec<(&str, Value)>) -> Values {
     let mut values = Values::defaults(spec, 2);
     for (name, value) in set {
         values.set(spec, name, value, 2).unwrap();
@@ -47,15 +47,15 @@ macro_rules! values {
 }
 
 /// A model and its parameters.
-pub type Part<'a, const D: usize> = (&'a dyn Model<D>, Values);
+pub(crate) type Part<'a, const D: usize> = (&'a dyn Model<D>, Values);
 
 /// A system of one body with some models, in its rest shape, without motion; mass 1 kg at every node.
-pub fn system<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) -> System<D> {
+pub(crate) fn system<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) -> System<D> {
     system_with_mass(mesh, parts, 1.0)
 }
 
 /// The same with another mass of every node [kg].
-pub fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], mass: f64) -> System<D> {
+pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], mass: f64) -> System<D> {
     let nodes = mesh.positions.len();
     let places = Layout::Single.places(nodes);
     let mut x = Columns::zeros(places);
@@ -80,7 +80,7 @@ pub fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], mass:
 }
 
 /// The energy of all models [J].
-pub fn energy<const D: usize>(system: &mut System<D>) -> f64 {
+pub(crate) fn energy<const D: usize>(system: &mut System<D>) -> f64 {
     // Forces prepare all models.
     system.forces(true).unwrap();
     let view = system.view(Stage::Current, system.time);
@@ -88,24 +88,24 @@ pub fn energy<const D: usize>(system: &mut System<D>) -> f64 {
 }
 
 /// Forces at rest [N], node after node.
-pub fn forces<const D: usize>(system: &mut System<D>) -> Vec<f64> {
+pub(crate) fn forces<const D: usize>(system: &mut System<D>) -> Vec<f64> {
     let forces = system.forces(false).unwrap();
     (0..system.nodes).flat_map(|n| forces.at(n)).collect()
 }
 
 /// A symmetric matrix, row after row.
 #[derive(Clone, Debug)]
-pub struct Dense {
-    pub size: usize,
-    pub entries: Vec<f64>,
+pub(crate) struct Dense {
+    pub(crate) size: usize,
+    pub(crate) entries: Vec<f64>,
 }
 
 impl Dense {
-    pub fn times(&self, v: &[f64]) -> Vec<f64> {
+    pub(crate) fn times(&self, v: &[f64]) -> Vec<f64> {
         self.entries.chunks(self.size).map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum()).collect()
     }
     /// Solves by Gauss's elimination with row exchanges.
-    pub fn solve(&self, right: &[f64]) -> Vec<f64> {
+    pub(crate) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let n = self.size;
         let mut rows: Vec<Vec<f64>> = self.entries.chunks(n).map(|row| row.to_vec()).collect();
         let mut x = right.to_vec();
@@ -133,7 +133,7 @@ impl Dense {
         x
     }
     /// How many eigenvalues lie below a number: negative pivots of the shifted matrix (Sylvester), in the order of the rows.
-    pub fn eigenvalues_below(&self, shift: f64) -> usize {
+    pub(crate) fn eigenvalues_below(&self, shift: f64) -> usize {
         let n = self.size;
         let mut rows: Vec<Vec<f64>> = self.entries.chunks(n).map(|row| row.to_vec()).collect();
         for (k, row) in rows.iter_mut().enumerate() {
@@ -174,7 +174,7 @@ impl<const D: usize> Sink<D> for DenseSink {
 }
 
 /// The Hessian of all models in the present state [N/m].
-pub fn hessian<const D: usize>(system: &mut System<D>) -> Dense {
+pub(crate) fn hessian<const D: usize>(system: &mut System<D>) -> Dense {
     system.forces(false).unwrap();
     let size = system.nodes * D;
     let mut sink = DenseSink(Dense { size, entries: vec![0.0; size * size] });
@@ -189,7 +189,7 @@ pub fn hessian<const D: usize>(system: &mut System<D>) -> Dense {
 /// Newton's method for forces + load = 0 with some coordinates (node · D + axis) held; returns the last residual [N].
 ///
 /// `shift` [N/m] is added to the diagonal where rigid motion is free; it does not move the solution.
-pub fn newton<const D: usize>(system: &mut System<D>, load: &[f64], held: &[usize], shift: f64) -> f64 {
+pub(crate) fn newton<const D: usize>(system: &mut System<D>, load: &[f64], held: &[usize], shift: f64) -> f64 {
     let mut residual = f64::INFINITY;
     for _ in 0..60 {
         let mut right = forces(system);
