@@ -98,8 +98,8 @@ pub(crate) struct Run {
     /// How long to run, instead of what the scene says; 0 writes the state at the start [s]
     #[arg(long)]
     pub(crate) seconds: Option<f64>,
-    /// Frames of the video for each second
-    #[arg(long, default_value_t = 30.0)]
+    /// Frames of the animation for each second
+    #[arg(long, default_value_t = 20.0)]
     pub(crate) fps: f64,
     /// The folder for the output [default: out/SCENE]
     #[arg(long)]
@@ -119,7 +119,7 @@ pub(crate) struct Run {
     /// No strip, video and plots
     #[arg(long)]
     pub(crate) no_pictures: bool,
-    /// A GIF instead of the MP4
+    /// Write the animation as GIF, which is what this version writes in any case
     #[arg(long)]
     pub(crate) gif: bool,
     /// Go on from a checkpoint

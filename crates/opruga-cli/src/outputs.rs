@@ -24,6 +24,8 @@ pub(crate) struct Recorder {
     moments: Vec<Moment>,
     /// Frames of the scene between two pictures.
     every: u64,
+    /// The length of a frame of the scene [s].
+    frame: f64,
     arrows: bool,
 }
 
@@ -100,6 +102,7 @@ impl Recorder {
             scenery: (!call.no_pictures).then(|| Scenery::new(world)),
             moments: Vec::new(),
             every,
+            frame,
             arrows: call.arrows,
         }
     }
@@ -149,7 +152,6 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 /// Where the files go and what they say of the run.
 pub(crate) struct Outputs<'a> {
     pub(crate) folder: &'a OutputFolder,
-    pub(crate) call: &'a Run,
     pub(crate) source: &'a Source,
     pub(crate) set: &'a [(String, String)],
     pub(crate) wall: f64,
@@ -265,9 +267,25 @@ impl Outputs<'_> {
         Ok(())
     }
 
+    /// The animation of the run, drawn frame by frame.
     fn video(&self, scenery: &Scenery, recorder: &Recorder, view: &draw::View) -> Result<String, Failure> {
-        let _ = (scenery, recorder, view);
-        Ok(String::new())
+        let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
+        let style = draw::Style { width: 640, height: 480, ..draw::Style::default() };
+        let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
+        let samples: Vec<draw::Image> =
+            draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
+        let rate = 1.0 / (recorder.every as f64 * recorder.frame);
+        let mut bytes = Vec::new();
+        let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
+        for moment in &recorder.moments {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            writer.push(&draw_moment(moment)?).map_err(draw_failed)?;
+        }
+        drop(writer);
+        self.folder.write("video.gif", false, |out| out.write_all(&bytes))?;
+        Ok("video.gif".into())
     }
 
     /// A few lines for people.

@@ -178,7 +178,6 @@ impl Job<'_> {
         bar.finish_and_clear();
         let outputs = Outputs {
             folder: &self.folder,
-            call: self.call,
             source: self.source,
             set: self.set,
             wall,

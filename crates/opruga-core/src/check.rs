@@ -50,6 +50,8 @@ pub struct Options {
     pub rigid: bool,
     /// Whether it claims a finite force where all nodes coincide.
     pub coincident: bool,
+    /// Whether differences are taken, as many as coordinates: not for meshes of more than some hundred nodes.
+    pub derivatives: bool,
     /// Time of the state [s].
     pub time: f64,
     /// Depth out of the plane, or thickness of a sheet [m].
@@ -70,6 +72,7 @@ impl Default for Options {
             mirrored: false,
             rigid: true,
             coincident: true,
+            derivatives: true,
             time: 0.37,
             thickness: 0.8,
             gradient_tolerance: 1e-8,
@@ -346,7 +349,8 @@ impl<'a, const D: usize> Case<'a, D> {
         self.layout.places(self.nodes)
     }
     fn prepare(&mut self, simd: Simd) -> Answer<()> {
-        let view = View { x: self.x.slices(), v: self.v.slices(), nodes: self.nodes, layout: self.layout, time: self.time };
+        let view =
+            View { x: self.x.slices(), v: self.v.slices(), nodes: self.nodes, layout: self.layout, time: self.time };
         self.potential.prepare(simd, &view, &self.memory, &mut self.scratch).map_err(|e| e.to_string())
     }
     fn view(&self) -> View<'_, D> {
@@ -377,7 +381,8 @@ impl<'a, const D: usize> Case<'a, D> {
                 simd.run(Settle { tile: &mut tile });
             }
             let force = buffers.each_mut().map(Vec::as_mut_slice);
-            let mut tile = Tile { range: range.clone(), force, power: &mut power, weight: heaviness, slots: &mut slots };
+            let mut tile =
+                Tile { range: range.clone(), force, power: &mut power, weight: heaviness, slots: &mut slots };
             self.potential.add_force(simd, &self.view(), &self.scratch, &mut tile);
             for d in 0..D {
                 out.0[d][range.clone()].copy_from_slice(&buffers[d][..range.len()]);
@@ -553,10 +558,10 @@ impl<const D: usize> Suite<'_, D> {
         let potential = self.build(Some(0))?;
         let views = potential.views();
         self.same_bits(random, &*potential, &mut add)?;
-        if views.energy {
+        if views.energy && self.options.derivatives {
             self.gradient(&*potential, &mut add)?;
         }
-        if views.hessian {
+        if views.hessian && self.options.derivatives {
             self.hessian(random, &*potential, &mut add)?;
         }
         if self.options.rigid {
@@ -775,8 +780,7 @@ impl<const D: usize> Suite<'_, D> {
             let mut case = self.case(potential, &state);
             let (other, _) = case.plain(best)?;
             let same = sum_in_fixed_order(&case.energy(best)?);
-            let expected: Vec<f64> =
-                force.iter().flat_map(|f| turn.map_or(*f, |q| times(&q, f))).collect();
+            let expected: Vec<f64> = force.iter().flat_map(|f| turn.map_or(*f, |q| times(&q, f))).collect();
             let other: Vec<f64> = other.into_iter().flatten().collect();
             let error = difference(&other, &expected, 1e-300);
             add(quantity, error, 1e-9);
@@ -804,7 +808,7 @@ impl<const D: usize> Suite<'_, D> {
         add("net torque", difference(torque.as_flattened(), &vec![0.0; D * D], moment), 1e-13);
 
         // H Ω(x − x₀) = Ω ∇U.
-        if views.hessian {
+        if views.hessian && self.options.derivatives {
             let still = body.still();
             let mut case = self.case(potential, &still);
             let (force, _) = case.plain(best)?;

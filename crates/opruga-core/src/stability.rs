@@ -262,8 +262,13 @@ impl<'a, const D: usize> Probe<'a, D> {
     fn evaluate(&mut self, damped_only: bool) -> Result<(), StepError> {
         let system = self.system;
         let places = system.places();
-        let view =
-            View { x: self.x.slices(), v: self.v.slices(), nodes: system.nodes, layout: system.layout, time: system.time };
+        let view = View {
+            x: self.x.slices(),
+            v: self.v.slices(),
+            nodes: system.nodes,
+            layout: system.layout,
+            time: system.time,
+        };
         for column in &mut self.force.0 {
             column.fill(0.0);
         }

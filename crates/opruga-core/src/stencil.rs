@@ -159,7 +159,19 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
             }
         }
         let kernel = PhantomData;
-        Stencils { kernel, layout, nodes, elements: sorted, parameters, damped, blocks, list, straight, share_start, share }
+        Stencils {
+            kernel,
+            layout,
+            nodes,
+            elements: sorted,
+            parameters,
+            damped,
+            blocks,
+            list,
+            straight,
+            share_start,
+            share,
+        }
     }
 
     /// Nodes of every element, in the order of evaluation.
@@ -208,13 +220,14 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
                         force[a][d] += drag[a][d];
                     }
                 }
-                // The range of its first node enters the power of an element.
+                // The block of its first node enters the power of an element, if the tile covers it.
+                let own = (block * TILE).max(tile.range.start)..((block + 1) * TILE).min(tile.range.end);
                 let each = power.to_array();
                 for l in 0..WIDTH {
                     let item = items[l.min(step - 1)];
                     let filling = step > 1 && l > 0 && item == items[l - 1];
                     let owner = self.elements[item as usize][0] as usize * stride;
-                    if tile.range.contains(&owner) && !filling {
+                    if own.contains(&owner) && !filling {
                         tile.power[l] += each[l];
                     }
                 }
@@ -390,7 +403,8 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
         }
     }
     fn heap_bytes(&self) -> usize {
-        let numbers = self.blocks.capacity() + self.list.capacity() + self.share_start.capacity() + self.share.capacity();
+        let numbers =
+            self.blocks.capacity() + self.list.capacity() + self.share_start.capacity() + self.share.capacity();
         let parameters: usize = self.parameters.iter().map(Parameter::heap_bytes).sum();
         4 * (numbers + N * self.elements.capacity()) + self.straight.capacity() + parameters
     }

@@ -1,10 +1,11 @@
 //! Pictures, film strips, plots and videos of deformable bodies, without a graphics card.
 //!
 //! A [`Picture`] says what is seen at one moment. A [`View`], fitted to all pictures of a run, says from where. Then
-//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`GifWriter`] and [`Mp4Writer`] a video.
+//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`GifWriter`] an animation.
 // The fixed elementary functions are for physics; a picture may differ in a last bit.
 #![allow(clippy::disallowed_methods)]
 
+mod animation;
 mod canvas;
 mod colour;
 mod error;
@@ -19,6 +20,7 @@ mod strip;
 mod ticks;
 mod view;
 
+pub use animation::GifWriter;
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
 pub use image::Image;

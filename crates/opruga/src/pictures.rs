@@ -81,7 +81,7 @@ impl Scenery {
                 segments: if many || D == 3 && !mesh.facets.is_empty() { mesh.wires.clone() } else { edges.clone() },
                 cells: if D == 2 { cells } else { Vec::new() },
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
-                nodes_drawn: !many && mesh.nodes() <= 64,
+                nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
                 pinned,
             }
         };

@@ -25,7 +25,8 @@ impl<const D: usize> Potential<D> for Anchors {
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         for p in tile.range.clone().take(self.stiffness.len()) {
             for d in 0..D {
-                tile.force[d][p - tile.range.start] -= self.stiffness[p] * view.x[d][p] + self.damping[p] * view.v[d][p];
+                tile.force[d][p - tile.range.start] -=
+                    self.stiffness[p] * view.x[d][p] + self.damping[p] * view.v[d][p];
             }
         }
     }
@@ -53,7 +54,14 @@ impl Integrator<2> for Rule {
 const SYMPLECTIC: Rule = Rule { symplectic: true };
 const EXPLICIT: Rule = Rule { symplectic: false };
 
-fn anchored(layout: Layout, nodes: usize, bodies: usize, mass: f64, stiffness: Vec<f64>, damping: Vec<f64>) -> System<2> {
+fn anchored(
+    layout: Layout,
+    nodes: usize,
+    bodies: usize,
+    mass: f64,
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+) -> System<2> {
     let places = layout.places(nodes);
     let (mut x, v) = (Columns::zeros(places), Columns::zeros(places));
     for p in 0..nodes * layout.stride() {
@@ -169,9 +177,16 @@ fn the_polygon_is_narrow_where_damping_follows_stiffness() {
     let stiffness: Vec<f64> = (0..200).map(|k| 10.0 + k as f64).collect();
     let follows = anchored(Layout::Single, 200, 1, 1.0, stiffness.clone(), stiffness.iter().map(|k| 0.1 * k).collect());
     let spectrum = Spectrum::of(&follows).unwrap();
-    assert!(spectrum.offset[0].abs() < 0.05 * spectrum.damping && spectrum.offset[1].abs() < 0.05 * spectrum.damping, "{spectrum:?}");
+    assert!(
+        spectrum.offset[0].abs() < 0.05 * spectrum.damping && spectrum.offset[1].abs() < 0.05 * spectrum.damping,
+        "{spectrum:?}"
+    );
     // Against the stiffness: the loosest spring has the strongest damper.
-    let opposes = anchored(Layout::Single, 200, 1, 1.0, stiffness.clone(), stiffness.iter().map(|k| 0.1 * (219.0 - k)).collect());
+    let opposes =
+        anchored(Layout::Single, 200, 1, 1.0, stiffness.clone(), stiffness.iter().map(|k| 0.1 * (219.0 - k)).collect());
     let spectrum = Spectrum::of(&opposes).unwrap();
-    assert!(spectrum.offset[1] > 0.9 * spectrum.damping && spectrum.offset[0] < -0.9 * spectrum.damping, "{spectrum:?}");
+    assert!(
+        spectrum.offset[1] > 0.9 * spectrum.damping && spectrum.offset[0] < -0.9 * spectrum.damping,
+        "{spectrum:?}"
+    );
 }

@@ -35,7 +35,6 @@ pub(crate) fn ledger() -> Chart {
                 y: Axis::linear("volume", "m²"),
                 lines: vec![line("", move |time| 0.785 - 0.03 * spring(time))],
                 levels: vec![Level { value: 0.785, label: "at rest".to_string() }],
-                ..Panel::default()
             },
             Panel {
                 height: 120.0,

@@ -50,7 +50,7 @@ fn balloon(center: [f64; 3], radius: f64, waves: [f64; 2], columns: u32) -> Body
 }
 
 /// Balloons and obstacles on a floor.
-pub fn balloons(columns: u32) -> Picture {
+pub(crate) fn balloons(columns: u32) -> Picture {
     let mut first = balloon([0.0, 0.4, 0.0], 0.5, [0.0, 0.02], columns);
     first.scalar = first.positions.iter().map(|p| 2.4 - 0.9 * p[0] - 1.2 * (p[1] - 0.5) + 0.6 * p[2]).collect();
     let mut second = balloon([1.1, 0.75, -0.4], 0.4, [0.12, 0.0], columns);
@@ -74,12 +74,11 @@ pub fn balloons(columns: u32) -> Picture {
         arrows: arrows.to_vec(),
         pulls: vec![PullPicture { node: [1.1, 1.18, -0.4], pointer: [1.4, 1.4, -0.4] }],
         legend: legend("stretch", "%"),
-        ..Picture::default()
     }
 }
 
 /// A cloth or a net over a ball, with `side` nodes along each side.
-pub fn cloth(side: u32, net: bool) -> Picture {
+pub(crate) fn cloth(side: u32, net: bool) -> Picture {
     let mut positions = Vec::new();
     let mut segments = Vec::new();
     for row in 0..side {
@@ -121,7 +120,7 @@ pub fn cloth(side: u32, net: bool) -> Picture {
 }
 
 /// Many small bodies in a room.
-pub fn room() -> Picture {
+pub(crate) fn room() -> Picture {
     let place = |index: u32, step: f64| (f64::from(index) * step).fract();
     let body = |index: u32| {
         let center =

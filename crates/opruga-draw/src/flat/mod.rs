@@ -5,7 +5,6 @@ mod colliders;
 mod loops;
 mod shade;
 
-pub(crate) use bodies::body_colour;
 
 use crate::canvas::Canvas;
 use crate::error::DrawError;

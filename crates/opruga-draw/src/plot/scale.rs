@@ -69,7 +69,7 @@ impl Scale {
         let whole = decades(self.low, self.high);
         let first = 10_f64.powf(self.low.log10().floor());
         let span = (self.high / self.low).log10();
-        let every = (whole.len() / (count + 2).max(1)).max(0) + 1;
+        let every = (whole.len() / (count + 2).max(1)) + 1;
         let mut ticks = Vec::new();
         let mut power = first;
         while power <= self.high {

@@ -62,10 +62,7 @@ impl<const D: usize> Integrator<D> for Heun {
     fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
         // 1 + A + ½A² with A = h [[0, 1], [−ω², −c]].
         let (s, b) = (-h * omega * omega, -h * c);
-        [
-            [1.0 + 0.5 * h * s, h + 0.5 * h * b],
-            [s + 0.5 * b * s, 1.0 + b + 0.5 * (s * h + b * b)],
-        ]
+        [[1.0 + 0.5 * h * s, h + 0.5 * h * b], [s + 0.5 * b * s, 1.0 + b + 0.5 * (s * h + b * b)]]
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         system.advance(Stage::Current, 0.0, 0.5 * h, None, &FirstStage { span: h })?;

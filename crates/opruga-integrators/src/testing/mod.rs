@@ -1,5 +1,6 @@
 //! What the tests of all integrators share: small problems with closed forms, and measurements on them.
 
+mod contract;
 mod problems;
 mod real_time;
 mod stability;
@@ -34,7 +35,9 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 /// `amplification` against one computed step from (1, 0) and (0, 1), in all coordinates.
 fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
-    for (omega, c, h) in [(1.0, 0.0, 0.1), (3.0, 0.5, 0.2), (80.0, 160.0, 0.004), (0.0, 2.0, 0.3), (7.0, 30.0, 0.05), (50.0, 1.0, 0.1)] {
+    for (omega, c, h) in
+        [(1.0, 0.0, 0.1), (3.0, 0.5, 0.2), (80.0, 160.0, 0.004), (0.0, 2.0, 0.3), (7.0, 30.0, 0.05), (50.0, 1.0, 0.1)]
+    {
         let m = integrator.amplification(omega, c, h);
         let mass = 2.5;
         for (column, (x, v)) in [(0, (1.0, 0.0)), (1, (0.0, 1.0))] {
@@ -152,7 +155,9 @@ pub(crate) fn check_no_stable_step(integrator: &dyn Integrator<2>, growth: fn(f6
         let radius = spectral_radius(integrator.amplification(omega, 0.0, z / omega));
         assert!((radius - growth(z)).abs() < 1e-14 && radius > 1.0, "{z}: {radius}");
         let mut system = oscillator::<2>(1.0, omega * omega, 0.0, 1.0, 0.0);
-        let energy = |s: &System<2>| s.state.x.at(0)[0] * s.state.x.at(0)[0] * omega * omega + s.state.v.at(0)[0] * s.state.v.at(0)[0];
+        let energy = |s: &System<2>| {
+            s.state.x.at(0)[0] * s.state.x.at(0)[0] * omega * omega + s.state.v.at(0)[0] * s.state.v.at(0)[0]
+        };
         let before = energy(&system);
         run(&mut system, integrator, z / omega, 100);
         let measured = libm::pow(energy(&system) / before, 1.0 / 200.0);

@@ -84,6 +84,9 @@ impl<const D: usize> Potential<D> for Springs {
             let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
             let speed = d.iter().zip(&rate).map(|(d, r)| d * r).sum::<f64>() / length;
             let tension = self.stiffness * (length - self.rest_length) + self.damping * speed;
+            if tile.range.contains(&a) {
+                tile.power[a % 8] += self.damping * speed * speed;
+            }
             // Half the pressure on the edge goes to each end, along its outer normal (counter-clockwise rings).
             let normal = [-d[1], d[0]];
             for (end, sign) in [(a, -1.0), (b, 1.0)] {

@@ -71,11 +71,18 @@ fn rings_have_the_frequency_of_their_closed_form() {
         let system = ring(nodes, 1.0, 1.0, 1600.0, 40.0, 0.0);
         let stability = estimated(&system, &SymplecticEuler);
         // All springs stretched by turns, all nodes along the radius or along the edge, whichever is faster.
-        let (sin, cos) = (libm::sin(core::f64::consts::PI / nodes as f64), libm::cos(core::f64::consts::PI / nodes as f64));
+        let (sin, cos) =
+            (libm::sin(core::f64::consts::PI / nodes as f64), libm::cos(core::f64::consts::PI / nodes as f64));
         let omega = 80.0 * if sin > cos { sin } else { cos };
-        assert!(stability.spectrum.omega >= 0.999_999 * omega && stability.spectrum.omega <= 1.005 * omega, "{nodes}: {stability:?} {omega}");
+        assert!(
+            stability.spectrum.omega >= 0.999_999 * omega && stability.spectrum.omega <= 1.005 * omega,
+            "{nodes}: {stability:?} {omega}"
+        );
         let c = 40.0 * 4.0 * (omega / 80.0) * (omega / 80.0);
-        assert!(stability.spectrum.damping >= 0.999_999 * c && stability.spectrum.damping <= 1.005 * c, "{nodes}: {stability:?} {c}");
+        assert!(
+            stability.spectrum.damping >= 0.999_999 * c && stability.spectrum.damping <= 1.005 * c,
+            "{nodes}: {stability:?} {c}"
+        );
         assert_eq!(stability.spectrum.least_damping, 0.0);
     }
 }
@@ -102,7 +109,11 @@ fn estimates_lie_just_below_the_onset() {
         for rule in rules {
             let limit = estimated(&make(), rule).largest_stable_step.unwrap();
             let onset = onset(&make, rule, limit, 3000);
-            println!("{} c = {damping}, nRT = {gas}: {limit:.5} s, onset {onset:.5} s, ratio {:.3}", rule.name(), limit / onset);
+            println!(
+                "{} c = {damping}, nRT = {gas}: {limit:.5} s, onset {onset:.5} s, ratio {:.3}",
+                rule.name(),
+                limit / onset
+            );
             assert!(limit <= onset && limit >= 0.9 * onset, "{}: {limit} {onset}", rule.name());
         }
     }
@@ -137,7 +148,8 @@ fn rules_that_need_damping_of_every_mode() {
 fn growth_is_as_fast_as_announced() {
     let h = 0.001;
     let mut system = ring(36, 100.0, 1.0, 1600.0, 0.0, 0.0);
-    let announced = estimated(&system, &ExplicitEuler).spectrum.growth_per_second(&ExplicitEuler as &dyn Integrator<2>, h);
+    let announced =
+        estimated(&system, &ExplicitEuler).spectrum.growth_per_second(&ExplicitEuler as &dyn Integrator<2>, h);
     // The alternating motion alone.
     for p in 0..36 {
         let (x, sign) = (system.state.x.at(p), if p % 2 == 0 { 1e-9 } else { -1e-9 });
@@ -146,7 +158,11 @@ fn growth_is_as_fast_as_announced() {
     let speed = |s: &System<2>| s.state.v.0.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
     // ω = 79.7 rad/s: 2 ωh π = 1 is met nowhere, so the mean over whole periods is taken from energies.
     let energy = |s: &System<2>, rest: &Columns<2>| {
-        let far: f64 = (0..2).flat_map(|d| (0..36).map(move |p| (d, p))).map(|(d, p)| s.state.x.0[d][p] - rest.0[d][p]).map(|u| u * u).sum();
+        let far: f64 = (0..2)
+            .flat_map(|d| (0..36).map(move |p| (d, p)))
+            .map(|(d, p)| s.state.x.0[d][p] - rest.0[d][p])
+            .map(|u| u * u)
+            .sum();
         (speed(s) * speed(s) + far * 6400.0 * libm::pow(libm::cos(core::f64::consts::PI / 36.0), 2.0)).sqrt()
     };
     let rest = system.state.x.clone();

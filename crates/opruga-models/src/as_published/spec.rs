@@ -2,7 +2,13 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
-const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default, documentation: &'static str) -> Field {
+const fn field(
+    name: &'static str,
+    range: Allowed,
+    unit: &'static str,
+    default: Default,
+    documentation: &'static str,
+) -> Field {
     Field { name, range, unit, default, documentation }
 }
 
@@ -18,10 +24,28 @@ An edge of no length makes its forces infinite or no number, as published. For t
     dimensions: &[2],
     fields: &[
         field("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),
-        field("damping", Allowed::NOT_NEGATIVE, "kg/s", Default::Number(40.0), "Damping constant KD along each spring."),
-        field("final_pressure", Allowed::NOT_NEGATIVE, "", Default::Number(100.0), "FINAL_PRESSURE, reached in steps of a hundredth of it."),
+        field(
+            "damping",
+            Allowed::NOT_NEGATIVE,
+            "kg/s",
+            Default::Number(40.0),
+            "Damping constant KD along each spring.",
+        ),
+        field(
+            "final_pressure",
+            Allowed::NOT_NEGATIVE,
+            "",
+            Default::Number(100.0),
+            "FINAL_PRESSURE, reached in steps of a hundredth of it.",
+        ),
         field("factor", Allowed::ANY, "", Default::Number(1000.0), "The stray factor on the pressure force (E3)."),
-        field("gravity_y", Allowed::ANY, "px/s²", Default::Number(10.0), "GY, downwards positive; acts once the ramp has ended (E5)."),
+        field(
+            "gravity_y",
+            Allowed::ANY,
+            "px/s²",
+            Default::Number(10.0),
+            "GY, downwards positive; acts once the ramp has ended (E5).",
+        ),
         field(
             "pointer",
             Allowed::Path,

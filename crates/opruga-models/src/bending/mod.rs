@@ -10,8 +10,10 @@
 //! hinges, is said in [`SPEC`].
 //!
 //! Two closed forms hold for the outline with k = EI/ℓ: the ring buckles under the outer pressure 3EI/R³ (Lévy), and a
-//! clamped strip bends by PL³/3EI. On a regular triangular lattice a shell has the flexural rigidity E t³/12 in every
-//! direction and a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988).
+//! clamped strip bends by PL³/3EI. A shell has the flexural rigidity E t³/12 when rolled up to a cylinder, on a regular
+//! triangular lattice in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges see
+//! angles across edges alone: a shell that may warp deflects more than a plate, by an eighth on the regular lattice and
+//! by a quarter on grids of right triangles.
 //!
 //! Limits: chains in space resist bending but no twist, and their damping does not act on a change of the plane in
 //! which they bend; a chain in space with a rest angle has no force where it is exactly straight.

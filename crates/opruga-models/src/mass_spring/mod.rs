@@ -54,7 +54,8 @@ impl<const D: usize> Model<D> for MassSpring {
         if edges.is_empty() {
             return refuse("model.no_edges", format!("the body has no {set:?} edges to carry springs"));
         }
-        let lengths: Vec<f64> = edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();
+        let lengths: Vec<f64> =
+            edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();
         for values in ingredients.values {
             match (values.number("stiffness"), values.number("modulus")) {
                 (Some(_), None) => {}
@@ -68,14 +69,19 @@ impl<const D: usize> Model<D> for MassSpring {
         }
         let areas = mesh.edge_areas(&edges).map_err(|e| BuildError::new("mass_spring", "model.mesh", e.to_string()))?;
         if ingredients.values[0].number("modulus").is_some() && areas.iter().all(|a| *a == 0.0) {
-            return refuse("model.no_area", "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline".into());
+            return refuse(
+                "model.no_area",
+                "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline".into(),
+            );
         }
         let table = PairTable::new(ingredients.layout, mesh.positions.len(), &edges, true);
         let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];
         let count = table.parameter_count();
         let each = |number: &dyn Fn(usize, usize) -> f64| {
             // The pair without effect behind the last one has no stiffness and no damping.
-            Parameter::from_items(ingredients.layout, count, |spring, body| if spring < edges.len() { number(spring, body) } else { 0.0 })
+            Parameter::from_items(ingredients.layout, count, |spring, body| {
+                if spring < edges.len() { number(spring, body) } else { 0.0 }
+            })
         };
         let damped = ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0);
         Ok(Box::new(Springs {
@@ -155,7 +161,10 @@ impl<const D: usize> Potential<D> for Springs {
         }
     }
     fn heap_bytes(&self) -> usize {
-        self.table.heap_bytes() + self.rest_length.heap_bytes() + self.stiffness.heap_bytes() + self.damping.heap_bytes()
+        self.table.heap_bytes()
+            + self.rest_length.heap_bytes()
+            + self.stiffness.heap_bytes()
+            + self.damping.heap_bytes()
     }
 }
 

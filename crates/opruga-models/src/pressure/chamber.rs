@@ -4,8 +4,8 @@ use opruga_core::pair::{PairLaw, PairTable, PairTerm};
 use opruga_core::potential::Sink;
 use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
 use opruga_core::tile::Tile;
-use opruga_mesh::Adjacency;
 use opruga_math::{Pack, WIDTH, lanes};
+use opruga_mesh::Adjacency;
 
 /// A closed boundary.
 #[derive(Debug)]
@@ -93,9 +93,17 @@ impl Boundary {
 
     /// Adds gauge pressure times ∂V/∂x on the nodes of a tile.
     #[inline(always)]
-    pub(super) fn add_force<P: Pack, const D: usize>(&self, view: &View<D>, gauge: P, area: &[f64], tile: &mut Tile<D>) {
+    pub(super) fn add_force<P: Pack, const D: usize>(
+        &self,
+        view: &View<D>,
+        gauge: P,
+        area: &[f64],
+        tile: &mut Tile<D>,
+    ) {
         match self {
-            Boundary::Plane(edges) => edges.add_force::<P, _, D>(EdgePush { half: gauge * P::splat(0.5), none: &Parameter::NONE }, view, tile),
+            Boundary::Plane(edges) => {
+                edges.add_force::<P, _, D>(EdgePush { half: gauge * P::splat(0.5), none: &Parameter::NONE }, view, tile)
+            }
             Boundary::Space(_) => {
                 let places = area.len() / D;
                 for place in tile.range.clone().step_by(WIDTH) {
@@ -141,7 +149,13 @@ impl Boundary {
     }
 
     /// Delivers `factor` times ∂²V/∂x∂x of one body (per depth in the plane).
-    pub(super) fn second_derivatives<const D: usize>(&self, view: &View<D>, body: usize, factor: f64, sink: &mut dyn Sink<D>) {
+    pub(super) fn second_derivatives<const D: usize>(
+        &self,
+        view: &View<D>,
+        body: usize,
+        factor: f64,
+        sink: &mut dyn Sink<D>,
+    ) {
         let at = |node: u32| view.layout.place(node as usize, body);
         match self {
             Boundary::Plane(edges) => {
@@ -250,7 +264,13 @@ impl NodeRings {
     }
 
     #[inline(always)]
-    fn neighbour_position<P: Pack, const D: usize>(&self, view: &View<D>, origin: &[P; D], place: usize, slot: usize) -> [P; 3] {
+    fn neighbour_position<P: Pack, const D: usize>(
+        &self,
+        view: &View<D>,
+        origin: &[P; D],
+        place: usize,
+        slot: usize,
+    ) -> [P; 3] {
         let mut out = [P::zero(); 3];
         match view.layout {
             Layout::Single => {

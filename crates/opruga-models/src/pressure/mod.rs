@@ -25,8 +25,8 @@ use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potentia
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
-use opruga_mesh::Mesh;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+use opruga_mesh::Mesh;
 
 /// The kind `pressure`.
 #[derive(Debug)]
@@ -66,7 +66,11 @@ impl<const D: usize> Model<D> for PressureModel {
         let mesh = ingredients.mesh;
         for values in ingredients.values {
             if values.number("nRT").is_some() == values.number("pressure").is_some() {
-                return Err(BuildError::new("pressure", "model.one_of", "exactly one of `nRT` and `pressure` must be given"));
+                return Err(BuildError::new(
+                    "pressure",
+                    "model.one_of",
+                    "exactly one of `nRT` and `pressure` must be given",
+                ));
             }
         }
         if mesh.facets.is_empty() {
@@ -168,7 +172,8 @@ impl<const D: usize> Potential<D> for Pressure {
             let scratch = &mut scratch[chamber.scratch..chamber.scratch + NUMBERS];
             for body in 0..self.bodies() {
                 let gas = chamber.gas(body);
-                let amount = if gas.changes { gas.amount_at(view.time, memory[number * MEMORY + body]) } else { gas.amount };
+                let amount =
+                    if gas.changes { gas.amount_at(view.time, memory[number * MEMORY + body]) } else { gas.amount };
                 let (pressure, _) = gas.pressure_at(scratch[body] * self.depth, amount);
                 scratch[WIDTH + body] = (pressure - gas.ambient) * self.depth;
                 scratch[2 * WIDTH + body] = amount;
@@ -233,7 +238,8 @@ impl<const D: usize> Potential<D> for Pressure {
             for body in 0..self.bodies() {
                 let state = chamber.gas(body).at(known.volume[body] * self.depth, known.amount[body]);
                 let slope = chamber.boundary.slope(view, body);
-                let u: Vec<(usize, [f64; D])> = slope.into_iter().map(|(p, g)| (p, g.map(|c| c * self.depth))).collect();
+                let u: Vec<(usize, [f64; D])> =
+                    slope.into_iter().map(|(p, g)| (p, g.map(|c| c * self.depth))).collect();
                 sink.low_rank(state.curvature, &u);
                 if keep == Definiteness::Exact {
                     chamber.boundary.second_derivatives(view, body, -known.gauge[body], sink);

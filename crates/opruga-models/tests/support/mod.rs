@@ -23,7 +23,7 @@ impl IntoValue for &str {
         Value::Text(self.into())
     }
 }
-impl<const N: usize> IntoValue for &[[f64; N]] {
+impl<const N: usize, const ROWS: usize> IntoValue for &[[f64; N]; ROWS] {
     fn value(self) -> Value {
         Value::Rows(self.iter().map(|r| r.to_vec()).collect())
     }
@@ -77,6 +77,23 @@ pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]
     }
     system.plan(0);
     system
+}
+
+/// The code and message with which a model refuses a body.
+pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, values: Values) -> String {
+    let mass = Parameter::uniform(1.0);
+    let ingredients = Ingredients {
+        mesh,
+        layout: Layout::Single,
+        values: &[&values],
+        mass: &mass,
+        thickness: 1.0,
+        gravity: [0.0; D],
+    };
+    match model.build(&ingredients) {
+        Ok(_) => "built".into(),
+        Err(error) => format!("{} {error}", error.code),
+    }
 }
 
 /// The energy of all models [J].
@@ -184,6 +201,11 @@ pub(crate) fn hessian<const D: usize>(system: &mut System<D>) -> Dense {
         potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut sink);
     }
     sink.0
+}
+
+/// How many eigenvalues of the Hessian lie below a number [N/m].
+pub(crate) fn eigenvalues_below<const D: usize>(system: &mut System<D>, shift: f64) -> usize {
+    hessian(system).eigenvalues_below(shift)
 }
 
 /// Newton's method for forces + load = 0 with some coordinates (node · D + axis) held; returns the last residual [N].

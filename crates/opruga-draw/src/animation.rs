@@ -1,0 +1,150 @@
+//! Animations as GIF: one palette for all frames, and of every frame only what has changed.
+
+use crate::error::DrawError;
+use crate::image::Image;
+use std::io::Write;
+
+/// Writes an animated GIF frame by frame.
+pub struct GifWriter<W: Write> {
+    encoder: gif::Encoder<W>,
+    size: [u32; 2],
+    /// The palette entry of every colour of five bits a channel.
+    nearest: Vec<u8>,
+    last: Option<Vec<u8>>,
+    delay: u16,
+}
+
+impl<W: Write> core::fmt::Debug for GifWriter<W> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("GifWriter").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+/// The number of a colour at five bits a channel.
+fn coarse(pixel: &[u8]) -> usize {
+    (usize::from(pixel[0] >> 3) << 10) | (usize::from(pixel[1] >> 3) << 5) | usize::from(pixel[2] >> 3)
+}
+
+/// The middle of a coarse colour.
+fn fine(number: usize) -> [i32; 3] {
+    [number >> 10, (number >> 5) & 31, number & 31].map(|c| (c as i32 * 255 + 15) / 31)
+}
+
+impl<W: Write> GifWriter<W> {
+    /// Begins an animation that repeats for ever; the palette holds the 256 most frequent colours of some sample frames.
+    ///
+    /// # Errors
+    /// [`DrawError`] if there is no sample, an image is larger than a GIF may be, or `out` cannot be written.
+    pub fn new(out: W, frames_per_second: f64, samples: &[Image]) -> Result<GifWriter<W>, DrawError> {
+        let first = samples.first().ok_or(DrawError::Empty("a GIF needs sample frames for its palette"))?;
+        let size = [first.width(), first.height()];
+        let (Ok(width), Ok(height)) = (u16::try_from(size[0]), u16::try_from(size[1])) else {
+            return Err(DrawError::Size { width: size[0], height: size[1] });
+        };
+        if !(frames_per_second > 0.0 && frames_per_second.is_finite()) {
+            return Err(DrawError::Rate(frames_per_second));
+        }
+        let mut counts = vec![0u64; 1 << 15];
+        for sample in samples {
+            for pixel in sample.pixels().chunks_exact(3) {
+                counts[coarse(pixel)] += 1;
+            }
+        }
+        let mut order: Vec<usize> = (0..counts.len()).filter(|c| counts[*c] > 0).collect();
+        order.sort_by_key(|c| (u64::MAX - counts[*c], *c));
+        order.truncate(256);
+        let nearest = (0..counts.len())
+            .map(|number| {
+                let wanted = fine(number);
+                let distance = |place: &usize| -> i32 {
+                    let colour = fine(order[*place]);
+                    (0..3).map(|c| (wanted[c] - colour[c]) * (wanted[c] - colour[c])).sum()
+                };
+                (0..order.len()).min_by_key(distance).unwrap_or(0) as u8
+            })
+            .collect();
+        let palette: Vec<u8> = order.iter().flat_map(|c| fine(*c).map(|x| x as u8)).collect();
+        let mut encoder = gif::Encoder::new(out, width, height, &palette).map_err(failed)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
+        // GIF counts hundredths of a second.
+        let delay = (100.0 / frames_per_second).round().clamp(2.0, 6000.0) as u16;
+        Ok(GifWriter { encoder, size, nearest, last: None, delay })
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`DrawError`] if its size is another one or it cannot be written.
+    pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
+        if [image.width(), image.height()] != self.size {
+            return Err(DrawError::FrameSize { expected: self.size, found: [image.width(), image.height()] });
+        }
+        let pixels: Vec<u8> = image.pixels().chunks_exact(3).map(|p| self.nearest[coarse(p)]).collect();
+        let (width, height) = (self.size[0] as usize, self.size[1] as usize);
+        let [left, top, right, bottom] = match &self.last {
+            Some(last) => changed(last, &pixels, width),
+            None => [0, 0, width, height],
+        };
+        let mut part = Vec::with_capacity((right - left) * (bottom - top));
+        for row in top..bottom {
+            part.extend(&pixels[row * width + left..row * width + right]);
+        }
+        let frame = gif::Frame {
+            delay: self.delay,
+            left: left as u16,
+            top: top as u16,
+            width: (right - left) as u16,
+            height: (bottom - top) as u16,
+            dispose: gif::DisposalMethod::Keep,
+            buffer: part.into(),
+            ..gif::Frame::default()
+        };
+        self.encoder.write_frame(&frame).map_err(failed)?;
+        self.last = Some(pixels);
+        Ok(())
+    }
+}
+
+fn failed(error: gif::EncodingError) -> DrawError {
+    DrawError::from(error)
+}
+
+/// Left, top, right and bottom of what differs; one pixel if nothing does.
+fn changed(a: &[u8], b: &[u8], width: usize) -> [usize; 4] {
+    let mut bounds = [width, a.len() / width, 0, 0];
+    for (place, (x, y)) in a.iter().zip(b).enumerate() {
+        if x != y {
+            let (column, row) = (place % width, place / width);
+            bounds = [bounds[0].min(column), bounds[1].min(row), bounds[2].max(column + 1), bounds[3].max(row + 1)];
+        }
+    }
+    if bounds[2] == 0 { [0, 0, 1, 1] } else { bounds }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_come_back_with_their_size_delay_and_colours() {
+        let red = Image::new(20, 10, [248, 0, 0]).expect("an image");
+        let blue = Image::new(20, 10, [0, 0, 248]).expect("an image");
+        let mut bytes = Vec::new();
+        let mut writer = GifWriter::new(&mut bytes, 25.0, &[red.clone(), blue.clone()]).expect("a writer");
+        writer.push(&red).expect("a frame");
+        writer.push(&blue).expect("a frame");
+        writer.push(&blue).expect("a frame");
+        drop(writer);
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(&bytes[..]).expect("a GIF");
+        let mut frames = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+            frames.push((frame.width, frame.height, frame.delay, frame.buffer[0], frame.buffer[2]));
+        }
+        assert_eq!(frames.len(), 3);
+        assert_eq!((frames[0].0, frames[0].1, frames[0].2), (20, 10, 4));
+        assert!(frames[0].3 > 240 && frames[0].4 < 10 && frames[1].4 > 240);
+        assert_eq!((frames[2].0, frames[2].1), (1, 1), "nothing has changed");
+    }
+}
