@@ -36,7 +36,8 @@ fn crates_depend_on_lower_layers_only() {
     assert!(packages.len() >= 12, "the whole workspace is looked at");
     for package in packages {
         let name = package["name"].as_str().expect("a name");
-        let layer = layers.get(name).unwrap_or_else(|| panic!("{name} has no layer: add it here and to ARCHITECTURE.md"));
+        let layer =
+            layers.get(name).unwrap_or_else(|| panic!("{name} has no layer: add it here and to ARCHITECTURE.md"));
         for dependency in package["dependencies"].as_array().expect("dependencies") {
             // Tests may look anywhere.
             if dependency["kind"].as_str() == Some("dev") {

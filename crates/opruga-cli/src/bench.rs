@@ -51,7 +51,8 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
 /// with 160 N at rest, a floor below. They start 60 m above it and are in flight while they are timed.
 pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<Blueprint<2>, String> {
     let registry = opruga::Registry::<2>::default();
-    let spec = |found: Option<&'static opruga::core::spec::Spec>| found.ok_or("the registry lacks a part of the benchmark");
+    let spec =
+        |found: Option<&'static opruga::core::spec::Spec>| found.ok_or("the registry lacks a part of the benchmark");
     let springs = spec(registry.model("mass_spring").map(|m| m.spec()))?;
     let gas = spec(registry.model("pressure").map(|m| m.spec()))?;
     let rule = spec(registry.integrator(integrator).map(|i| i.spec()))?;
@@ -204,7 +205,9 @@ fn calibration(simd: Simd) -> f64 {
 /// The rows as a table for people.
 pub(crate) fn table(rows: &[Row]) -> String {
     use std::fmt::Write as _;
-    let mut text = String::from("  bodies  vertices  threads  simd     ns per vertex and step      steps/s     frames/s (16 steps)\n");
+    let mut text = String::from(
+        "  bodies  vertices  threads  simd     ns per vertex and step      steps/s     frames/s (16 steps)\n",
+    );
     for row in rows {
         let _ = writeln!(
             text,

@@ -7,7 +7,9 @@ use opruga::World;
 use opruga::draw;
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::OutputFolder;
-use opruga::io::tables::{EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final};
+use opruga::io::tables::{
+    EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final,
+};
 use opruga::pictures::{Moment, Scenery};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -95,7 +97,10 @@ impl Recorder {
         let bytes = pictures * (nodes * D * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
         if every > wanted {
-            eprintln!("warning: pictures of {nodes} nodes would take {} MiB; every {every}th frame is kept", bytes >> 20);
+            eprintln!(
+                "warning: pictures of {nodes} nodes would take {} MiB; every {every}th frame is kept",
+                bytes >> 20
+            );
         }
         Recorder {
             table: NumberTable::new(columns),

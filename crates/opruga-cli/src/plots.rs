@@ -30,12 +30,18 @@ pub(crate) fn of_run(table: &NumberTable, name: &str) -> Result<String, DrawErro
         let all: Vec<(usize, &String)> = columns.iter().enumerate().collect();
         all.iter().filter(fits).take(8).map(|(p, c)| line(*p, c.strip_suffix(ending).unwrap_or(c))).collect()
     };
-    let first_probe = columns.iter().rposition(|c| c.ends_with(".nRT") || c.starts_with("angular_momentum")).map_or(0, |p| p + 1);
+    let first_probe =
+        columns.iter().rposition(|c| c.ends_with(".nRT") || c.starts_with("angular_momentum")).map_or(0, |p| p + 1);
     let probes: Vec<Line> = (first_probe..columns.len()).take(8).map(|p| line(p, &columns[p])).collect();
-    let panel = |label: &str, unit: &str, lines: Vec<Line>| Panel { y: Axis::linear(label, unit), lines, ..Panel::default() };
+    let panel =
+        |label: &str, unit: &str, lines: Vec<Line>| Panel { y: Axis::linear(label, unit), lines, ..Panel::default() };
     let panels = vec![
         panel("energy", "J", named(&["kinetic", "elastic", "gas", "gravity"])),
-        panel("work and losses", "J", named(&["work_user", "work_gas", "loss_damping", "loss_friction", "loss_contact", "loss_integrator"])),
+        panel(
+            "work and losses",
+            "J",
+            named(&["work_user", "work_gas", "loss_damping", "loss_friction", "loss_contact", "loss_integrator"]),
+        ),
         panel("momentum", "kg m/s", named(&["momentum.x", "momentum.y", "momentum.z"])),
         panel("volume", "m³", ending(".volume")),
         panel("pressure", "Pa", ending(".pressure")),
@@ -60,7 +66,8 @@ pub(crate) fn of_bench(rows: &[Row]) -> Result<String, DrawError> {
         rows.iter().filter(|r| (r.bodies() > 1) == many).map(|r| [r.point().0, r.point().1]).collect()
     };
     let line = |name: &str, points, marker| Line { name: name.into(), points, marker: Some(marker), ..Line::default() };
-    let lines = vec![line("one ring", points(false), Marker::Circle), line("many rings of 36", points(true), Marker::Square)];
+    let lines =
+        vec![line("one ring", points(false), Marker::Circle), line("many rings of 36", points(true), Marker::Square)];
     Chart {
         title: "speed against the number of vertices".into(),
         x: Axis::logarithmic("vertices", ""),

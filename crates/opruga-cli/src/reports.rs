@@ -27,8 +27,12 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
         eprintln!("{notice}");
     }
     let text = match blueprint {
-        AnyBlueprint::Plane(b) => describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?),
-        AnyBlueprint::Space(b) => describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?),
+        AnyBlueprint::Plane(b) => {
+            describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?)
+        }
+        AnyBlueprint::Space(b) => {
+            describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?)
+        }
     };
     print_data(&format!("{}: no errors\n{text}", source.file))?;
     Ok(0)
@@ -52,7 +56,11 @@ fn describe<const D: usize>(world: &World<D>) -> String {
     for (body, stability) in world.stability() {
         let limit = stability.largest_stable_step.map_or("none".into(), |h| format!("{h:.4e} s"));
         let s = &stability.spectrum;
-        let _ = writeln!(text, "  `{body}`: ω = {:.4e} rad/s, damping {:.4e} 1/s, largest stable step {limit}", s.omega, s.damping);
+        let _ = writeln!(
+            text,
+            "  `{body}`: ω = {:.4e} rad/s, damping {:.4e} 1/s, largest stable step {limit}",
+            s.omega, s.damping
+        );
     }
     for warning in world.warnings() {
         let _ = writeln!(text, "warning[{}]: {}", warning.code, warning.message);
@@ -148,7 +156,9 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
             }
         };
         let drawing: Option<&mut dyn FnMut(&mut World<2>)> = if call.draw { Some(&mut draw_frame) } else { None };
-        rows.push(bench::time(bodies, vertices, &call.integrator, &options, call.seconds, drawing).map_err(Failure::call)?);
+        rows.push(
+            bench::time(bodies, vertices, &call.integrator, &options, call.seconds, drawing).map_err(Failure::call)?,
+        );
     }
     eprintln!("\r                              ");
     if let Some(path) = &call.plot {

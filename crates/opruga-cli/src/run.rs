@@ -29,16 +29,24 @@ pub(crate) fn find_scene(name: &str) -> Result<Source, Failure> {
             .map_err(|e| Failure::Scene(vec![opruga::io::SceneError { file: path.display().to_string(), ..e }]))?;
         let stem = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
         // Bytes that are no UTF-8 are refused by the reader, with their place.
-        return Ok(Source { name: stem, file: path.display().to_string(), text: String::from_utf8_lossy(&bytes).into_owned() });
+        return Ok(Source {
+            name: stem,
+            file: path.display().to_string(),
+            text: String::from_utf8_lossy(&bytes).into_owned(),
+        });
     }
     match opruga::scenes::find(name) {
         Some(text) => Ok(Source { name: name.into(), file: format!("{name}.toml"), text: text.into() }),
         None => {
-            let hint = opruga::core::spec::nearest(name, opruga::scenes::names()).map(|n| format!("did you mean `{n}`?"));
+            let hint =
+                opruga::core::spec::nearest(name, opruga::scenes::names()).map(|n| format!("did you mean `{n}`?"));
             Err(Failure::Scene(vec![opruga::io::SceneError {
                 file: name.to_string(),
                 hint: hint.or(Some("`opruga list` shows the scenes that come with the program".into())),
-                ..opruga::io::SceneError::new("read.failed", "there is no such file, and no such scene comes with the program")
+                ..opruga::io::SceneError::new(
+                    "read.failed",
+                    "there is no such file, and no such scene comes with the program",
+                )
             }]))
         }
     }
@@ -74,15 +82,21 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
                 .map_err(|e| Failure::Scene(vec![opruga::io::SceneError { file: file.clone(), ..e }]))?;
             let refuse = |error| Failure::Checkpoint { error, file: file.clone() };
             let checkpoint = Checkpoint::read(&bytes).map_err(refuse)?;
-            let saved = crate::outputs::SavedRun::read(&checkpoint.payload)
-                .ok_or_else(|| Failure::call(format!("{file}: this checkpoint belongs to another version of the program")))?;
+            let saved = crate::outputs::SavedRun::read(&checkpoint.payload).ok_or_else(|| {
+                Failure::call(format!("{file}: this checkpoint belongs to another version of the program"))
+            })?;
             set.splice(0..0, saved.overrides.clone());
             let name = saved.name.clone();
             resumed = Some(saved);
             Source { file: format!("{name}.toml"), name, text: checkpoint.scene }
         }
     };
-    let options = scene::Options { lenient: call.lenient, strict: call.strict, overrides: set.clone(), ..scene::Options::default() };
+    let options = scene::Options {
+        lenient: call.lenient,
+        strict: call.strict,
+        overrides: set.clone(),
+        ..scene::Options::default()
+    };
     let (blueprint, notices) = scene::read(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;
     for notice in &notices {
         eprintln!("{notice}");
@@ -104,7 +118,8 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         (false, None) => Existing::Refuse,
     };
     let folder = OutputFolder::open(&folder, existing)?;
-    let world_options = Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };
+    let world_options =
+        Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };
     let job = Job { call, source: &source, set: &set, folder, world_options, resumed };
     match blueprint {
         AnyBlueprint::Plane(blueprint) => job.run(blueprint),

@@ -24,15 +24,43 @@ fn a_run_writes_every_file_and_its_summary_keeps_the_contract() {
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
     for key in [
-        "schema", "scene", "dimension", "bodies", "nodes", "elements", "models", "integrator", "frame", "substeps", "h",
-        "steps", "time", "wall_seconds", "nanoseconds_per_node_step", "simd", "threads", "reproducibility", "energy",
-        "momentum", "state_hash", "warnings", "files",
+        "schema",
+        "scene",
+        "dimension",
+        "bodies",
+        "nodes",
+        "elements",
+        "models",
+        "integrator",
+        "frame",
+        "substeps",
+        "h",
+        "steps",
+        "time",
+        "wall_seconds",
+        "nanoseconds_per_node_step",
+        "simd",
+        "threads",
+        "reproducibility",
+        "energy",
+        "momentum",
+        "state_hash",
+        "warnings",
+        "files",
     ] {
         assert!(summary.get(key).is_some(), "summary.json lacks {key}");
     }
     for key in [
-        "kinetic", "elastic", "gas", "gravity", "work_user", "loss_damping", "loss_friction", "loss_contact",
-        "loss_integrator", "closure",
+        "kinetic",
+        "elastic",
+        "gas",
+        "gravity",
+        "work_user",
+        "loss_damping",
+        "loss_friction",
+        "loss_contact",
+        "loss_integrator",
+        "closure",
     ] {
         assert!(summary["energy"][key].is_number(), "energy lacks {key}");
     }
@@ -76,7 +104,19 @@ fn a_resumed_run_ends_with_the_bits_of_an_uninterrupted_one() {
     hash(&["run", "pressures", "--seconds", "0.5", "--out", "b", "--no-pictures", "--json", "--set", set]);
     let resume = ["run", "--resume", "b/checkpoint", "--seconds", "1", "--out", "c", "--no-pictures", "--json"];
     assert_eq!(hash(&resume), whole);
-    let threads = ["run", "--resume", "b/checkpoint", "--seconds", "1", "--out", "d", "--no-pictures", "--json", "--threads", "3"];
+    let threads = [
+        "run",
+        "--resume",
+        "b/checkpoint",
+        "--seconds",
+        "1",
+        "--out",
+        "d",
+        "--no-pictures",
+        "--json",
+        "--threads",
+        "3",
+    ];
     assert_eq!(hash(&threads), whole);
 }
 
@@ -84,7 +124,8 @@ fn a_resumed_run_ends_with_the_bits_of_an_uninterrupted_one() {
 fn errors_have_their_exit_codes_and_leave_old_files_whole() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |arguments: &[&str]| opruga(folder.path(), arguments);
-    std::fs::write(folder.path().join("bad.toml"), "format = \"opruga-1\"\ndimension = 2\nstifness = 3\n").expect("a file");
+    std::fs::write(folder.path().join("bad.toml"), "format = \"opruga-1\"\ndimension = 2\nstifness = 3\n")
+        .expect("a file");
     let bad = at(&["run", "bad.toml", "--out", "o"]);
     assert_eq!(code(&bad), 2);
     assert!(text(&bad.stderr).contains("bad.toml:3:1"), "{}", text(&bad.stderr));
@@ -112,9 +153,8 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
     let unstable = at(&["run", "pressures", "--set", "time.substeps=1", "--out", "u", "--no-pictures"]);
     assert_eq!(code(&unstable), 2);
     assert!(text(&unstable.stderr).contains("substeps >="), "{}", text(&unstable.stderr));
-    let diverged = at(&[
-        "run", "pressures", "--set", "time.substeps=1", "--out", "v", "--no-pictures", "--allow-unstable",
-    ]);
+    let diverged =
+        at(&["run", "pressures", "--set", "time.substeps=1", "--out", "v", "--no-pictures", "--allow-unstable"]);
     assert_eq!(code(&diverged), 3);
     assert!(text(&diverged.stderr).contains("node"), "{}", text(&diverged.stderr));
 }

@@ -164,10 +164,28 @@ impl PairTable {
                 let weight = if whole { tile.weight.take() } else { None };
                 tile.settle::<P>();
                 match (self.layout, weight) {
-                    (Layout::Single, Some(w)) => self.chain::<P, L, false, true, D>(law, view, [a, first, length], w, tile, &mut power),
-                    (Layout::Batch, Some(w)) => self.chain::<P, L, true, true, D>(law, view, [a, first, length], w, tile, &mut power),
-                    (Layout::Single, None) => self.chain::<P, L, false, false, D>(law, view, [a, first, length], Weight { mass: &Parameter::NONE, gravity: [0.0; D] }, tile, &mut power),
-                    (Layout::Batch, None) => self.chain::<P, L, true, false, D>(law, view, [a, first, length], Weight { mass: &Parameter::NONE, gravity: [0.0; D] }, tile, &mut power),
+                    (Layout::Single, Some(w)) => {
+                        self.chain::<P, L, false, true, D>(law, view, [a, first, length], w, tile, &mut power)
+                    }
+                    (Layout::Batch, Some(w)) => {
+                        self.chain::<P, L, true, true, D>(law, view, [a, first, length], w, tile, &mut power)
+                    }
+                    (Layout::Single, None) => self.chain::<P, L, false, false, D>(
+                        law,
+                        view,
+                        [a, first, length],
+                        Weight { mass: &Parameter::NONE, gravity: [0.0; D] },
+                        tile,
+                        &mut power,
+                    ),
+                    (Layout::Batch, None) => self.chain::<P, L, true, false, D>(
+                        law,
+                        view,
+                        [a, first, length],
+                        Weight { mass: &Parameter::NONE, gravity: [0.0; D] },
+                        tile,
+                        &mut power,
+                    ),
                 }
                 continue;
             }
@@ -221,7 +239,8 @@ impl PairTable {
         let mut previous = [P::zero(); D];
         if lead > 0 {
             let d = lanes!(P, i => x.load::<P>(i, 0) - x.load::<P>(i, next));
-            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, 0) - v.load::<P>(i, next)) } else { [P::zero(); D] };
+            let rate =
+                if L::DAMPED { lanes!(P, i => v.load::<P>(i, 0) - v.load::<P>(i, next)) } else { [P::zero(); D] };
             let (f, _) = law.force([p0.load(0), p1.load(0), p2.load(0)], d, rate);
             previous = f;
             if lead < WIDTH {
@@ -232,12 +251,13 @@ impl PairTable {
                 }
             }
         }
-        // Pairs end before the last node.
-        let pairs = a + length - start;
+        // Pairs end before the last node; nodes end with the run or with the tile.
+        let (pairs, nodes) = (a + length - start, end - start);
         for k in (0..packed).step_by(WIDTH) {
             let at = lead + k;
             let d = lanes!(P, i => x.load::<P>(i, at) - x.load::<P>(i, at + next));
-            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, at) - v.load::<P>(i, at + next)) } else { [P::zero(); D] };
+            let rate =
+                if L::DAMPED { lanes!(P, i => v.load::<P>(i, at) - v.load::<P>(i, at + next)) } else { [P::zero(); D] };
             let (mut f, mut dissipated) = law.force([p0.load(at), p1.load(at), p2.load(at)], d, rate);
             if k + WIDTH > pairs {
                 let real = P::first(pairs.saturating_sub(k));
@@ -246,12 +266,20 @@ impl PairTable {
                 }
                 dissipated = P::select(real, dissipated, P::zero());
             }
+            // Nodes behind the tile belong to another one, whose forces may wait next door.
+            let beyond = k + WIDTH > nodes;
+            if L::DAMPED && beyond {
+                dissipated = P::select(P::first(nodes - k), dissipated, P::zero());
+            }
             let heavy: P = if FRESH { mass.load(k) } else { P::zero() };
             for i in 0..D {
                 let arriving = if BATCH { previous[i] } else { f[i].after(previous[i]) };
                 let old = if FRESH { heavy * P::splat(weight.gravity[i]) } else { force.load::<P>(i, k) };
                 let sum = old + f[i];
-                let sum = if L::SECOND < 0.0 { sum - arriving } else { sum + arriving };
+                let mut sum = if L::SECOND < 0.0 { sum - arriving } else { sum + arriving };
+                if beyond {
+                    sum = P::select(P::first(nodes - k), sum, old);
+                }
                 force.store(i, k, sum);
                 previous[i] = f[i];
             }
@@ -275,7 +303,11 @@ impl PairTable {
         power: &mut P,
     ) {
         let d = lanes!(P, i => P::load(&view.x[i][a..]) - P::load(&view.x[i][b..]));
-        let rate = if L::DAMPED { lanes!(P, i => P::load(&view.v[i][a..]) - P::load(&view.v[i][b..])) } else { [P::zero(); D] };
+        let rate = if L::DAMPED {
+            lanes!(P, i => P::load(&view.v[i][a..]) - P::load(&view.v[i][b..]))
+        } else {
+            [P::zero(); D]
+        };
         let (force, dissipated) = law.force(load_parameters(&law.parameters(), At::Run(first)), d, rate);
         let start = tile.range.start;
         for i in 0..D {
@@ -331,8 +363,11 @@ impl PairTable {
         let x = Strip::<D>::new(&view.x, base + all.start, span);
         let v = Strip::<D>::new(&view.v, base + all.start, span);
         let [p0, p1, p2] = law.parameters();
-        let (p0, p1, p2) =
-            (p0.strip(first + all.start, packed), p1.strip(first + all.start, packed), p2.strip(first + all.start, packed));
+        let (p0, p1, p2) = (
+            p0.strip(first + all.start, packed),
+            p1.strip(first + all.start, packed),
+            p2.strip(first + all.start, packed),
+        );
         // Slot columns begin with a spare pack, so that a shifted read stays inside.
         let mut slots = StripMut::<1>::new([tile.slots.as_mut_slice()], 0, D * room);
         // Places of the run, counted from `all.start`, whose first node belongs to the tile.
@@ -340,7 +375,8 @@ impl PairTable {
         for k in (0..packed).step_by(WIDTH) {
             let (at_a, at_b) = (k + to_a, k + to_b);
             let d = lanes!(P, i => x.load::<P>(i, at_a) - x.load::<P>(i, at_b));
-            let rate = if L::DAMPED { lanes!(P, i => v.load::<P>(i, at_a) - v.load::<P>(i, at_b)) } else { [P::zero(); D] };
+            let rate =
+                if L::DAMPED { lanes!(P, i => v.load::<P>(i, at_a) - v.load::<P>(i, at_b)) } else { [P::zero(); D] };
             let (force, dissipated) = law.force([p0.load(k), p1.load(k), p2.load(k)], d, rate);
             for i in 0..D {
                 slots.store(0, i * room + WIDTH + k, force[i]);
@@ -476,7 +512,11 @@ impl PairTable {
                         let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
                         let xa = lanes!(P, i => P::gather(view.x[i], a));
                         let xb = lanes!(P, i => P::gather(view.x[i], b));
-                        sum.add(k, pull.loose.len(), term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb));
+                        sum.add(
+                            k,
+                            pull.loose.len(),
+                            term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb),
+                        );
                     }
                 }
                 Layout::Batch => {

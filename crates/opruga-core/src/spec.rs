@@ -307,7 +307,9 @@ impl Allowed {
             (Allowed::Boolean, Value::Boolean(_)) => Ok(value),
             (Allowed::Text, Value::Text(t)) if t.len() <= 256 => Ok(value),
             (Allowed::Choice(words), Value::Text(t)) if words.contains(&t.as_str()) => Ok(value),
-            (Allowed::Vector, Value::Numbers(v)) if v.len() == dimension && v.iter().all(|x| x.is_finite()) => Ok(value),
+            (Allowed::Vector, Value::Numbers(v)) if v.len() == dimension && v.iter().all(|x| x.is_finite()) => {
+                Ok(value)
+            }
             (Allowed::Numbers, Value::Numbers(v)) if v.iter().all(|x| x.is_finite()) => Ok(value),
             (Allowed::Integers, Value::Integers(_)) => Ok(value),
             (Allowed::Points, Value::Rows(rows)) if rows_ok(rows, dimension) => Ok(value),
@@ -345,7 +347,10 @@ impl Allowed {
             Allowed::Integers => "a list of whole numbers from 0".into(),
             Allowed::Points => format!("a list of points of {dimension} finite numbers"),
             Allowed::Curve => "a curve [[t, value], …] of finite numbers with rising t".into(),
-            Allowed::Path => format!("a path [[t, {}], …] of finite numbers with rising t", if dimension == 2 { "x, y" } else { "x, y, z" }),
+            Allowed::Path => format!(
+                "a path [[t, {}], …] of finite numbers with rising t",
+                if dimension == 2 { "x, y" } else { "x, y, z" }
+            ),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Where positions and velocities live: one column per coordinate, one body or eight alike bodies side by side.
 
-use std::borrow::Cow;
 use opruga_math::{Pack, RepeatStrip, StripMut, WIDTH, lanes};
+use std::borrow::Cow;
 
 /// How the nodes of a block lie in its columns.
 ///

@@ -160,7 +160,15 @@ pub struct System<const D: usize> {
 
 impl<const D: usize> System<D> {
     /// A system of bodies at positions `x` with velocities `v`, laid out in columns.
-    pub fn new(simd: Simd, layout: Layout, nodes: usize, bodies: usize, x: Columns<D>, v: Columns<D>, mass: Parameter) -> Self {
+    pub fn new(
+        simd: Simd,
+        layout: Layout,
+        nodes: usize,
+        bodies: usize,
+        x: Columns<D>,
+        v: Columns<D>,
+        mass: Parameter,
+    ) -> Self {
         let places = layout.places(nodes);
         let inverse = Parameter::column(
             (0..places)
@@ -232,7 +240,14 @@ impl<const D: usize> System<D> {
     ///
     /// # Errors
     /// [`StepError`] where a model refuses the state.
-    pub fn advance<U: Update<D>>(&mut self, evaluate: Stage, time: f64, weight: f64, step: Option<f64>, update: &U) -> Result<(), StepError> {
+    pub fn advance<U: Update<D>>(
+        &mut self,
+        evaluate: Stage,
+        time: f64,
+        weight: f64,
+        step: Option<f64>,
+        update: &U,
+    ) -> Result<(), StepError> {
         let now = self.time + time;
         self.prepare(evaluate, now)?;
         for tile in 0..self.plan.len() {
@@ -402,7 +417,8 @@ impl<const D: usize> System<D> {
     pub fn forces(&mut self, velocities: bool) -> Result<Columns<D>, StepError> {
         let mut out = Columns::zeros(self.places());
         let saved = self.work;
-        let rest = (!velocities).then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.places(self.nodes))));
+        let rest =
+            (!velocities).then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.places(self.nodes))));
         let outcome = self.prepare(Stage::Current, self.time);
         if outcome.is_ok() {
             for tile in 0..self.plan.len() {

@@ -1,7 +1,7 @@
 //! Tiles: the columns are walked in pieces that fit the first-level cache.
 
-use core::ops::Range;
 use crate::state::Parameter;
+use core::ops::Range;
 use opruga_math::{Pack, StripMut, WIDTH, lanes};
 
 /// Places of a tile.

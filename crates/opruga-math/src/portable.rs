@@ -123,4 +123,3 @@ impl Pack for Portable {
         each_mask(|l| l < count)
     }
 }
-

@@ -117,9 +117,22 @@ mod tests {
             let positive = a.abs() + P::splat(1.0e-3);
             let less = a.less(b);
             let most = [
-                a + b, a - b, a * b, a / positive, -a, a.abs(), positive.sqrt(), a.smaller(b), a.larger(b),
-                P::select(less, a, b), P::select(P::both(less, a.less_or_equal(P::zero())), a, b), a.after(b),
-                P::select(P::first(3), a, b), P::gather(&numbers, &[7, 0, 6, 1, 5, 2, 4, 3]), positive.ln(), b.exp(),
+                a + b,
+                a - b,
+                a * b,
+                a / positive,
+                -a,
+                a.abs(),
+                positive.sqrt(),
+                a.smaller(b),
+                a.larger(b),
+                P::select(less, a, b),
+                P::select(P::both(less, a.less_or_equal(P::zero())), a, b),
+                a.after(b),
+                P::select(P::first(3), a, b),
+                P::gather(&numbers, &[7, 0, 6, 1, 5, 2, 4, 3]),
+                positive.ln(),
+                b.exp(),
                 P::splat(a.sum()),
             ];
             let mut out = vec![u64::from(P::any(less)), u64::from(P::any(a.less(a)))];

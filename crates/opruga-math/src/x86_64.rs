@@ -23,13 +23,14 @@ fn each_number(numbers: [f64; WIDTH], function: fn(f64) -> f64) -> [f64; WIDTH] 
     out
 }
 
-
 /// One register after the other; a macro, since closures are not inlined reliably.
 macro_rules! registers {
     ($set:ident, $count:literal, $r:ident => $value:expr) => {{
         // SAFETY: see the head of the file.
         let mut out = [unsafe { $set(0.0) }; $count];
-        for $r in 0..$count { out[$r] = unsafe { $value }; }
+        for $r in 0..$count {
+            out[$r] = unsafe { $value };
+        }
         out
     }};
 }

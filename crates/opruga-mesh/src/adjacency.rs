@@ -15,10 +15,7 @@ pub struct Adjacency {
 impl Adjacency {
     /// Neighbours of a node; empty for a node that does not exist.
     pub fn of(&self, node: u32) -> &[u32] {
-        match (
-            self.starts.get(node as usize),
-            self.starts.get(node as usize + 1),
-        ) {
+        match (self.starts.get(node as usize), self.starts.get(node as usize + 1)) {
             (Some(&start), Some(&end)) => &self.neighbours[start as usize..end as usize],
             _ => &[],
         }
@@ -37,10 +34,7 @@ impl Adjacency {
             end += count;
             starts.push(end);
         }
-        Adjacency {
-            starts,
-            neighbours: vec![0; end as usize],
-        }
+        Adjacency { starts, neighbours: vec![0; end as usize] }
     }
 }
 
@@ -123,10 +117,6 @@ impl Mesh<3> {
                 current = own[found][2];
             }
         }
-        if pinched.is_empty() {
-            Ok(rings)
-        } else {
-            Err(MeshError::NonManifoldNodes { nodes: pinched })
-        }
+        if pinched.is_empty() { Ok(rings) } else { Err(MeshError::NonManifoldNodes { nodes: pinched }) }
     }
 }

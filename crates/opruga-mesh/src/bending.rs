@@ -33,20 +33,14 @@ pub fn hinges(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 4]>, MeshError> {
     for group in sides.chunk_by(|p, q| p.0 == q.0) {
         match *group {
             [_] => {}
-            [([low, high], _, c, forward), (_, _, d, _)] => list.push(if forward {
-                [low, high, c, d]
-            } else {
-                [high, low, c, d]
-            }),
+            [([low, high], _, c, forward), (_, _, d, _)] => {
+                list.push(if forward { [low, high, c, d] } else { [high, low, c, d] })
+            }
             _ => crowded.push(group[0].0),
         }
     }
     crowded.sort_unstable();
-    if crowded.is_empty() {
-        Ok(list)
-    } else {
-        Err(MeshError::NonManifoldEdges { edges: crowded })
-    }
+    if crowded.is_empty() { Ok(list) } else { Err(MeshError::NonManifoldEdges { edges: crowded }) }
 }
 
 /// For each node between exactly two edges of a chain the triple [previous, middle, next], ascending in the middle node.
@@ -93,11 +87,7 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
         let mut list = Vec::new();
         if D == 2 {
-            let outline: Vec<[u32; 2]> = self
-                .facets
-                .iter()
-                .map(|facet| [facet[0], facet[1]])
-                .collect();
+            let outline: Vec<[u32; 2]> = self.facets.iter().map(|facet| [facet[0], facet[1]]).collect();
             list = bends(&outline);
         }
         list.extend(bends(&self.wires));

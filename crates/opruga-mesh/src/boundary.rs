@@ -8,14 +8,7 @@ use crate::{Element, Mesh, MeshError};
 ///
 /// # Source
 /// Kuhn, "Some combinatorial lemmas in topology", IBM J. Res. Dev. 4 (1960).
-const KUHN: [[usize; 4]; 6] = [
-    [0, 1, 2, 6],
-    [0, 5, 1, 6],
-    [0, 2, 3, 6],
-    [0, 3, 7, 6],
-    [0, 4, 5, 6],
-    [0, 7, 4, 6],
-];
+const KUHN: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 5, 1, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 4, 5, 6], [0, 7, 4, 6]];
 
 /// A face of a cell: its distinct nodes ascending (the key), and as seen from outside. Triangles and edges repeat their last node.
 struct Face {
@@ -36,19 +29,13 @@ impl<const D: usize> Mesh<D> {
         let mut faces = Vec::new();
         for (element, _, cell) in self.cell_elements() {
             let mut push = |nodes: [u32; 4]| {
-                faces.push(Face {
-                    key: distinct(nodes),
-                    order: faces.len(),
-                    nodes,
-                });
+                faces.push(Face { key: distinct(nodes), order: faces.len(), nodes });
             };
             match element {
-                Element::Tetrahedron => TETRAHEDRON_FACES
-                    .iter()
-                    .for_each(|&[a, b, c]| push([cell[a], cell[b], cell[c], cell[c]])),
-                Element::Hexahedron => HEXAHEDRON_FACES
-                    .iter()
-                    .for_each(|face| push(face.map(|corner| cell[corner]))),
+                Element::Tetrahedron => {
+                    TETRAHEDRON_FACES.iter().for_each(|&[a, b, c]| push([cell[a], cell[b], cell[c], cell[c]]))
+                }
+                Element::Hexahedron => HEXAHEDRON_FACES.iter().for_each(|face| push(face.map(|corner| cell[corner]))),
                 _ => {
                     for (place, &a) in cell.iter().enumerate() {
                         let b = cell[(place + 1) % cell.len()];
@@ -61,18 +48,13 @@ impl<const D: usize> Mesh<D> {
         // Faces of one cell only are the boundary; back to the order of the cells.
         faces.sort_unstable_by_key(|face| (face.key, face.order));
         let groups = || faces.chunk_by(|p, q| p.key == q.key);
-        let mut crowded: Vec<[u32; 2]> = groups()
-            .filter(|group| group.len() > 2)
-            .map(|group| ascending(group[0].key[0], group[0].key[1]))
-            .collect();
+        let mut crowded: Vec<[u32; 2]> =
+            groups().filter(|group| group.len() > 2).map(|group| ascending(group[0].key[0], group[0].key[1])).collect();
         if !crowded.is_empty() {
             crowded.dedup();
             return Err(MeshError::NonManifoldEdges { edges: crowded });
         }
-        let mut outer: Vec<&Face> = groups()
-            .filter(|group| group.len() == 1)
-            .map(|group| &group[0])
-            .collect();
+        let mut outer: Vec<&Face> = groups().filter(|group| group.len() == 1).map(|group| &group[0]).collect();
         outer.sort_unstable_by_key(|face| face.order);
 
         let mut facets = Vec::with_capacity(2 * outer.len());
@@ -113,9 +95,7 @@ impl<const D: usize> Mesh<D> {
             }
         }
         for cell in std::mem::take(&mut self.cells.hexahedra) {
-            self.cells
-                .tetrahedra
-                .extend(KUHN.map(|corners| corners.map(|corner| cell[corner])));
+            self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner])));
         }
         self.facets = self.facets_from_cells()?;
         Ok(self)

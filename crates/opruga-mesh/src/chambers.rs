@@ -38,16 +38,8 @@ fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
     for (index, facet) in facets.iter().enumerate() {
         for corner in 0..D {
             let (a, b) = (facet[corner], facet[(corner + 1) % D]);
-            let (ridge, forward) = if D == 2 {
-                ([a, a], corner == 0)
-            } else {
-                (crate::edges::ascending(a, b), a < b)
-            };
-            uses.push(Use {
-                ridge,
-                facet: index as u32,
-                forward,
-            });
+            let (ridge, forward) = if D == 2 { ([a, a], corner == 0) } else { (crate::edges::ascending(a, b), a < b) };
+            uses.push(Use { ridge, facet: index as u32, forward });
         }
     }
     uses.sort_unstable();
@@ -70,9 +62,7 @@ impl Survey {
             .collect();
         if !crowded.is_empty() {
             return Err(if D == 2 {
-                MeshError::NonManifoldNodes {
-                    nodes: crowded.iter().map(|ridge| ridge[0]).collect(),
-                }
+                MeshError::NonManifoldNodes { nodes: crowded.iter().map(|ridge| ridge[0]).collect() }
             } else {
                 MeshError::NonManifoldEdges { edges: crowded }
             });
@@ -80,10 +70,7 @@ impl Survey {
 
         // Neighbours across ridges, with whether the two facets face the same way.
         let mut links: Vec<(u32, u32, bool)> = Vec::with_capacity(uses.len());
-        for pair in uses
-            .chunk_by(|p, q| p.ridge == q.ridge)
-            .filter(|group| group.len() == 2)
-        {
+        for pair in uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 2) {
             let agree = pair[0].forward != pair[1].forward;
             links.push((pair[0].facet, pair[1].facet, agree));
             links.push((pair[1].facet, pair[0].facet, agree));
@@ -121,51 +108,26 @@ impl Survey {
                 }
             }
             // The smaller part is the one to turn; a tie keeps the lowest facet.
-            let turned = members
-                .iter()
-                .filter(|&&facet| against[facet as usize])
-                .count();
+            let turned = members.iter().filter(|&&facet| against[facet as usize]).count();
             let wrong = 2 * turned <= members.len();
-            minority.extend(
-                members
-                    .iter()
-                    .copied()
-                    .filter(|&facet| against[facet as usize] == wrong),
-            );
+            minority.extend(members.iter().copied().filter(|&facet| against[facet as usize] == wrong));
             components += 1;
         }
         minority.sort_unstable();
 
-        let free: Vec<Use> = uses
-            .chunk_by(|p, q| p.ridge == q.ridge)
-            .filter(|group| group.len() == 1)
-            .map(|group| group[0])
-            .collect();
-        let open = if D == 2 {
-            chain_ends(&free, &component)
-        } else {
-            loops(&free)
-        };
-        Ok(Survey {
-            component,
-            components,
-            minority,
-            open,
-        })
+        let free: Vec<Use> =
+            uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 1).map(|group| group[0]).collect();
+        let open = if D == 2 { chain_ends(&free, &component) } else { loops(&free) };
+        Ok(Survey { component, components, minority, open })
     }
 
     /// Refuses free boundaries and facets that face against their neighbours.
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
         if !self.open.is_empty() {
-            return Err(MeshError::Open {
-                loops: self.open.len(),
-                nodes: self.open.clone(),
-            });
+            return Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() });
         }
         if !self.minority.is_empty() {
-            return Err(MeshError::InconsistentOrientation {
-                facets: self.minority.clone(),
-            });
+            return Err(MeshError::InconsistentOrientation { facets: self.minority.clone() });
         }
         Ok(())
     }
@@ -173,10 +135,7 @@ impl Survey {
 
 /// Lowest free end of each open chain.
 fn chain_ends(free: &[Use], component: &[u32]) -> Vec<u32> {
-    let mut ends: Vec<(u32, u32)> = free
-        .iter()
-        .map(|end| (component[end.facet as usize], end.ridge[0]))
-        .collect();
+    let mut ends: Vec<(u32, u32)> = free.iter().map(|end| (component[end.facet as usize], end.ridge[0])).collect();
     ends.sort_unstable();
     ends.dedup_by_key(|end| end.0);
     let mut nodes: Vec<u32> = ends.into_iter().map(|end| end.1).collect();
@@ -201,20 +160,14 @@ fn loops(free: &[Use]) -> Vec<u32> {
         at
     };
     for edge in free {
-        let (p, q) = (
-            root(&mut parent, place(edge.ridge[0])),
-            root(&mut parent, place(edge.ridge[1])),
-        );
+        let (p, q) = (root(&mut parent, place(edge.ridge[0])), root(&mut parent, place(edge.ridge[1])));
         if p < q {
             parent[q] = p;
         } else {
             parent[p] = q;
         }
     }
-    (0..nodes.len())
-        .filter(|&at| parent[at] == at)
-        .map(|at| nodes[at])
-        .collect()
+    (0..nodes.len()).filter(|&at| parent[at] == at).map(|at| nodes[at]).collect()
 }
 
 impl<const D: usize> Mesh<D> {
@@ -230,19 +183,12 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
         survey.closed_and_consistent()?;
-        let mut components = vec![
-            Component {
-                facets: Vec::new(),
-                signed_volume: 0.0
-            };
-            survey.components
-        ];
+        let mut components = vec![Component { facets: Vec::new(), signed_volume: 0.0 }; survey.components];
         for (facet, &component) in survey.component.iter().enumerate() {
             components[component as usize].facets.push(facet as u32);
         }
         for component in &mut components {
-            component.signed_volume =
-                signed_volume(&self.gather(&component.facets), &self.positions);
+            component.signed_volume = signed_volume(&self.gather(&component.facets), &self.positions);
         }
         Ok(components)
     }
@@ -256,25 +202,17 @@ impl<const D: usize> Mesh<D> {
     /// Those of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole in nothing.
     pub fn chambers(&self) -> Result<Vec<Vec<u32>>, MeshError> {
         let components = self.components()?;
-        let (outer, holes): (Vec<&Component>, Vec<&Component>) = components
-            .iter()
-            .partition(|component| component.signed_volume >= 0.0);
-        let skins: Vec<Vec<[u32; D]>> = outer
-            .iter()
-            .map(|component| self.gather(&component.facets))
-            .collect();
-        let mut chambers: Vec<Vec<u32>> = outer
-            .iter()
-            .map(|component| component.facets.clone())
-            .collect();
+        let (outer, holes): (Vec<&Component>, Vec<&Component>) =
+            components.iter().partition(|component| component.signed_volume >= 0.0);
+        let skins: Vec<Vec<[u32; D]>> = outer.iter().map(|component| self.gather(&component.facets)).collect();
+        let mut chambers: Vec<Vec<u32>> = outer.iter().map(|component| component.facets.clone()).collect();
 
         // Each hole goes to the tightest skin around it.
         for hole in holes {
             let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
             let mut home: Option<usize> = None;
             for candidate in 0..outer.len() {
-                let tighter = home
-                    .is_none_or(|best| outer[candidate].signed_volume < outer[best].signed_volume);
+                let tighter = home.is_none_or(|best| outer[candidate].signed_volume < outer[best].signed_volume);
                 if tighter && winding_number(&skins[candidate], &self.positions, &point) > 0.5 {
                     home = Some(candidate);
                 }
@@ -282,16 +220,11 @@ impl<const D: usize> Mesh<D> {
             match home {
                 Some(home) => chambers[home].extend(&hole.facets),
                 None => {
-                    return Err(MeshError::InsideOut {
-                        facet: hole.facets[0],
-                        signed_volume: hole.signed_volume,
-                    });
+                    return Err(MeshError::InsideOut { facet: hole.facets[0], signed_volume: hole.signed_volume });
                 }
             }
         }
-        chambers
-            .iter_mut()
-            .for_each(|chamber| chamber.sort_unstable());
+        chambers.iter_mut().for_each(|chamber| chamber.sort_unstable());
         Ok(chambers)
     }
 
@@ -306,10 +239,7 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
         if !survey.open.is_empty() {
-            return Err(MeshError::Open {
-                loops: survey.open.len(),
-                nodes: survey.open,
-            });
+            return Err(MeshError::Open { loops: survey.open.len(), nodes: survey.open });
         }
         let before = self.facets.clone();
         for &facet in &survey.minority {
@@ -328,10 +258,7 @@ impl<const D: usize> Mesh<D> {
 
     /// The facets with the given indices.
     fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
-        facets
-            .iter()
-            .map(|&facet| self.facets[facet as usize])
-            .collect()
+        facets.iter().map(|&facet| self.facets[facet as usize]).collect()
     }
 }
 
@@ -341,11 +268,7 @@ impl<const D: usize> Mesh<D> {
 ///
 /// # Source
 /// van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), equation 8.
-fn winding_number<const D: usize>(
-    facets: &[[u32; D]],
-    positions: &[[f64; D]],
-    point: &[f64; D],
-) -> f64 {
+fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
     let o = lift(point);
     let from = |node: u32| subtract(lift(&positions[node as usize]), o);
     let mut total = 0.0;

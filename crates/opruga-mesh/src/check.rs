@@ -78,8 +78,7 @@ impl<const D: usize> Mesh<D> {
             return problems;
         }
         self.check_references(&mut problems);
-        let broken =
-            (0..self.nodes()).filter(|&node| self.positions[node].iter().any(|x| !x.is_finite()));
+        let broken = (0..self.nodes()).filter(|&node| self.positions[node].iter().any(|x| !x.is_finite()));
         let finite_from = problems.len();
         problems.extend(broken.map(|node| Problem::NotFinite { node: node as u32 }));
         if problems.len() == finite_from {
@@ -101,20 +100,14 @@ impl<const D: usize> Mesh<D> {
         }
         keys.sort_unstable();
         for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            problems.push(Problem::DuplicateFacet {
-                first: pair[0].1,
-                second: pair[1].1,
-            });
+            problems.push(Problem::DuplicateFacet { first: pair[0].1, second: pair[1].1 });
         }
 
         let mut named = vec![false; self.nodes()];
         for (_, _, nodes) in self.elements() {
             nodes.iter().for_each(|&node| named[node as usize] = true);
         }
-        let nodes: Vec<u32> = (0..named.len())
-            .filter(|&node| !named[node])
-            .map(|node| node as u32)
-            .collect();
+        let nodes: Vec<u32> = (0..named.len()).filter(|&node| !named[node]).map(|node| node as u32).collect();
         if !nodes.is_empty() {
             problems.push(Problem::UnreferencedNodes { nodes });
         }
@@ -124,10 +117,7 @@ impl<const D: usize> Mesh<D> {
     fn check_shapes(&self, problems: &mut Vec<Problem>) {
         let points: Vec<Point> = self.positions.iter().map(lift).collect();
         let spread = spread(&points);
-        for (element, index, nodes) in self
-            .elements()
-            .filter(|entry| entry.0 != Element::SheetQuadrilateral)
-        {
+        for (element, index, nodes) in self.elements().filter(|entry| entry.0 != Element::SheetQuadrilateral) {
             let measure = self.size_of(nodes, element);
             let mut longest = 0.0;
             for (place, &a) in nodes.iter().enumerate() {
@@ -139,31 +129,18 @@ impl<const D: usize> Mesh<D> {
                 }
             }
             let thin = match element {
-                Element::Tetrahedron | Element::Hexahedron => {
-                    THIN_ELEMENT * longest * longest * longest
-                }
+                Element::Tetrahedron | Element::Hexahedron => THIN_ELEMENT * longest * longest * longest,
                 _ if nodes.len() > 2 => THIN_ELEMENT * longest * longest,
                 _ => 0.0,
             };
             if longest <= SHORT_EDGE * spread[0] || measure.abs() <= thin {
-                problems.push(Problem::Degenerate {
-                    element,
-                    index,
-                    measure,
-                });
+                problems.push(Problem::Degenerate { element, index, measure });
             } else if measure < 0.0 {
-                problems.push(Problem::Inverted {
-                    element,
-                    index,
-                    measure,
-                });
+                problems.push(Problem::Inverted { element, index, measure });
             }
         }
         if !self.facets.is_empty() || !self.cells.is_empty() {
-            let dimension = spread
-                .iter()
-                .filter(|&&extent| extent > FLAT_BODY * spread[0])
-                .count();
+            let dimension = spread.iter().filter(|&&extent| extent > FLAT_BODY * spread[0]).count();
             if dimension < D {
                 problems.push(Problem::Flat { dimension });
             }
@@ -202,10 +179,7 @@ fn spread(points: &[Point]) -> [f64; 3] {
         }
         match rank {
             0 => directions[0] = farthest.map(|component| component / extents[0]),
-            1 => {
-                directions[2] =
-                    cross(directions[0], farthest).map(|component| component / extents[1])
-            }
+            1 => directions[2] = cross(directions[0], farthest).map(|component| component / extents[1]),
             _ => {}
         }
     }

@@ -33,16 +33,11 @@ pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
     for (index, &[a, b]) in edges.iter().enumerate() {
         match runs.last_mut() {
             Some(run)
-                if run.first[0].checked_add(run.count) == Some(a)
-                    && run.first[1].checked_add(run.count) == Some(b) =>
+                if run.first[0].checked_add(run.count) == Some(a) && run.first[1].checked_add(run.count) == Some(b) =>
             {
                 run.count += 1
             }
-            _ => runs.push(EdgeRun {
-                start: index as u32,
-                first: [a, b],
-                count: 1,
-            }),
+            _ => runs.push(EdgeRun { start: index as u32, first: [a, b], count: 1 }),
         }
     }
     runs
@@ -97,9 +92,7 @@ impl<const D: usize> Mesh<D> {
             if set == EdgeSet::All && !self.cells.hexahedra.is_empty() {
                 let mut diagonals = Vec::new();
                 for cell in &self.cells.hexahedra {
-                    faces(cell)
-                        .into_iter()
-                        .for_each(|face| push_diagonals(face, &mut diagonals));
+                    faces(cell).into_iter().for_each(|face| push_diagonals(face, &mut diagonals));
                 }
                 diagonals.sort_unstable();
                 edges.retain(|edge| diagonals.binary_search(edge).is_err());
@@ -107,18 +100,11 @@ impl<const D: usize> Mesh<D> {
             self.push_inner_edges(&mut edges);
         }
         if set == EdgeSet::AllWithShear {
-            for &quadrilateral in self
-                .cells
-                .quadrilaterals
-                .iter()
-                .chain(&self.sheet_quadrilaterals)
-            {
+            for &quadrilateral in self.cells.quadrilaterals.iter().chain(&self.sheet_quadrilaterals) {
                 push_diagonals(quadrilateral, &mut edges);
             }
             for cell in &self.cells.hexahedra {
-                faces(cell)
-                    .into_iter()
-                    .for_each(|face| push_diagonals(face, &mut edges));
+                faces(cell).into_iter().for_each(|face| push_diagonals(face, &mut edges));
             }
         }
 
@@ -131,25 +117,13 @@ impl<const D: usize> Mesh<D> {
     /// Adds the edges of wires, sheets and cells.
     fn push_inner_edges(&self, edges: &mut Vec<[u32; 2]>) {
         edges.extend(self.wires.iter().map(|&[a, b]| ascending(a, b)));
-        self.sheets
-            .iter()
-            .for_each(|triangle| push_sides(triangle, edges));
-        self.sheet_quadrilaterals
-            .iter()
-            .for_each(|quadrilateral| push_sides(quadrilateral, edges));
-        self.cells
-            .triangles
-            .iter()
-            .for_each(|triangle| push_sides(triangle, edges));
-        self.cells
-            .quadrilaterals
-            .iter()
-            .for_each(|quadrilateral| push_sides(quadrilateral, edges));
+        self.sheets.iter().for_each(|triangle| push_sides(triangle, edges));
+        self.sheet_quadrilaterals.iter().for_each(|quadrilateral| push_sides(quadrilateral, edges));
+        self.cells.triangles.iter().for_each(|triangle| push_sides(triangle, edges));
+        self.cells.quadrilaterals.iter().for_each(|quadrilateral| push_sides(quadrilateral, edges));
         for &[a, b, c, d] in &self.cells.tetrahedra {
             push_sides(&[a, b, c], edges);
-            [a, b, c]
-                .into_iter()
-                .for_each(|corner| edges.push(ascending(corner, d)));
+            [a, b, c].into_iter().for_each(|corner| edges.push(ascending(corner, d)));
         }
         for cell in &self.cells.hexahedra {
             push_sides(&cell[..4], edges);
@@ -172,19 +146,13 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
 
         // A sorted copy finds the place of an edge in any list.
-        let mut sorted: Vec<([u32; 2], usize)> = edges
-            .iter()
-            .enumerate()
-            .map(|(place, &[a, b])| (ascending(a, b), place))
-            .collect();
+        let mut sorted: Vec<([u32; 2], usize)> =
+            edges.iter().enumerate().map(|(place, &[a, b])| (ascending(a, b), place)).collect();
         sorted.sort_unstable();
         let find = |a: u32, b: u32| {
             let edge = ascending(a, b);
             let slot = sorted.partition_point(|entry| entry.0 < edge);
-            sorted
-                .get(slot)
-                .filter(|entry| entry.0 == edge)
-                .map(|entry| entry.1)
+            sorted.get(slot).filter(|entry| entry.0 == edge).map(|entry| entry.1)
         };
         let at = |node: u32| lift(&self.positions[node as usize]);
         let mut areas = vec![0.0; edges.len()];
@@ -198,25 +166,12 @@ impl<const D: usize> Mesh<D> {
         };
 
         // Whole triangles; the sheet triangles that make up quadrilaterals come with these.
-        let loose = self
-            .sheets
-            .get(2 * self.sheet_quadrilaterals.len()..)
-            .unwrap_or_default();
-        for &triangle in self
-            .facet_triangles()
-            .iter()
-            .chain(loose)
-            .chain(&self.cells.triangles)
-        {
+        let loose = self.sheets.get(2 * self.sheet_quadrilaterals.len()..).unwrap_or_default();
+        for &triangle in self.facet_triangles().iter().chain(loose).chain(&self.cells.triangles) {
             add(triangle, 1.0);
         }
         // Quadrilaterals, cut by the diagonals that are in the list.
-        for &[a, b, c, d] in self
-            .cells
-            .quadrilaterals
-            .iter()
-            .chain(&self.sheet_quadrilaterals)
-        {
+        for &[a, b, c, d] in self.cells.quadrilaterals.iter().chain(&self.sheet_quadrilaterals) {
             let (weight_ac, weight_bd) = match (find(a, c).is_some(), find(b, d).is_some()) {
                 (true, false) => (1.0, 0.0),
                 (false, true) => (0.0, 1.0),

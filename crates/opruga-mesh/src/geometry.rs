@@ -20,11 +20,7 @@ pub(crate) fn dot(a: Point, b: Point) -> f64 {
 
 #[inline]
 pub(crate) fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[inline]
@@ -52,14 +48,8 @@ pub(crate) fn tetrahedron_volume(o: Point, a: Point, b: Point, c: Point) -> f64 
 }
 
 /// Outward faces of a hexahedron, counter-clockwise seen from outside.
-pub(crate) const HEXAHEDRON_FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
+pub(crate) const HEXAHEDRON_FACES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
 /// Outward faces of a tetrahedron, counter-clockwise seen from outside.
 pub(crate) const TETRAHEDRON_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];

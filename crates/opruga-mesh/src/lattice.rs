@@ -10,11 +10,7 @@ pub(crate) const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], 
 
 /// Coordinate of lattice station `index` of `cells`; the last one is exactly the far end.
 pub(crate) fn station(lower: f64, size: f64, index: u32, cells: u32) -> f64 {
-    if index == cells {
-        lower + size
-    } else {
-        lower + size * f64::from(index) / f64::from(cells)
-    }
+    if index == cells { lower + size } else { lower + size * f64::from(index) / f64::from(cells) }
 }
 
 /// Node sets of the sides of a lattice, from each node's lattice index.
@@ -27,10 +23,7 @@ pub(crate) fn side_groups<const A: usize>(
         for axis in 0..A {
             for (side, station) in [0, cells[axis]].into_iter().enumerate() {
                 if index[axis] == station {
-                    groups
-                        .entry(SIDES[axis][side].to_owned())
-                        .or_default()
-                        .push(node as u32);
+                    groups.entry(SIDES[axis][side].to_owned()).or_default().push(node as u32);
                 }
             }
         }
@@ -62,28 +55,16 @@ impl<const D: usize> Mesh<D> {
         finite("end of the line", &from)?;
         finite("end of the line", &to)?;
         if from == to {
-            return Err(MeshError::Size {
-                what: "length of the line",
-                value: 0.0,
-                must: "positive and finite",
-            });
+            return Err(MeshError::Size { what: "length of the line", value: 0.0, must: "positive and finite" });
         }
         let at = |i: u32| {
             std::array::from_fn(|axis| {
-                if i == segments {
-                    to[axis]
-                } else {
-                    station(from[axis], to[axis] - from[axis], i, segments)
-                }
+                if i == segments { to[axis] } else { station(from[axis], to[axis] - from[axis], i, segments) }
             })
         };
         let positions = (0..=segments).map(at).collect();
         let wires = (0..segments).map(|i| [i, i + 1]).collect();
-        Ok(Mesh {
-            positions,
-            wires,
-            ..Mesh::default()
-        })
+        Ok(Mesh { positions, wires, ..Mesh::default() })
     }
 
     /// A wire through the given points [m], closed to a loop or not; node i is point i. A closed loop may repeat its first point at the end.
@@ -92,20 +73,12 @@ impl<const D: usize> Mesh<D> {
     /// [`MeshError::Count`] for too few points (2, or 3 in a loop); [`MeshError::Size`] where one is not finite; [`MeshError::RepeatedPoint`] where
     /// two in a row coincide.
     pub fn polyline(points: &[[f64; D]], closed: bool) -> Result<Mesh<D>, MeshError> {
-        let points = if closed {
-            without_repeated_end(points)
-        } else {
-            points
-        };
+        let points = if closed { without_repeated_end(points) } else { points };
         check_points(points, if closed { 3 } else { 2 }, closed)?;
         let n = points.len() as u32;
         let last = if closed { n } else { n - 1 };
         let wires = (0..last).map(|i| [i, (i + 1) % n]).collect();
-        Ok(Mesh {
-            positions: points.to_vec(),
-            wires,
-            ..Mesh::default()
-        })
+        Ok(Mesh { positions: points.to_vec(), wires, ..Mesh::default() })
     }
 
     /// A filled box of `size` [m] from its `lower` corner [m], cut into `cells` quadrilaterals (plane) or hexahedra (space) per axis.
@@ -131,11 +104,7 @@ impl<const D: usize> Mesh<D> {
 
         // Nodes, first axis fastest.
         let positions = lattice(cells)
-            .map(|index| {
-                std::array::from_fn(|axis| {
-                    station(lower[axis], size[axis], index[axis], cells[axis])
-                })
-            })
+            .map(|index| std::array::from_fn(|axis| station(lower[axis], size[axis], index[axis], cells[axis])))
             .collect();
         let groups = side_groups(lattice(cells), cells);
 
@@ -150,24 +119,10 @@ impl<const D: usize> Mesh<D> {
             } else {
                 let a = a + layer * index[D - 1];
                 let b = a + layer;
-                filled.hexahedra.push([
-                    a,
-                    a + 1,
-                    a + row + 1,
-                    a + row,
-                    b,
-                    b + 1,
-                    b + row + 1,
-                    b + row,
-                ]);
+                filled.hexahedra.push([a, a + 1, a + row + 1, a + row, b, b + 1, b + row + 1, b + row]);
             }
         }
-        let mut mesh = Mesh {
-            positions,
-            cells: filled,
-            groups,
-            ..Mesh::default()
-        };
+        let mut mesh = Mesh { positions, cells: filled, groups, ..Mesh::default() };
         mesh.facets = mesh.facets_from_cells()?;
         Ok(mesh)
     }
@@ -176,19 +131,13 @@ impl<const D: usize> Mesh<D> {
 /// The points without a last one that repeats the first.
 pub(crate) fn without_repeated_end<const D: usize>(points: &[[f64; D]]) -> &[[f64; D]] {
     match points {
-        [first, inner @ .., last] if first == last && !inner.is_empty() => {
-            &points[..points.len() - 1]
-        }
+        [first, inner @ .., last] if first == last && !inner.is_empty() => &points[..points.len() - 1],
         _ => points,
     }
 }
 
 /// Refuses too few or too many points, points that are not finite, and points that repeat their predecessor.
-pub(crate) fn check_points<const D: usize>(
-    points: &[[f64; D]],
-    least: u64,
-    closed: bool,
-) -> Result<(), MeshError> {
+pub(crate) fn check_points<const D: usize>(points: &[[f64; D]], least: u64, closed: bool) -> Result<(), MeshError> {
     let n = points.len();
     limit_nodes(n as u64)?;
     count("number of points", n as u32, least, MAXIMUM_NODES)?;
@@ -196,10 +145,7 @@ pub(crate) fn check_points<const D: usize>(
         finite("coordinate of a point", point)?;
         let next = (index + 1) % n;
         if points[next] == *point && (closed || next != 0) {
-            return Err(MeshError::RepeatedPoint {
-                first: index as u32,
-                second: next as u32,
-            });
+            return Err(MeshError::RepeatedPoint { first: index as u32, second: next as u32 });
         }
     }
     Ok(())

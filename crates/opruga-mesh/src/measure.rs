@@ -1,8 +1,7 @@
 //! Length, area or volume of a body, as a whole and per node.
 
 use crate::geometry::{
-    Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume,
-    triangle_area,
+    Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume, triangle_area,
 };
 use crate::{Element, Mesh, MeshError};
 
@@ -70,10 +69,7 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// Calls `visit(nodes, measure)` for each element that carries matter; returns which measure it is.
-    fn visit_measures(
-        &self,
-        mut visit: impl FnMut(&[u32], f64),
-    ) -> Result<fn(f64) -> Measure, MeshError> {
+    fn visit_measures(&self, mut visit: impl FnMut(&[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
         self.validate()?;
 
         // Matter is in the elements of highest dimension; those of lower dimension are a boundary, or do not belong.
@@ -89,10 +85,7 @@ impl<const D: usize> Mesh<D> {
             let Some(own) = rank(element) else { continue };
             match known {
                 Some((first, other)) if other != own => {
-                    return Err(MeshError::MixedMeasures {
-                        first,
-                        second: element,
-                    });
+                    return Err(MeshError::MixedMeasures { first, second: element });
                 }
                 Some(_) => {}
                 None => known = Some((element, own)),

@@ -41,10 +41,7 @@ impl Cells {
 
     /// Number of cells of all kinds.
     pub fn len(&self) -> usize {
-        self.triangles.len()
-            + self.quadrilaterals.len()
-            + self.tetrahedra.len()
-            + self.hexahedra.len()
+        self.triangles.len() + self.quadrilaterals.len() + self.tetrahedra.len() + self.hexahedra.len()
     }
 }
 
@@ -68,13 +65,8 @@ pub struct Mesh<const D: usize> {
 }
 
 /// A row of elements as (kind, index, nodes).
-fn rows<const N: usize>(
-    kind: Element,
-    list: &[[u32; N]],
-) -> impl Iterator<Item = (Element, u32, &[u32])> {
-    list.iter()
-        .enumerate()
-        .map(move |(index, nodes)| (kind, index as u32, nodes.as_slice()))
+fn rows<const N: usize>(kind: Element, list: &[[u32; N]]) -> impl Iterator<Item = (Element, u32, &[u32])> {
+    list.iter().enumerate().map(move |(index, nodes)| (kind, index as u32, nodes.as_slice()))
 }
 
 impl<const D: usize> Mesh<D> {
@@ -88,10 +80,7 @@ impl<const D: usize> Mesh<D> {
         rows(Element::Facet, &self.facets)
             .chain(rows(Element::Wire, &self.wires))
             .chain(rows(Element::Sheet, &self.sheets))
-            .chain(rows(
-                Element::SheetQuadrilateral,
-                &self.sheet_quadrilaterals,
-            ))
+            .chain(rows(Element::SheetQuadrilateral, &self.sheet_quadrilaterals))
             .chain(self.cell_elements())
     }
 
@@ -108,10 +97,7 @@ impl<const D: usize> Mesh<D> {
         if D != 3 {
             return Vec::new();
         }
-        self.facets
-            .iter()
-            .map(|facet| [facet[0], facet[1], facet[D - 1]])
-            .collect()
+        self.facets.iter().map(|facet| [facet[0], facet[1], facet[D - 1]]).collect()
     }
 
     /// Checks that every index names a node and no element names a node twice, so that no reader of the mesh can go astray.
@@ -127,26 +113,14 @@ impl<const D: usize> Mesh<D> {
         // Every element: in its dimension, indices in range and distinct.
         for (element, index, list) in self.elements() {
             if !belongs(element, D) {
-                return Err(MeshError::WrongDimension {
-                    element,
-                    dimension: D,
-                });
+                return Err(MeshError::WrongDimension { element, dimension: D });
             }
             for (place, &node) in list.iter().enumerate() {
                 if node >= nodes {
-                    return Err(MeshError::IndexOutOfRange {
-                        element,
-                        index,
-                        node,
-                        nodes,
-                    });
+                    return Err(MeshError::IndexOutOfRange { element, index, node, nodes });
                 }
                 if list[..place].contains(&node) {
-                    return Err(MeshError::RepeatedNode {
-                        element,
-                        index,
-                        node,
-                    });
+                    return Err(MeshError::RepeatedNode { element, index, node });
                 }
             }
         }
@@ -154,12 +128,7 @@ impl<const D: usize> Mesh<D> {
         // Groups: indices in range.
         for (index, list) in self.groups.values().enumerate() {
             if let Some(&node) = list.iter().find(|&&node| node >= nodes) {
-                return Err(MeshError::IndexOutOfRange {
-                    element: Element::Group,
-                    index: index as u32,
-                    node,
-                    nodes,
-                });
+                return Err(MeshError::IndexOutOfRange { element: Element::Group, index: index as u32, node, nodes });
             }
         }
 
@@ -167,19 +136,11 @@ impl<const D: usize> Mesh<D> {
         for (index, quadrilateral) in self.sheet_quadrilaterals.iter().enumerate() {
             let halves = self.sheets.get(2 * index..2 * index + 2);
             let covers = |halves: &[[u32; 3]]| {
-                let within = halves
-                    .iter()
-                    .flatten()
-                    .all(|node| quadrilateral.contains(node));
-                within
-                    && quadrilateral
-                        .iter()
-                        .all(|node| halves.iter().flatten().any(|other| other == node))
+                let within = halves.iter().flatten().all(|node| quadrilateral.contains(node));
+                within && quadrilateral.iter().all(|node| halves.iter().flatten().any(|other| other == node))
             };
             if !halves.is_some_and(covers) {
-                return Err(MeshError::SheetPairing {
-                    index: index as u32,
-                });
+                return Err(MeshError::SheetPairing { index: index as u32 });
             }
         }
         Ok(())
@@ -203,43 +164,19 @@ fn belongs(element: Element, dimension: usize) -> bool {
     match element {
         Element::Facet | Element::Wire | Element::Edge | Element::Group => true,
         Element::Triangle | Element::Quadrilateral => dimension == 2,
-        Element::Sheet
-        | Element::SheetQuadrilateral
-        | Element::Tetrahedron
-        | Element::Hexahedron => dimension == 3,
+        Element::Sheet | Element::SheetQuadrilateral | Element::Tetrahedron | Element::Hexahedron => dimension == 3,
     }
 }
 
 /// Refuses more than [`MAXIMUM_NODES`] nodes.
 pub(crate) fn limit_nodes(nodes: u64) -> Result<(), MeshError> {
-    if nodes > MAXIMUM_NODES {
-        Err(MeshError::TooManyNodes {
-            nodes,
-            most: MAXIMUM_NODES,
-        })
-    } else {
-        Ok(())
-    }
+    if nodes > MAXIMUM_NODES { Err(MeshError::TooManyNodes { nodes, most: MAXIMUM_NODES }) } else { Ok(()) }
 }
 
 /// Refuses a count outside `least..=most`.
-pub(crate) fn count(
-    what: &'static str,
-    value: u32,
-    least: u64,
-    most: u64,
-) -> Result<(), MeshError> {
+pub(crate) fn count(what: &'static str, value: u32, least: u64, most: u64) -> Result<(), MeshError> {
     let value = u64::from(value);
-    if (least..=most).contains(&value) {
-        Ok(())
-    } else {
-        Err(MeshError::Count {
-            what,
-            value,
-            least,
-            most,
-        })
-    }
+    if (least..=most).contains(&value) { Ok(()) } else { Err(MeshError::Count { what, value, least, most }) }
 }
 
 /// Refuses a length that is not positive and finite [m].
@@ -247,22 +184,14 @@ pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), MeshError> 
     if value > 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(MeshError::Size {
-            what,
-            value,
-            must: "positive and finite",
-        })
+        Err(MeshError::Size { what, value, must: "positive and finite" })
     }
 }
 
 /// Refuses coordinates that are not finite [m].
 pub(crate) fn finite(what: &'static str, values: &[f64]) -> Result<(), MeshError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(MeshError::Size {
-            what,
-            value,
-            must: "finite",
-        }),
+        Some(&value) => Err(MeshError::Size { what, value, must: "finite" }),
         None => Ok(()),
     }
 }

@@ -9,21 +9,14 @@ use crate::{MAXIMUM_NODES, Mesh, MeshError};
 pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
     let n = positions.len() as u32;
     let facets = (0..n).map(|i| [i, (i + 1) % n]).collect();
-    Mesh {
-        positions,
-        facets,
-        ..Mesh::default()
-    }
+    Mesh { positions, facets, ..Mesh::default() }
 }
 
 /// Points on a circle, counter-clockwise from the start angle.
 fn circle(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Vec<[f64; 2]> {
     let at = |i: u32| {
         let angle = start_angle + 2.0 * PI * f64::from(i) / f64::from(vertices);
-        [
-            center[0] + radius * libm::cos(angle),
-            center[1] + radius * libm::sin(angle),
-        ]
+        [center[0] + radius * libm::cos(angle), center[1] + radius * libm::sin(angle)]
     };
     (0..vertices).map(at).collect()
 }
@@ -37,12 +30,7 @@ impl Mesh<2> {
     /// # Errors
     /// [`MeshError::Count`] for fewer than 3 vertices or too many; [`MeshError::Size`] for a radius that is not positive and finite, or a centre or
     /// angle that is not finite.
-    pub fn ring(
-        radius: f64,
-        vertices: u32,
-        center: [f64; 2],
-        start_angle: f64,
-    ) -> Result<Mesh<2>, MeshError> {
+    pub fn ring(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Result<Mesh<2>, MeshError> {
         count("number of vertices", vertices, 3, MAXIMUM_NODES)?;
         positive("radius", radius)?;
         finite("centre", &center)?;
@@ -63,12 +51,7 @@ impl Mesh<2> {
         start_angle: f64,
     ) -> Result<Mesh<2>, MeshError> {
         count("number of sides", sides, 3, MAXIMUM_NODES)?;
-        count(
-            "number of vertices per side",
-            vertices_per_side,
-            1,
-            MAXIMUM_NODES,
-        )?;
+        count("number of vertices per side", vertices_per_side, 1, MAXIMUM_NODES)?;
         limit_nodes(u64::from(sides) * u64::from(vertices_per_side))?;
         positive("radius", radius)?;
         finite("centre", &center)?;

@@ -48,19 +48,12 @@ impl Mesh<2> {
         if let Some([first, second]) = self_intersection(points) {
             let n = points.len();
             let ends = |edge: usize| [edge as u32, ((edge + 1) % n) as u32];
-            return Err(MeshError::SelfIntersection {
-                first: ends(first),
-                second: ends(second),
-            });
+            return Err(MeshError::SelfIntersection { first: ends(first), second: ends(second) });
         }
         let mut mesh = outline(points.to_vec());
         let area = signed_volume(&mesh.facets, &mesh.positions);
         if area == 0.0 || !area.is_finite() {
-            return Err(MeshError::Size {
-                what: "area of the outline",
-                value: area,
-                must: "finite and not zero",
-            });
+            return Err(MeshError::Size { what: "area of the outline", value: area, must: "finite and not zero" });
         }
         let flipped = area < 0.0;
         if flipped {
@@ -102,11 +95,7 @@ fn self_intersection(points: &[[f64; 2]]) -> Option<[usize; 2]> {
     for (low, high, edge) in order {
         active.retain(|other| other.0 >= low);
         for &(_, other) in &active {
-            let pair = if edge < other {
-                [edge, other]
-            } else {
-                [other, edge]
-            };
+            let pair = if edge < other { [edge, other] } else { [other, edge] };
             if found.is_none_or(|best| pair < best) && edges_conflict(points, pair) {
                 found = Some(pair);
             }

@@ -58,11 +58,7 @@ impl Rows {
     /// Index of the node `step` steps into sector `s` of a row.
     fn node(&self, row: u32, s: u32, step: u32) -> u32 {
         let m = self.sector(row);
-        if m == 0 {
-            self.first(row)
-        } else {
-            self.first(row) + (s * m + step) % (5 * m)
-        }
+        if m == 0 { self.first(row) } else { self.first(row) + (s * m + step) % (5 * m) }
     }
 
     /// Index of lattice point (i, j) of a face, 0 ≤ i, j and i + j ≤ n. Faces 5k … 5k + 4 are north, belt down, belt up, south.
@@ -96,12 +92,7 @@ impl Mesh<3> {
     /// [`MeshError::Size`] for a radius that is not positive and finite; [`MeshError::Count`] for more than [`MAXIMUM_SUBDIVISIONS`].
     pub fn icosphere(radius: f64, subdivisions: u32) -> Result<Mesh<3>, MeshError> {
         positive("radius", radius)?;
-        count(
-            "number of subdivisions",
-            subdivisions,
-            0,
-            u64::from(MAXIMUM_SUBDIVISIONS),
-        )?;
+        count("number of subdivisions", subdivisions, 0, u64::from(MAXIMUM_SUBDIVISIONS))?;
         let n = 1 << subdivisions;
         let rows = Rows { n };
         let mut unit: Vec<Point> = vec![[0.0; 3]; (10 * n * n + 2) as usize];
@@ -115,8 +106,7 @@ impl Mesh<3> {
             unit[rows.node(n, s, 0) as usize] = [r * libm::cos(angle), r * libm::sin(angle), z];
             // Lₛ stands below the middle of Uₛ and Uₛ₊₁.
             let lower = angle + PI / 5.0;
-            unit[rows.node(2 * n, s, 0) as usize] =
-                [r * libm::cos(lower), r * libm::sin(lower), -z];
+            unit[rows.node(2 * n, s, 0) as usize] = [r * libm::cos(lower), r * libm::sin(lower), -z];
         }
 
         // Halve every edge, level by level. Neighbour faces compute a shared midpoint twice, with the same bits, for a + b = b + a.
@@ -130,14 +120,11 @@ impl Mesh<3> {
                         let middles = [(i + half, j), (i + half, j + half), (i, j + half)];
                         for side in 0..3 {
                             let (a, b, m) = (corners[side], corners[(side + 1) % 3], middles[side]);
-                            let (a, b) = (
-                                unit[rows.at(face, a.0, a.1) as usize],
-                                unit[rows.at(face, b.0, b.1) as usize],
-                            );
+                            let (a, b) =
+                                (unit[rows.at(face, a.0, a.1) as usize], unit[rows.at(face, b.0, b.1) as usize]);
                             let sum = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
                             let length = norm(sum);
-                            unit[rows.at(face, m.0, m.1) as usize] =
-                                sum.map(|component| component / length);
+                            unit[rows.at(face, m.0, m.1) as usize] = sum.map(|component| component / length);
                         }
                     }
                 }
@@ -158,14 +145,7 @@ impl Mesh<3> {
                 }
             }
         }
-        let positions = unit
-            .into_iter()
-            .map(|point| point.map(|component| radius * component))
-            .collect();
-        Ok(Mesh {
-            positions,
-            facets,
-            ..Mesh::default()
-        })
+        let positions = unit.into_iter().map(|point| point.map(|component| radius * component)).collect();
+        Ok(Mesh { positions, facets, ..Mesh::default() })
     }
 }

@@ -9,11 +9,7 @@ use crate::{MAXIMUM_NODES, Mesh, MeshError};
 
 /// The two triangles of a quadrilateral, cut along a–c where `even`, else along b–d.
 fn halves([a, b, c, d]: [u32; 4], even: bool) -> [[u32; 3]; 2] {
-    if even {
-        [[a, b, c], [a, c, d]]
-    } else {
-        [[a, b, d], [b, c, d]]
-    }
+    if even { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
 /// Index of the nodes of a box surface: the lattice points of the surface, x fastest, then y, then z.
@@ -52,11 +48,7 @@ impl Mesh<3> {
     /// # Errors
     /// [`MeshError::Count`] for a side without cells; [`MeshError::Size`] where a number is not finite or the sides span no area;
     /// [`MeshError::TooManyNodes`].
-    pub fn sheet(
-        corner: [f64; 3],
-        sides: [[f64; 3]; 2],
-        cells: [u32; 2],
-    ) -> Result<Mesh<3>, MeshError> {
+    pub fn sheet(corner: [f64; 3], sides: [[f64; 3]; 2], cells: [u32; 2]) -> Result<Mesh<3>, MeshError> {
         let [u, v] = sides;
         finite("corner of the sheet", &corner)?;
         positive("area of the sheet", norm(cross(u, v)))?;
@@ -66,9 +58,7 @@ impl Mesh<3> {
 
         let at = |[x, y]: [u32; 2]| {
             std::array::from_fn(|axis| {
-                corner[axis]
-                    + station(0.0, u[axis], x, cells[0])
-                    + station(0.0, v[axis], y, cells[1])
+                corner[axis] + station(0.0, u[axis], x, cells[0]) + station(0.0, v[axis], y, cells[1])
             })
         };
         let mut mesh = Mesh {
@@ -94,11 +84,7 @@ impl Mesh<3> {
     ///
     /// # Errors
     /// [`MeshError::Count`] for an axis without cells; [`MeshError::Size`] for sizes that are not positive and finite; [`MeshError::TooManyNodes`].
-    pub fn box_surface(
-        lower: [f64; 3],
-        size: [f64; 3],
-        cells: [u32; 3],
-    ) -> Result<Mesh<3>, MeshError> {
+    pub fn box_surface(lower: [f64; 3], size: [f64; 3], cells: [u32; 3]) -> Result<Mesh<3>, MeshError> {
         finite("lower corner of the box", &lower)?;
         for axis in 0..3 {
             count("number of cells per axis", cells[axis], 1, MAXIMUM_NODES)?;
@@ -116,9 +102,8 @@ impl Mesh<3> {
                 points.extend((0..=cells[0]).step_by(step).map(|x| [x, y, z]));
             }
         }
-        let at = |index: &[u32; 3]| {
-            std::array::from_fn(|axis| station(lower[axis], size[axis], index[axis], cells[axis]))
-        };
+        let at =
+            |index: &[u32; 3]| std::array::from_fn(|axis| station(lower[axis], size[axis], index[axis], cells[axis]));
         let positions = points.iter().map(at).collect();
         let groups = side_groups(points.iter().copied(), cells);
 
@@ -136,23 +121,13 @@ impl Mesh<3> {
                         index[v] = q;
                         skin.node(index)
                     };
-                    let (a, b, c, d) = (
-                        node(i, j),
-                        node(i + 1, j),
-                        node(i + 1, j + 1),
-                        node(i, j + 1),
-                    );
+                    let (a, b, c, d) = (node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1));
                     let quadrilateral = if far { [a, b, c, d] } else { [a, d, c, b] };
                     facets.extend(halves(quadrilateral, (i + j) % 2 == 0));
                 }
             }
         }
-        Ok(Mesh {
-            positions,
-            facets,
-            groups,
-            ..Mesh::default()
-        })
+        Ok(Mesh { positions, facets, groups, ..Mesh::default() })
     }
 
     /// A torus about the z axis through the origin: a tube of radius `minor` [m] around a circle of radius `major` [m] in the plane z = 0.
@@ -170,11 +145,7 @@ impl Mesh<3> {
         positive("major radius", major)?;
         positive("minor radius", minor)?;
         if minor >= major {
-            return Err(MeshError::Size {
-                what: "minor radius",
-                value: minor,
-                must: "smaller than the major radius",
-            });
+            return Err(MeshError::Size { what: "minor radius", value: minor, must: "smaller than the major radius" });
         }
         let turn = |index: u32, of: u32| {
             let angle = 2.0 * PI * f64::from(index) / f64::from(of);
@@ -189,19 +160,10 @@ impl Mesh<3> {
                 let r = major + minor * cv;
                 positions.push([r * cu, r * su, minor * sv]);
                 let (next_i, next_j) = ((i + 1) % around, (j + 1) % tube);
-                let quadrilateral = [
-                    i * tube + j,
-                    next_i * tube + j,
-                    next_i * tube + next_j,
-                    i * tube + next_j,
-                ];
+                let quadrilateral = [i * tube + j, next_i * tube + j, next_i * tube + next_j, i * tube + next_j];
                 facets.extend(halves(quadrilateral, true));
             }
         }
-        Ok(Mesh {
-            positions,
-            facets,
-            ..Mesh::default()
-        })
+        Ok(Mesh { positions, facets, ..Mesh::default() })
     }
 }

@@ -21,8 +21,7 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Size`] where A or `about` is not finite, or det A = 0. The mesh is then unchanged.
     pub fn transform(&mut self, rows: &[[f64; D]; D], about: [f64; D]) -> Result<bool, MeshError> {
-        rows.iter()
-            .try_for_each(|row| finite("entry of the map", row))?;
+        rows.iter().try_for_each(|row| finite("entry of the map", row))?;
         finite("centre of the map", &about)?;
         let determinant = if D == 2 {
             rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
@@ -57,9 +56,8 @@ impl<const D: usize> Mesh<D> {
     /// # Errors
     /// [`MeshError::Size`] where a factor is zero or not finite.
     pub fn scale(&mut self, factors: [f64; D], about: [f64; D]) -> Result<bool, MeshError> {
-        let rows = std::array::from_fn(|axis| {
-            std::array::from_fn(|column| if axis == column { factors[axis] } else { 0.0 })
-        });
+        let rows =
+            std::array::from_fn(|axis| std::array::from_fn(|column| if axis == column { factors[axis] } else { 0.0 }));
         self.transform(&rows, about)
     }
 
@@ -72,9 +70,7 @@ impl<const D: usize> Mesh<D> {
         let length = direction_length("length of the normal", lift(&normal))?;
         let unit = normal.map(|component| component / length);
         let rows = std::array::from_fn(|axis| {
-            std::array::from_fn(|column| {
-                f64::from(u8::from(axis == column)) - 2.0 * unit[axis] * unit[column]
-            })
+            std::array::from_fn(|column| f64::from(u8::from(axis == column)) - 2.0 * unit[axis] * unit[column])
         });
         self.transform(&rows, about)
     }
@@ -82,28 +78,12 @@ impl<const D: usize> Mesh<D> {
     /// Reverses every oriented element: facets, sheets, cells.
     fn reverse(&mut self) {
         self.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
-        self.sheets
-            .iter_mut()
-            .for_each(|triangle| triangle.swap(0, 1));
-        self.sheet_quadrilaterals
-            .iter_mut()
-            .for_each(|quadrilateral| quadrilateral.swap(1, 3));
-        self.cells
-            .triangles
-            .iter_mut()
-            .for_each(|triangle| triangle.swap(0, 1));
-        self.cells
-            .quadrilaterals
-            .iter_mut()
-            .for_each(|quadrilateral| quadrilateral.swap(1, 3));
-        self.cells
-            .tetrahedra
-            .iter_mut()
-            .for_each(|cell| cell.swap(0, 1));
-        self.cells
-            .hexahedra
-            .iter_mut()
-            .for_each(|cell| cell.rotate_left(4));
+        self.sheets.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+        self.sheet_quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
+        self.cells.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+        self.cells.quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
+        self.cells.tetrahedra.iter_mut().for_each(|cell| cell.swap(0, 1));
+        self.cells.hexahedra.iter_mut().for_each(|cell| cell.rotate_left(4));
     }
 }
 

@@ -7,10 +7,7 @@ use opruga_mesh::{EdgeSet, Measure, Mesh, MeshError, Share, bandwidth, edge_runs
 /// Relative agreement.
 #[track_caller]
 fn close(computed: f64, expected: f64) {
-    assert!(
-        (computed - expected).abs() <= 1e-12 * (1.0 + expected.abs()),
-        "{computed} is not {expected}"
-    );
+    assert!((computed - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{computed} is not {expected}");
 }
 
 fn volume<const D: usize>(mesh: &Mesh<D>) -> f64 {
@@ -32,13 +29,8 @@ fn ring_is_a_regular_polygon_of_many_sides() {
     let mesh = Mesh::ring(r, n, [3.0, 2.0], 0.25).unwrap();
     sound(&mesh);
     let a = PI / f64::from(n);
-    close(
-        volume(&mesh),
-        0.5 * f64::from(n) * r * r * libm::sin(2.0 * a),
-    );
-    let Measure::Length(length) = mesh.measure().unwrap() else {
-        panic!("an outline has a length")
-    };
+    close(volume(&mesh), 0.5 * f64::from(n) * r * r * libm::sin(2.0 * a));
+    let Measure::Length(length) = mesh.measure().unwrap() else { panic!("an outline has a length") };
     close(length, 2.0 * f64::from(n) * r * libm::sin(a));
     assert_eq!(mesh.euler_characteristic(), 0);
     close(mesh.positions[0][0], 3.0 + r * libm::cos(0.25));
@@ -50,10 +42,7 @@ fn ring_is_a_regular_polygon_of_many_sides() {
     let runs = edge_runs(&edges);
     assert_eq!(runs.len(), 2);
     assert_eq!((runs[0].first, runs[0].count), ([0, 1], 35));
-    assert_eq!(
-        (runs[1].first, runs[1].count, runs[1].start),
-        ([0, 35], 1, 35)
-    );
+    assert_eq!((runs[1].first, runs[1].count, runs[1].start), ([0, 35], 1, 35));
 }
 
 #[test]
@@ -88,46 +77,16 @@ fn polygon_runs_counter_clockwise() {
 #[test]
 fn polygon_that_meets_itself_is_refused() {
     let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-    assert_eq!(
-        Mesh::polygon(&bow).unwrap_err(),
-        MeshError::SelfIntersection {
-            first: [0, 1],
-            second: [2, 3]
-        }
-    );
+    assert_eq!(Mesh::polygon(&bow).unwrap_err(), MeshError::SelfIntersection { first: [0, 1], second: [2, 3] });
     // A corner that touches a side, and a spike that folds back.
     let touch = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];
-    assert_eq!(
-        Mesh::polygon(&touch).unwrap_err(),
-        MeshError::SelfIntersection {
-            first: [0, 1],
-            second: [2, 3]
-        }
-    );
+    assert_eq!(Mesh::polygon(&touch).unwrap_err(), MeshError::SelfIntersection { first: [0, 1], second: [2, 3] });
     let spike = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    assert_eq!(
-        Mesh::polygon(&spike).unwrap_err(),
-        MeshError::SelfIntersection {
-            first: [0, 1],
-            second: [1, 2]
-        }
-    );
+    assert_eq!(Mesh::polygon(&spike).unwrap_err(), MeshError::SelfIntersection { first: [0, 1], second: [1, 2] });
     let repeat = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    assert_eq!(
-        Mesh::polygon(&repeat).unwrap_err(),
-        MeshError::RepeatedPoint {
-            first: 1,
-            second: 2
-        }
-    );
-    assert!(matches!(
-        Mesh::polygon(&bow[..2]),
-        Err(MeshError::Count { least: 3, .. })
-    ));
-    assert!(matches!(
-        Mesh::polygon(&[[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]]),
-        Err(MeshError::Size { .. })
-    ));
+    assert_eq!(Mesh::polygon(&repeat).unwrap_err(), MeshError::RepeatedPoint { first: 1, second: 2 });
+    assert!(matches!(Mesh::polygon(&bow[..2]), Err(MeshError::Count { least: 3, .. })));
+    assert!(matches!(Mesh::polygon(&[[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]]), Err(MeshError::Size { .. })));
 }
 
 #[test]
@@ -159,10 +118,7 @@ fn plane_grid() {
     assert_eq!(mesh.cells.quadrilaterals.len(), 12);
     assert_eq!(mesh.facets.len(), 14);
     close(volume(&mesh), 1.2);
-    assert_eq!(
-        mesh.measure().unwrap(),
-        Measure::Area(mesh.measure().unwrap().value())
-    );
+    assert_eq!(mesh.measure().unwrap(), Measure::Area(mesh.measure().unwrap().value()));
     close(mesh.measure().unwrap().value(), 1.2);
     assert_eq!(mesh.groups["left"], [0, 5, 10, 15]);
     assert_eq!(mesh.groups["right"], [4, 9, 14, 19]);
@@ -193,17 +149,10 @@ fn solid_grid() {
         mesh.groups.keys().map(String::as_str).collect::<Vec<_>>(),
         ["back", "bottom", "front", "left", "right", "top"]
     );
-    assert!(
-        mesh.groups["front"]
-            .iter()
-            .all(|&node| mesh.positions[node as usize][2] == 4.0)
-    );
+    assert!(mesh.groups["front"].iter().all(|&node| mesh.positions[node as usize][2] == 4.0));
     assert_eq!(mesh.groups["top"].len(), 3 * 5);
     // Lattice edges, then two diagonals for each of the lattice faces.
-    assert_eq!(
-        mesh.edges(EdgeSet::All).len(),
-        2 * 4 * 5 + 3 * 3 * 5 + 4 * 3 * 4
-    );
+    assert_eq!(mesh.edges(EdgeSet::All).len(), 2 * 4 * 5 + 3 * 3 * 5 + 4 * 3 * 4);
     let faces = 2 * 3 * 5 + 3 * 4 * 3 + 4 * 2 * 4;
     assert_eq!(mesh.edges(EdgeSet::AllWithShear).len(), 133 + 2 * faces);
     // A corner belongs to one cell, an inner node to eight.
@@ -217,10 +166,7 @@ fn simplices_fill_the_same_body() {
     let plane = Mesh::grid([0.0; 2], [1.0, 1.0], [3, 2]).unwrap();
     let cut = plane.clone().into_simplices().unwrap();
     sound(&cut);
-    assert_eq!(
-        (cut.cells.triangles.len(), cut.cells.quadrilaterals.len()),
-        (12, 0)
-    );
+    assert_eq!((cut.cells.triangles.len(), cut.cells.quadrilaterals.len()), (12, 0));
     assert_eq!(cut.facets.len(), plane.facets.len());
     close(cut.measure().unwrap().value(), 1.0);
     let solid = Mesh::grid([0.0; 3], [1.0; 3], [2, 3, 2]).unwrap();
@@ -264,44 +210,22 @@ fn box_surface_is_closed() {
 
 #[test]
 fn icosphere_counts_rings_and_order() {
-    for (s, nodes) in [12, 42, 162, 642, 2562, 10242, 40962]
-        .into_iter()
-        .enumerate()
-    {
+    for (s, nodes) in [12, 42, 162, 642, 2562, 10242, 40962].into_iter().enumerate() {
         let mesh = Mesh::icosphere(2.0, s as u32).unwrap();
         assert_eq!((mesh.nodes(), mesh.facets.len()), (nodes, 2 * nodes - 4));
         assert_eq!(mesh.euler_characteristic(), 2);
-        assert!(
-            mesh.positions
-                .iter()
-                .all(|p| (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 4.0).abs() < 1e-14 * 4.0)
-        );
+        assert!(mesh.positions.iter().all(|p| (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 4.0).abs() < 1e-14 * 4.0));
 
         // Rows from pole to pole: neighbours are near, and the belt gives long runs.
         let edges = mesh.edges(EdgeSet::All);
         assert_eq!(edges.len(), 3 * nodes - 6);
         assert!(bandwidth(&edges) <= 10 << s, "{} at {s}", bandwidth(&edges));
-        let mean = edges
-            .iter()
-            .map(|edge| f64::from(edge[1] - edge[0]))
-            .sum::<f64>()
-            / edges.len() as f64;
-        assert!(
-            mean < f64::from(4 << s) + 2.0,
-            "mean distance {mean} at {s}"
-        );
-        assert!(
-            edge_runs(&edges).len() <= 80 << s,
-            "{} runs at {s}",
-            edge_runs(&edges).len()
-        );
+        let mean = edges.iter().map(|edge| f64::from(edge[1] - edge[0])).sum::<f64>() / edges.len() as f64;
+        assert!(mean < f64::from(4 << s) + 2.0, "mean distance {mean} at {s}");
+        assert!(edge_runs(&edges).len() <= 80 << s, "{} runs at {s}", edge_runs(&edges).len());
 
         let rings = mesh.node_rings().unwrap();
-        let count = |size| {
-            (0..nodes)
-                .filter(|&node| rings.of(node as u32).len() == size)
-                .count()
-        };
+        let count = |size| (0..nodes).filter(|&node| rings.of(node as u32).len() == size).count();
         assert_eq!((count(5), count(6)), (12, nodes - 12));
         if s < 5 {
             sound(&mesh);
@@ -309,17 +233,11 @@ fn icosphere_counts_rings_and_order() {
     }
     // The icosahedron in closed form, and convergence to the ball at second order.
     let edge = 1.0 / libm::sin(2.0 * PI / 5.0);
-    close(
-        volume(&Mesh::icosphere(1.0, 0).unwrap()),
-        5.0 / 12.0 * (3.0 + 5.0_f64.sqrt()) * edge * edge * edge,
-    );
+    close(volume(&Mesh::icosphere(1.0, 0).unwrap()), 5.0 / 12.0 * (3.0 + 5.0_f64.sqrt()) * edge * edge * edge);
     let error = |s| 4.0 / 3.0 * PI - volume(&Mesh::icosphere(1.0, s).unwrap());
     let ratio = error(4) / error(5);
     assert!((3.9..4.1).contains(&ratio), "{ratio}");
-    assert!(matches!(
-        Mesh::icosphere(1.0, 8),
-        Err(MeshError::Count { most: 7, .. })
-    ));
+    assert!(matches!(Mesh::icosphere(1.0, 8), Err(MeshError::Count { most: 7, .. })));
 }
 
 #[test]
@@ -338,35 +256,16 @@ fn torus_has_a_hole() {
 
 #[test]
 fn impossible_numbers_are_refused() {
-    assert!(matches!(
-        Mesh::ring(1.0, 2, [0.0; 2], 0.0),
-        Err(MeshError::Count {
-            value: 2,
-            least: 3,
-            ..
-        })
-    ));
-    assert!(matches!(
-        Mesh::ring(1.0, u32::MAX, [0.0; 2], 0.0),
-        Err(MeshError::Count { .. })
-    ));
+    assert!(matches!(Mesh::ring(1.0, 2, [0.0; 2], 0.0), Err(MeshError::Count { value: 2, least: 3, .. })));
+    assert!(matches!(Mesh::ring(1.0, u32::MAX, [0.0; 2], 0.0), Err(MeshError::Count { .. })));
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            Mesh::ring(radius, 8, [0.0; 2], 0.0),
-            Err(MeshError::Size { .. })
-        ));
+        assert!(matches!(Mesh::ring(radius, 8, [0.0; 2], 0.0), Err(MeshError::Size { .. })));
         assert!(Mesh::icosphere(radius, 1).is_err());
         assert!(Mesh::grid([0.0; 2], [radius, 1.0], [1, 1]).is_err());
     }
     assert!(Mesh::ring(1.0, 8, [0.0, f64::NAN], 0.0).is_err());
-    assert!(matches!(
-        Mesh::grid([0.0; 3], [1.0; 3], [1 << 20; 3]),
-        Err(MeshError::TooManyNodes { .. })
-    ));
-    assert!(matches!(
-        Mesh::grid([0.0; 2], [1.0; 2], [0, 1]),
-        Err(MeshError::Count { .. })
-    ));
+    assert!(matches!(Mesh::grid([0.0; 3], [1.0; 3], [1 << 20; 3]), Err(MeshError::TooManyNodes { .. })));
+    assert!(matches!(Mesh::grid([0.0; 2], [1.0; 2], [0, 1]), Err(MeshError::Count { .. })));
     assert!(Mesh::box_surface([0.0; 3], [1.0; 3], [1 << 25; 3]).is_err());
     assert!(Mesh::regular_polygon(1 << 20, 1.0, 1 << 20, [0.0; 2], 0.0).is_err());
 }

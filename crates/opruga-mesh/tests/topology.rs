@@ -1,16 +1,12 @@
 //! Chambers, rings, hinges, edge areas, transforms, and the list of problems.
 
 use opruga_mesh::{
-    EdgeSet, Element, Mesh, MeshError, Problem, bends, edge_runs, hinges, node_neighbours,
-    signed_volume,
+    EdgeSet, Element, Mesh, MeshError, Problem, bends, edge_runs, hinges, node_neighbours, signed_volume,
 };
 
 #[track_caller]
 fn close(computed: f64, expected: f64) {
-    assert!(
-        (computed - expected).abs() <= 1e-12 * (1.0 + expected.abs()),
-        "{computed} is not {expected}"
-    );
+    assert!((computed - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{computed} is not {expected}");
 }
 
 /// Both meshes in one, the second with reversed facets where `hole`.
@@ -34,8 +30,7 @@ fn band(n: u32, twist: bool) -> Mesh<3> {
         let half = if twist { 0.5 * a } else { 0.0 };
         for side in [-0.3, 0.3] {
             let r = 1.0 + side * libm::sin(half);
-            mesh.positions
-                .push([r * libm::cos(a), r * libm::sin(a), side * libm::cos(half)]);
+            mesh.positions.push([r * libm::cos(a), r * libm::sin(a), side * libm::cos(half)]);
         }
         let (p, q) = (2 * i, 2 * i + 1);
         let (r, s) = match (i + 1 == n, twist) {
@@ -51,23 +46,14 @@ fn band(n: u32, twist: bool) -> Mesh<3> {
 #[test]
 fn a_hole_belongs_to_the_chamber_around_it() {
     let ring = |radius, x| Mesh::ring(radius, 24, [x, 0.0], 0.0).unwrap();
-    let mesh = joined(
-        joined(ring(2.0, 0.0), ring(1.0, 0.2), true),
-        ring(0.5, 9.0),
-        false,
-    );
+    let mesh = joined(joined(ring(2.0, 0.0), ring(1.0, 0.2), true), ring(0.5, 9.0), false);
     let components = mesh.components().unwrap();
     assert_eq!(components.len(), 3);
     assert!(
-        components[0].signed_volume > 0.0
-            && components[1].signed_volume < 0.0
-            && components[2].signed_volume > 0.0
+        components[0].signed_volume > 0.0 && components[1].signed_volume < 0.0 && components[2].signed_volume > 0.0
     );
     let chambers = mesh.chambers().unwrap();
-    assert_eq!(
-        chambers,
-        [(0..48).collect::<Vec<u32>>(), (48..72).collect()]
-    );
+    assert_eq!(chambers, [(0..48).collect::<Vec<u32>>(), (48..72).collect()]);
     close(
         signed_volume(&mesh.facets, &mesh.positions),
         12.0 * libm::sin(std::f64::consts::PI / 12.0) * (4.0 - 1.0 + 0.25),
@@ -75,27 +61,14 @@ fn a_hole_belongs_to_the_chamber_around_it() {
 
     // In space, and a hole within the tighter of two nested skins.
     let sphere = |radius, s| Mesh::icosphere(radius, s).unwrap();
-    let mesh = joined(
-        joined(sphere(3.0, 2), sphere(2.0, 1), false),
-        sphere(1.0, 0),
-        true,
-    );
-    assert_eq!(
-        mesh.chambers().unwrap(),
-        [(0..320).collect::<Vec<u32>>(), (320..420).collect()]
-    );
+    let mesh = joined(joined(sphere(3.0, 2), sphere(2.0, 1), false), sphere(1.0, 0), true);
+    assert_eq!(mesh.chambers().unwrap(), [(0..320).collect::<Vec<u32>>(), (320..420).collect()]);
 
     // A hole in nothing.
     let mesh = joined(sphere(1.0, 0), Mesh::<3>::default(), false);
     let mut inside_out = mesh.clone();
-    inside_out
-        .facets
-        .iter_mut()
-        .for_each(|facet| facet.swap(0, 1));
-    assert!(matches!(
-        inside_out.chambers(),
-        Err(MeshError::InsideOut { facet: 0, .. })
-    ));
+    inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
+    assert!(matches!(inside_out.chambers(), Err(MeshError::InsideOut { facet: 0, .. })));
     assert_eq!(inside_out.orient_outward().unwrap(), 20);
     assert_eq!(inside_out.chambers().unwrap().len(), 1);
     assert_eq!(inside_out.orient_outward().unwrap(), 0);
@@ -107,55 +80,30 @@ fn facets_against_their_neighbours_are_named_and_turned() {
     let sound = mesh.clone();
     mesh.facets[7].swap(0, 1);
     mesh.facets[30].swap(0, 1);
-    assert_eq!(
-        mesh.chambers().unwrap_err(),
-        MeshError::InconsistentOrientation {
-            facets: vec![7, 30]
-        }
-    );
+    assert_eq!(mesh.chambers().unwrap_err(), MeshError::InconsistentOrientation { facets: vec![7, 30] });
     assert!(mesh.node_rings().is_err());
     assert_eq!(mesh.orient_outward().unwrap(), 2);
     assert_eq!(mesh, sound);
     let mut ring = Mesh::ring(1.0, 5, [0.0; 2], 0.0).unwrap();
     ring.facets[2].swap(0, 1);
-    assert_eq!(
-        ring.chambers().unwrap_err(),
-        MeshError::InconsistentOrientation { facets: vec![2] }
-    );
+    assert_eq!(ring.chambers().unwrap_err(), MeshError::InconsistentOrientation { facets: vec![2] });
     assert_eq!(ring.orient_outward().unwrap(), 1);
 }
 
 #[test]
 fn open_and_one_sided_surfaces_are_refused() {
-    assert!(matches!(
-        band(9, true).chambers(),
-        Err(MeshError::NonOrientable { .. })
-    ));
-    assert_eq!(
-        band(9, false).chambers().unwrap_err(),
-        MeshError::Open {
-            loops: 2,
-            nodes: vec![0, 1]
-        }
-    );
+    assert!(matches!(band(9, true).chambers(), Err(MeshError::NonOrientable { .. })));
+    assert_eq!(band(9, false).chambers().unwrap_err(), MeshError::Open { loops: 2, nodes: vec![0, 1] });
     assert!(band(9, false).orient_outward().is_err());
     let mut sphere = Mesh::icosphere(1.0, 2).unwrap();
     sphere.facets.remove(200);
     sphere.facets.remove(3);
-    let Err(MeshError::Open { loops: 2, nodes }) = sphere.chambers() else {
-        panic!("two triangles are missing")
-    };
+    let Err(MeshError::Open { loops: 2, nodes }) = sphere.chambers() else { panic!("two triangles are missing") };
     assert_eq!(nodes.len(), 2);
     let mut ring = Mesh::ring(1.0, 8, [0.0; 2], 0.0).unwrap();
     ring.facets.remove(5);
     ring.facets.remove(2);
-    assert_eq!(
-        ring.chambers().unwrap_err(),
-        MeshError::Open {
-            loops: 2,
-            nodes: vec![2, 3]
-        }
-    );
+    assert_eq!(ring.chambers().unwrap_err(), MeshError::Open { loops: 2, nodes: vec![2, 3] });
     // Even a Möbius band has hinges.
     assert_eq!(hinges(&band(9, true).facets).unwrap().len(), 18);
 }
@@ -164,60 +112,25 @@ fn open_and_one_sided_surfaces_are_refused() {
 fn surfaces_that_are_no_manifolds_are_refused() {
     let tetrahedron = |d: u32| [[0, 2, 1], [0, 1, d], [1, 2, d], [0, d, 2]];
     let mut mesh = Mesh::<3> {
-        positions: vec![
-            [0.0; 3],
-            [1.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 0.0, 1.0],
-            [0.2, 0.2, 2.0],
-        ],
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, 0.2, 2.0]],
         facets: tetrahedron(3).to_vec(),
         ..Mesh::default()
     };
-    assert_eq!(
-        mesh.check(),
-        [Problem::UnreferencedNodes { nodes: vec![4] }]
-    );
+    assert_eq!(mesh.check(), [Problem::UnreferencedNodes { nodes: vec![4] }]);
     mesh.facets.extend(tetrahedron(4));
     let edges = vec![[0, 1], [0, 2], [1, 2]];
-    assert_eq!(
-        mesh.chambers().unwrap_err(),
-        MeshError::NonManifoldEdges {
-            edges: edges.clone()
-        }
-    );
-    assert_eq!(
-        mesh.hinges().unwrap_err(),
-        MeshError::NonManifoldEdges { edges }
-    );
-    assert!(mesh.check().contains(&Problem::DuplicateFacet {
-        first: 0,
-        second: 4
-    }));
+    assert_eq!(mesh.chambers().unwrap_err(), MeshError::NonManifoldEdges { edges: edges.clone() });
+    assert_eq!(mesh.hinges().unwrap_err(), MeshError::NonManifoldEdges { edges });
+    assert!(mesh.check().contains(&Problem::DuplicateFacet { first: 0, second: 4 }));
 
     // Two tetrahedra at one node: two chambers, but no ring at the node.
-    let one = Mesh::<3> {
-        positions: mesh.positions[..4].to_vec(),
-        facets: tetrahedron(3).to_vec(),
-        ..Mesh::default()
-    };
+    let one = Mesh::<3> { positions: mesh.positions[..4].to_vec(), facets: tetrahedron(3).to_vec(), ..Mesh::default() };
     let mut two = joined(one.clone(), one, false);
-    two.facets
-        .iter_mut()
-        .flatten()
-        .filter(|node| **node == 4)
-        .for_each(|node| *node = 0);
-    two.positions[5..]
-        .iter_mut()
-        .for_each(|point| *point = point.map(|x| -x));
-    two.facets[4..]
-        .iter_mut()
-        .for_each(|facet| facet.swap(0, 1));
+    two.facets.iter_mut().flatten().filter(|node| **node == 4).for_each(|node| *node = 0);
+    two.positions[5..].iter_mut().for_each(|point| *point = point.map(|x| -x));
+    two.facets[4..].iter_mut().for_each(|facet| facet.swap(0, 1));
     assert_eq!(two.chambers().unwrap().len(), 2);
-    assert_eq!(
-        two.node_rings().unwrap_err(),
-        MeshError::NonManifoldNodes { nodes: vec![0] }
-    );
+    assert_eq!(two.node_rings().unwrap_err(), MeshError::NonManifoldNodes { nodes: vec![0] });
 
     // An outline through one node twice.
     let eight = Mesh::<2> {
@@ -225,10 +138,7 @@ fn surfaces_that_are_no_manifolds_are_refused() {
         facets: vec![[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]],
         ..Mesh::default()
     };
-    assert_eq!(
-        eight.chambers().unwrap_err(),
-        MeshError::NonManifoldNodes { nodes: vec![0] }
-    );
+    assert_eq!(eight.chambers().unwrap_err(), MeshError::NonManifoldNodes { nodes: vec![0] });
 }
 
 #[test]
@@ -248,9 +158,7 @@ fn rings_run_counter_clockwise_from_outside() {
             let lowest = (0..3).min_by_key(|&corner| facet[corner]).unwrap();
             facet.rotate_left(lowest);
             assert!(
-                mesh.facets.iter().any(|&[p, q, r]| facet == [p, q, r]
-                    || facet == [q, r, p]
-                    || facet == [r, p, q])
+                mesh.facets.iter().any(|&[p, q, r]| facet == [p, q, r] || facet == [q, r, p] || facet == [r, p, q])
             );
         }
     }
@@ -269,10 +177,7 @@ fn hinges_and_bends() {
     assert_eq!(sphere.hinges().unwrap().len(), 120);
     // Clockwise points still bend along the facets.
     let turned = Mesh::polygon(&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]).unwrap();
-    assert_eq!(
-        turned.mesh.bends().unwrap(),
-        [[1, 0, 2], [2, 1, 0], [0, 2, 1]]
-    );
+    assert_eq!(turned.mesh.bends().unwrap(), [[1, 0, 2], [2, 1, 0], [0, 2, 1]]);
 }
 
 #[test]
@@ -286,22 +191,12 @@ fn areas_beside_edges() {
     };
     let edges = mesh.edges(EdgeSet::All);
     for (edge, area) in edges.iter().zip(mesh.edge_areas(&edges).unwrap()) {
-        close(
-            area,
-            if *edge == [1, 2] {
-                0.5 * h * 2.0
-            } else {
-                0.5 * h
-            },
-        );
+        close(area, if *edge == [1, 2] { 0.5 * h * 2.0 } else { 0.5 * h });
     }
     // A closed surface counts each triangle at three edges.
     let sphere = Mesh::icosphere(1.0, 3).unwrap();
     let edges = sphere.edges(EdgeSet::All);
-    close(
-        sphere.edge_areas(&edges).unwrap().iter().sum(),
-        3.0 * sphere.measure().unwrap().value(),
-    );
+    close(sphere.edge_areas(&edges).unwrap().iter().sum(), 3.0 * sphere.measure().unwrap().value());
 
     // Cells 0.5 × 1: sides A/2 from each cell, both diagonals A/2.
     let grid = Mesh::grid([0.0; 2], [1.0, 1.0], [2, 1]).unwrap();
@@ -313,16 +208,10 @@ fn areas_beside_edges() {
     let sheet = Mesh::sheet([0.0; 3], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [2, 2]).unwrap();
     let own = sheet.edges(EdgeSet::All);
     let areas = sheet.edge_areas(&own).unwrap();
-    close(
-        areas[own.iter().position(|&edge| edge == [1, 3]).unwrap()],
-        1.0,
-    );
+    close(areas[own.iter().position(|&edge| edge == [1, 3]).unwrap()], 1.0);
     close(areas.iter().sum(), 12.0);
     let shear = sheet.edges(EdgeSet::AllWithShear);
-    close(
-        sheet.edge_areas(&shear).unwrap()[shear.iter().position(|&edge| edge == [1, 3]).unwrap()],
-        0.5,
-    );
+    close(sheet.edge_areas(&shear).unwrap()[shear.iter().position(|&edge| edge == [1, 3]).unwrap()], 0.5);
 }
 
 #[test]
@@ -331,30 +220,16 @@ fn edges_form_runs_in_ascending_distance() {
     let edges = mesh.edges(EdgeSet::All);
     assert_eq!(edges.len(), 3 * 128);
     assert!(edges.iter().all(|edge| edge[0] < edge[1]));
-    assert!(
-        edges
-            .windows(2)
-            .all(|pair| (pair[0][1] - pair[0][0], pair[0][0])
-                < (pair[1][1] - pair[1][0], pair[1][0]))
-    );
+    assert!(edges.windows(2).all(|pair| (pair[0][1] - pair[0][0], pair[0][0]) < (pair[1][1] - pair[1][0], pair[1][0])));
     let runs = edge_runs(&edges);
-    assert_eq!(
-        runs.iter().map(|run| run.count as usize).sum::<usize>(),
-        edges.len()
-    );
+    assert_eq!(runs.iter().map(|run| run.count as usize).sum::<usize>(), edges.len());
     for run in runs {
         for k in 0..run.count {
-            assert_eq!(
-                edges[(run.start + k) as usize],
-                [run.first[0] + k, run.first[1] + k]
-            );
+            assert_eq!(edges[(run.start + k) as usize], [run.first[0] + k, run.first[1] + k]);
         }
     }
     let sheet = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [30, 30]).unwrap();
-    let longest = edge_runs(&sheet.edges(EdgeSet::AllWithShear))
-        .iter()
-        .map(|run| run.count)
-        .max();
+    let longest = edge_runs(&sheet.edges(EdgeSet::AllWithShear)).iter().map(|run| run.count).max();
     assert_eq!(longest, Some(30 * 31));
 }
 
@@ -373,12 +248,12 @@ fn transforms_keep_orientation() {
         Mesh::grid([0.0; 3], [1.0, 2.0, 3.0], [2, 2, 2]).unwrap(),
         Mesh::box_surface([0.0; 3], [1.0, 2.0, 3.0], [2, 1, 3]).unwrap(),
     ] {
-        mesh.rotate([1.0, 1.0, 1.0], 2.0 * std::f64::consts::PI / 3.0, [0.0; 3])
-            .unwrap();
+        mesh.rotate([1.0, 1.0, 1.0], 2.0 * std::f64::consts::PI / 3.0, [0.0; 3]).unwrap();
         // A third of a turn about the diagonal takes x to y to z.
-        let far = mesh.positions.iter().fold([0.0; 3], |far: [f64; 3], p| {
-            std::array::from_fn(|k| if p[k] > far[k] { p[k] } else { far[k] })
-        });
+        let far = mesh
+            .positions
+            .iter()
+            .fold([0.0; 3], |far: [f64; 3], p| std::array::from_fn(|k| if p[k] > far[k] { p[k] } else { far[k] }));
         close(far[0], 3.0);
         close(far[1], 1.0);
         assert!(mesh.mirror([0.0, 3.0, 4.0], [1.0; 3]).unwrap());
@@ -401,80 +276,41 @@ fn problems_are_listed() {
     let mut mesh = good.clone();
     mesh.positions[2] = [f64::NAN, 0.0];
     mesh.positions[4] = [0.0, f64::INFINITY];
-    assert_eq!(
-        mesh.check(),
-        [
-            Problem::NotFinite { node: 2 },
-            Problem::NotFinite { node: 4 }
-        ]
-    );
+    assert_eq!(mesh.check(), [Problem::NotFinite { node: 2 }, Problem::NotFinite { node: 4 }]);
 
     mesh = good.clone();
     mesh.facets[3] = [3, 6];
-    let error = MeshError::IndexOutOfRange {
-        element: Element::Facet,
-        index: 3,
-        node: 6,
-        nodes: 6,
-    };
+    let error = MeshError::IndexOutOfRange { element: Element::Facet, index: 3, node: 6, nodes: 6 };
     assert_eq!(mesh.check(), [Problem::Topology(error.clone())]);
-    assert_eq!(
-        error.to_string(),
-        "facet 3 names node 6, but there are 6 nodes"
-    );
+    assert_eq!(error.to_string(), "facet 3 names node 6, but there are 6 nodes");
     mesh.facets[3] = [3, 3];
-    assert!(matches!(
-        mesh.validate(),
-        Err(MeshError::RepeatedNode { .. })
-    ));
+    assert!(matches!(mesh.validate(), Err(MeshError::RepeatedNode { .. })));
     mesh = good.clone();
     mesh.sheets.push([0, 1, 2]);
-    assert!(matches!(
-        mesh.validate(),
-        Err(MeshError::WrongDimension { .. })
-    ));
+    assert!(matches!(mesh.validate(), Err(MeshError::WrongDimension { .. })));
     mesh = good.clone();
     mesh.groups.insert("far".to_owned(), vec![7]);
     assert!(mesh.validate().is_err());
     mesh = good.clone();
     mesh.positions[1] = mesh.positions[0];
-    assert_eq!(
-        mesh.check(),
-        [Problem::Degenerate {
-            element: Element::Facet,
-            index: 0,
-            measure: 0.0
-        }]
-    );
+    assert_eq!(mesh.check(), [Problem::Degenerate { element: Element::Facet, index: 0, measure: 0.0 }]);
 
     // A line in the plane, a plane in space.
     mesh = good.clone();
-    mesh.positions
-        .iter_mut()
-        .for_each(|point| point[1] = 2.0 * point[0] + 1.0);
+    mesh.positions.iter_mut().for_each(|point| point[1] = 2.0 * point[0] + 1.0);
     assert!(mesh.check().contains(&Problem::Flat { dimension: 1 }));
     let mut solid = Mesh::icosphere(1.0, 0).unwrap();
-    solid
-        .positions
-        .iter_mut()
-        .for_each(|point| point[2] = 0.5 * point[0] - point[1]);
+    solid.positions.iter_mut().for_each(|point| point[2] = 0.5 * point[0] - point[1]);
     assert!(solid.check().contains(&Problem::Flat { dimension: 2 }));
 
     let mut grid = Mesh::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap();
     grid.cells.quadrilaterals[0].reverse();
-    assert!(grid.check().contains(&Problem::Inverted {
-        element: Element::Quadrilateral,
-        index: 0,
-        measure: -1.0
-    }));
+    assert!(grid.check().contains(&Problem::Inverted { element: Element::Quadrilateral, index: 0, measure: -1.0 }));
     let mut sheet = Mesh::sheet([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [2, 1]).unwrap();
     sheet.sheets.swap(0, 2);
     assert_eq!(sheet.validate(), Err(MeshError::SheetPairing { index: 0 }));
     let mut mixed = Mesh::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap();
     mixed.wires.push([0, 2]);
-    assert!(matches!(
-        mixed.measure(),
-        Err(MeshError::MixedMeasures { .. })
-    ));
+    assert!(matches!(mixed.measure(), Err(MeshError::MixedMeasures { .. })));
     assert_eq!(Mesh::<3>::default().check(), []);
 }

@@ -102,9 +102,9 @@ fn alike_values(a: &Values, b: &Values) -> bool {
     let count = |v: &Values| v.iter().count();
     a.kind() == b.kind()
         && count(a) == count(b)
-        && a.iter().zip(b.iter()).all(|((n, x), (m, y))| {
-            n == m && (matches!((x, y), (Value::Number(_), Value::Number(_))) || x == y)
-        })
+        && a.iter()
+            .zip(b.iter())
+            .all(|((n, x), (m, y))| n == m && (matches!((x, y), (Value::Number(_), Value::Number(_))) || x == y))
 }
 
 /// Groups of bodies that are stepped together, in the order of their first body.
@@ -115,7 +115,8 @@ pub(crate) fn group<const D: usize>(bodies: &[Option<&BodyBlueprint<D>>], batche
         let Some(body) = body else { continue };
         let key = Arc::as_ptr(&body.mesh) as usize;
         let candidates = by_mesh.entry(key).or_default();
-        let found = candidates.iter().copied().find(|k: &usize| bodies[kinds[*k].0].is_some_and(|first| alike(first, body)));
+        let found =
+            candidates.iter().copied().find(|k: &usize| bodies[kinds[*k].0].is_some_and(|first| alike(first, body)));
         match found {
             Some(kind) => kinds[kind].1.push(number),
             None => {
@@ -149,7 +150,12 @@ pub(crate) struct Builder<'a, const D: usize> {
 
 impl<const D: usize> Builder<'_, D> {
     /// Builds the island of some bodies with their states.
-    pub(crate) fn island(&self, bodies: &[usize], states: &[&BodyState<D>], time: f64) -> Result<Island<D>, WorldError> {
+    pub(crate) fn island(
+        &self,
+        bodies: &[usize],
+        states: &[&BodyState<D>],
+        time: f64,
+    ) -> Result<Island<D>, WorldError> {
         let layout = if bodies.len() > 1 { Layout::Batch } else { Layout::Single };
         let blueprints: Vec<&BodyBlueprint<D>> = bodies.iter().map(|b| &self.blueprint.bodies[*b]).collect();
         let first = blueprints[0];
@@ -216,12 +222,20 @@ impl<const D: usize> Builder<'_, D> {
         Ok(Island::new(system, bodies.to_vec()))
     }
 
-    fn add_drag(&self, system: &mut System<D>, body: &BodyBlueprint<D>, layout: Layout, mass: &Parameter) -> Result<(), WorldError> {
+    fn add_drag(
+        &self,
+        system: &mut System<D>,
+        body: &BodyBlueprint<D>,
+        layout: Layout,
+        mass: &Parameter,
+    ) -> Result<(), WorldError> {
         let refuse = |source| WorldError::Build { place: "world".into(), source };
         let Some(model) = self.registry.model("drag") else { return Ok(()) };
         let mut values = Values::defaults(model.spec(), D);
         let rate = Value::Number(self.blueprint.surroundings.drag);
-        values.set(model.spec(), "rate", rate, D).map_err(|e| refuse(BuildError::new("drag", "scene.range", e.to_string())))?;
+        values
+            .set(model.spec(), "rate", rate, D)
+            .map_err(|e| refuse(BuildError::new("drag", "scene.range", e.to_string())))?;
         let all = vec![&values; layout.stride()];
         let ingredients = Ingredients {
             mesh: &*body.mesh,
@@ -250,7 +264,14 @@ impl<const D: usize> Builder<'_, D> {
         }
     }
 
-    fn add_loads(&self, system: &mut System<D>, number: usize, body: &BodyBlueprint<D>, lane: usize, layout: Layout) -> Result<(), WorldError> {
+    fn add_loads(
+        &self,
+        system: &mut System<D>,
+        number: usize,
+        body: &BodyBlueprint<D>,
+        lane: usize,
+        layout: Layout,
+    ) -> Result<(), WorldError> {
         for load in self.blueprint.loads.iter().filter(|l| l.body == number) {
             let nodes = load.select.resolve(&body.mesh, &body.translation);
             let depth = if D == 2 { body.thickness } else { 1.0 };

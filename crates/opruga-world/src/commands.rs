@@ -16,10 +16,7 @@ pub(crate) enum Progress<const D: usize> {
     /// Its time has not come.
     Waiting,
     /// It acts; a drag holds these nodes with these shares, a pin holds nodes at these places.
-    Acting {
-        held: Vec<(u32, f64)>,
-        anchors: Vec<[f64; D]>,
-    },
+    Acting { held: Vec<(u32, f64)>, anchors: Vec<[f64; D]> },
     /// It is over.
     Done,
 }
@@ -160,7 +157,9 @@ impl<const D: usize> World<D> {
         for number in 0..self.running.len() {
             let Progress::Acting { held, anchors } = &self.running[number].progress else { continue };
             let action = &self.running[number].command.action;
-            let (Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. }) = action else { continue };
+            let (Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. }) = action else {
+                continue;
+            };
             let Some(lane) = bodies.iter().position(|b| b == body) else { continue };
             let system = &mut self.islands[island].system;
             let layout = system.layout;
@@ -220,7 +219,8 @@ impl<const D: usize> World<D> {
             let Action::Drag { body, stiffness, path, largest_force, .. } = &running.command.action else { continue };
             let (island, lane) = self.place[*body];
             let system = &self.islands[island].system;
-            let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (system.layout.place(*n as usize, lane), *s)).collect();
+            let held: Vec<(usize, f64)> =
+                held.iter().map(|(n, s)| (system.layout.place(*n as usize, lane), *s)).collect();
             let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
             let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.place(n, lane))).sum();
             let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
@@ -259,7 +259,8 @@ impl<const D: usize> World<D> {
                 let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
                 let body = self.body(name).ok_or_else(|| refuse(format!("there is no body `{name}`{hint}")))?;
                 let spec = self.registry.model(kind).map(|m| m.spec());
-                let kinds: Vec<String> = self.blueprint.bodies[body].models.iter().map(|m| m.kind().to_string()).collect();
+                let kinds: Vec<String> =
+                    self.blueprint.bodies[body].models.iter().map(|m| m.kind().to_string()).collect();
                 let values = self.blueprint.bodies[body].models.iter_mut().find(|m| m.kind() == *kind);
                 let (Some(spec), Some(values)) = (spec, values) else {
                     return Err(refuse(format!("body `{name}` has no model `{kind}`; it has {}", kinds.join(", "))));
@@ -287,7 +288,8 @@ impl<const D: usize> World<D> {
             },
             _ => {
                 return Err(refuse(
-                    "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD, world.gravity, world.drag, time.substeps".into(),
+                    "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD, world.gravity, world.drag, time.substeps"
+                        .into(),
                 ));
             }
         }
@@ -337,7 +339,8 @@ impl<const D: usize> World<D> {
         self.alive[body] = false;
         self.generation[body] += 1;
         for running in &mut self.running {
-            if let Action::Drag { body: b, .. } | Action::Push { body: b, .. } | Action::Pin { body: b, .. } = &running.command.action
+            if let Action::Drag { body: b, .. } | Action::Push { body: b, .. } | Action::Pin { body: b, .. } =
+                &running.command.action
                 && *b == body
             {
                 running.progress = Progress::Done;

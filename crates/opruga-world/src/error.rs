@@ -35,7 +35,9 @@ pub enum WorldError {
         substeps: u32,
     },
     /// The motion left the finite numbers.
-    #[error("body `{body}` diverged: node {node} in the substep from t = {time} s; the world is at its last good frame, t = {last} s")]
+    #[error(
+        "body `{body}` diverged: node {node} in the substep from t = {time} s; the world is at its last good frame, t = {last} s"
+    )]
     Diverged {
         /// The body.
         body: String,

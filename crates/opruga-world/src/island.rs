@@ -44,7 +44,15 @@ pub(crate) struct FramePlan<'a, const D: usize> {
 impl<const D: usize> Island<D> {
     pub(crate) fn new(system: System<D>, bodies: Vec<usize>) -> Self {
         let survey = survey(&system);
-        let mut island = Island { system, bodies, stock: Stock::default(), survey, work: Work8::default(), outcome: Ok(()), last: None };
+        let mut island = Island {
+            system,
+            bodies,
+            stock: Stock::default(),
+            survey,
+            work: Work8::default(),
+            outcome: Ok(()),
+            last: None,
+        };
         island.stock = take_stock(&mut island.system);
         island
     }

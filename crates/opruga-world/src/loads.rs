@@ -1,10 +1,10 @@
 //! Forces from outside: loads, pushes, the pull of a pointer, a user's own law.
 
+use opruga_core::error::StepError;
 use opruga_core::potential::{Account, Potential, Views};
 use opruga_core::state::{Layout, View};
 use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
-use opruga_core::error::StepError;
 use opruga_math::{Simd, WIDTH};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -276,7 +276,9 @@ fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
         let first = all.positions.len() as u32;
         all.positions.append(&mut ring.positions);
         let hole = *radius < 0.0;
-        all.facets.extend(ring.facets.iter().map(|[a, b]| if hole { [b + first, a + first] } else { [a + first, b + first] }));
+        all.facets.extend(
+            ring.facets.iter().map(|[a, b]| if hole { [b + first, a + first] } else { [a + first, b + first] }),
+        );
     }
     // A hole in nothing is refused here, not only when a gas is filled in.
     all.chambers()?;

@@ -30,7 +30,8 @@ struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
     fn eight(&mut self) -> Result<[u8; 8], WorldError> {
-        let (head, tail) = self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
+        let (head, tail) =
+            self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
         self.0 = tail;
         Ok(*head)
     }
@@ -159,9 +160,10 @@ impl<const D: usize> World<D> {
                 1 => Progress::Done,
                 2 => {
                     let n = reader.length()?;
-                    let held = (0..n)
-                        .map(|_| Ok((reader.count()? as u32, reader.number()?)))
-                        .collect::<Result<Vec<_>, WorldError>>()?;
+                    let held =
+                        (0..n)
+                            .map(|_| Ok((reader.count()? as u32, reader.number()?)))
+                            .collect::<Result<Vec<_>, WorldError>>()?;
                     Progress::Acting { held, anchors: reader.vectors::<D>()? }
                 }
                 _ => return refuse("a command is in an unknown state"),

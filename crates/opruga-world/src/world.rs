@@ -1,6 +1,6 @@
 //! The world: bodies, obstacles, time.
 
-use crate::blueprint::{BodyBlueprint, Blueprint, Recorded};
+use crate::blueprint::{Blueprint, BodyBlueprint, Recorded};
 use crate::build::{BodyState, Builder, group, initial_state, rest_volume};
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
@@ -103,7 +103,11 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     /// As [`World::new`].
-    pub fn with_registry(blueprint: Blueprint<D>, options: Options, registry: Arc<Registry<D>>) -> Result<World<D>, WorldError> {
+    pub fn with_registry(
+        blueprint: Blueprint<D>,
+        options: Options,
+        registry: Arc<Registry<D>>,
+    ) -> Result<World<D>, WorldError> {
         let integrator = build_integrator(&registry, &blueprint)?;
         let colliders = if blueprint.colliders.is_empty() {
             None
@@ -430,7 +434,13 @@ impl<const D: usize> World<D> {
         let (island, lane) = self.place[body];
         let time = self.time();
         let system = &mut self.islands[island].system;
-        let view = View { x: system.state.x.slices(), v: system.state.v.slices(), nodes: system.nodes, layout: system.layout, time };
+        let view = View {
+            x: system.state.x.slices(),
+            v: system.state.v.slices(),
+            nodes: system.nodes,
+            layout: system.layout,
+            time,
+        };
         let mut out = Vec::new();
         for member in &mut system.members {
             if member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch).is_ok() {
@@ -546,7 +556,10 @@ impl<const D: usize> World<D> {
     }
 }
 
-fn build_integrator<const D: usize>(registry: &Registry<D>, blueprint: &Blueprint<D>) -> Result<Box<dyn Integrator<D>>, WorldError> {
+fn build_integrator<const D: usize>(
+    registry: &Registry<D>,
+    blueprint: &Blueprint<D>,
+) -> Result<Box<dyn Integrator<D>>, WorldError> {
     let kind = blueprint.integrator.kind();
     let refuse = |source| WorldError::Build { place: "integrator".into(), source };
     let Some(kind) = registry.integrator(kind) else {

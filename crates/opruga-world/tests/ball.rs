@@ -78,14 +78,22 @@ fn run(blueprint: Blueprint<2>, options: Options, frames: usize) -> World<2> {
 
 #[test]
 fn threads_lanes_and_batches_give_the_same_bits() {
-    let reference = run(rings(11, 36, "symplectic_euler"), Options { batches: false, simd: Some(Simd::Baseline), ..Options::default() }, 60);
+    let reference = run(
+        rings(11, 36, "symplectic_euler"),
+        Options { batches: false, simd: Some(Simd::Baseline), ..Options::default() },
+        60,
+    );
     assert!(reference.position(0, 27)[1] < 0.5, "the balls have come down");
     for threads in [1, 2, 3, 8] {
         for simd in Simd::available() {
             for batches in [false, true] {
                 let options = Options { threads, simd: Some(simd), batches, ..Options::default() };
                 let world = run(rings(11, 36, "symplectic_euler"), options, 60);
-                assert_eq!(world.state_hash(), reference.state_hash(), "{threads} threads, {simd:?}, batches {batches}");
+                assert_eq!(
+                    world.state_hash(),
+                    reference.state_hash(),
+                    "{threads} threads, {simd:?}, batches {batches}"
+                );
             }
         }
     }

@@ -3,7 +3,9 @@
 #![allow(clippy::disallowed_methods)]
 
 use crate::collide::Picture as Placed;
-use crate::draw::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture};
+use crate::draw::{
+    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
+};
 use crate::{World, mesh::EdgeSet};
 
 /// What stays the same from picture to picture: outlines, springs, rest lengths.
@@ -112,9 +114,8 @@ impl Scenery {
                 drawn.push(ArrowPicture { kind: ArrowKind::Pull, from: three(node), vector: three(force) });
             }
         }
-        let colliders = world.colliders().map_or_else(Vec::new, |c| {
-            c.pictures(world.time()).into_iter().map(collider).collect()
-        });
+        let colliders =
+            world.colliders().map_or_else(Vec::new, |c| c.pictures(world.time()).into_iter().map(collider).collect());
         Moment { time: world.time(), coordinates, bodies, pulls, colliders, arrows: drawn }
     }
 
@@ -157,7 +158,9 @@ impl Scenery {
 fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
     let points = |points: Vec<[f64; D]>| -> Vec<[f64; 3]> { points.into_iter().map(three).collect() };
     match placed {
-        Placed::HalfSpace { point, normal } => ColliderPicture::HalfSpace { point: three(point), normal: three(normal) },
+        Placed::HalfSpace { point, normal } => {
+            ColliderPicture::HalfSpace { point: three(point), normal: three(normal) }
+        }
         Placed::Ball { center, radius, .. } => ColliderPicture::Ball { center: three(center), radius },
         Placed::Capsule { a, b, radius } => ColliderPicture::Capsule { a: three(a), b: three(b), radius },
         Placed::Polygon { points: p } => ColliderPicture::Polygon(points(p)),

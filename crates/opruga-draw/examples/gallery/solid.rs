@@ -123,8 +123,11 @@ pub(crate) fn cloth(side: u32, net: bool) -> Picture {
 pub(crate) fn room() -> Picture {
     let place = |index: u32, step: f64| (f64::from(index) * step).fract();
     let body = |index: u32| {
-        let center =
-            [4.0 * place(index, 0.754_88) - 2.0, 0.3 + 1.7 * place(index, 0.569_84), 3.0 * place(index, 0.430_16) - 1.5];
+        let center = [
+            4.0 * place(index, 0.754_88) - 2.0,
+            0.3 + 1.7 * place(index, 0.569_84),
+            3.0 * place(index, 0.430_16) - 1.5,
+        ];
         balloon(center, 0.25, [0.03, 0.06], 32)
     };
     Picture {

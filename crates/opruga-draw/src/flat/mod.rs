@@ -5,7 +5,6 @@ mod colliders;
 mod loops;
 mod shade;
 
-
 use crate::canvas::Canvas;
 use crate::error::DrawError;
 use crate::image::Image;

@@ -164,8 +164,7 @@ impl Painter<'_> {
         let range = self.view.range(self.picture);
         let places: Vec<f32> = body.scalar.iter().map(|&scalar| View::place(range, scalar) as f32).collect();
         let map = self.picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
-        let colouring =
-            if places.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &places) };
+        let colouring = if places.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &places) };
         let surface = Surface { positions: &body.positions, triangles: triangles(body), smooth: true };
         shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
         let filled = !surface.triangles.is_empty();
