@@ -46,7 +46,7 @@ impl<W: Write> GifWriter<W> {
         }
         let mut counts = vec![0u64; 1 << 15];
         for sample in samples {
-            for pixel in sample.pixels().chunks_exact(3) {
+            for pixel in sample.pixels().chunks_exact(4) {
                 counts[coarse(pixel)] += 1;
             }
         }
@@ -79,7 +79,7 @@ impl<W: Write> GifWriter<W> {
         if [image.width(), image.height()] != self.size {
             return Err(DrawError::FrameSize { expected: self.size, found: [image.width(), image.height()] });
         }
-        let pixels: Vec<u8> = image.pixels().chunks_exact(3).map(|p| self.nearest[coarse(p)]).collect();
+        let pixels: Vec<u8> = image.pixels().chunks_exact(4).map(|p| self.nearest[coarse(p)]).collect();
         let (width, height) = (self.size[0] as usize, self.size[1] as usize);
         let [left, top, right, bottom] = match &self.last {
             Some(last) => changed(last, &pixels, width),

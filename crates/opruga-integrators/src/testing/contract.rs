@@ -88,7 +88,6 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
         };
         // Over four halvings: errors of opposite sign meet somewhere on the way.
         let observed = libm::log2(gap(50) / gap(800)) / 4.0;
-        println!("{}: ledger closes at order {observed:.2}", rule.name());
         assert!(observed >= order - 0.2, "{}: {observed}", rule.name());
     }
 }

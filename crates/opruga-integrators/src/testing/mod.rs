@@ -105,7 +105,6 @@ pub(crate) fn check_order(plane: &dyn Integrator<2>, space: &dyn Integrator<3>, 
         ("damped spring, space", orders_of_spring(space, 0.8)),
     ];
     for (problem, orders) in rows {
-        println!("{} {problem}: {orders:.3?}", plane.name());
         assert!(orders.len() >= 3);
         assert!(orders.iter().all(|p| *p >= theory - 0.2), "{problem}: {orders:?}, theory {theory}");
         // And not by accident a better rule than the documentation says.
@@ -181,7 +180,6 @@ pub(crate) fn check_bounded_energy(integrator: &dyn Integrator<2>, order: f64) {
             *worst = if drift > *worst { drift } else { *worst };
         }
         // No drift: the error of the last nine tenths is that of the first tenth.
-        println!("{}: energy within {early:.2e}, later {late:.2e}", integrator.name());
         assert!(late < 1.05 * early, "{early} {late}");
         bounds.push(late);
     }

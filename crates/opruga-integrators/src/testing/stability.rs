@@ -109,12 +109,11 @@ fn estimates_lie_just_below_the_onset() {
         for rule in rules {
             let limit = estimated(&make(), rule).largest_stable_step.unwrap();
             let onset = onset(&make, rule, limit, 3000);
-            println!(
-                "{} c = {damping}, nRT = {gas}: {limit:.5} s, onset {onset:.5} s, ratio {:.3}",
-                rule.name(),
-                limit / onset
+            assert!(
+                limit <= onset && limit >= 0.9 * onset,
+                "{} c = {damping}, nRT = {gas}: {limit} {onset}",
+                rule.name()
             );
-            assert!(limit <= onset && limit >= 0.9 * onset, "{}: {limit} {onset}", rule.name());
         }
     }
 }
@@ -137,7 +136,6 @@ fn rules_that_need_damping_of_every_mode() {
         // The fastest mode alone: ω = 80 cos(π/36), c = 5.
         let fastest = 80.0 * libm::cos(core::f64::consts::PI / 36.0);
         let exact = Spectrum::uniform(fastest, 5.0).largest_stable_step(rule).unwrap();
-        println!("{} with drag: {limit:.6} s, exact {exact:.6} s, ratio {:.3}", rule.name(), limit / exact);
         assert!(limit <= exact && limit >= 0.9 * exact, "{}: {limit} {exact}", rule.name());
         assert!(!grows(make(), rule, limit, 20_000) && grows(make(), rule, 1.2 * exact, 20_000));
     }
