@@ -353,9 +353,7 @@ impl PairTable {
         }
         let packed = all.len().next_multiple_of(WIDTH);
         let room = packed + 2 * WIDTH;
-        if tile.slots.len() < D * room {
-            tile.slots.resize(D * room, 0.0);
-        }
+        tile.slots.grow(D * room);
         // One strip from the lower end on serves both ends: few pointers stay in registers.
         let base = a.min(b);
         let (to_a, to_b) = (a - base, b - base);
@@ -369,7 +367,7 @@ impl PairTable {
             p2.strip(first + all.start, packed),
         );
         // Slot columns begin with a spare pack, so that a shifted read stays inside.
-        let mut slots = StripMut::<1>::new([tile.slots.as_mut_slice()], 0, D * room);
+        let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * room);
         // Places of the run, counted from `all.start`, whose first node belongs to the tile.
         let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
         for k in (0..packed).step_by(WIDTH) {

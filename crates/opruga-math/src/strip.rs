@@ -82,12 +82,15 @@ pub struct RepeatStrip<'a> {
 }
 
 impl<'a> RepeatStrip<'a> {
-    /// The numbers from `start` on; if `step` is zero, the first eight of the column all along.
+    /// The numbers of a column from `start` on.
     #[inline(always)]
-    pub fn new(column: &'a [f64], step: usize, start: usize, length: usize) -> Self {
-        assert!(step <= 1 && column.len() >= WIDTH);
-        let piece = if step == 0 { &column[..WIDTH] } else { &column[start..start + length] };
-        RepeatStrip { start: piece.as_ptr(), step, length, borrow: PhantomData }
+    pub fn new(column: &'a [f64], start: usize, length: usize) -> Self {
+        RepeatStrip { start: column[start..start + length].as_ptr(), step: 1, length, borrow: PhantomData }
+    }
+    /// The same eight numbers all along.
+    #[inline(always)]
+    pub fn repeated(numbers: &'a [f64; WIDTH], length: usize) -> Self {
+        RepeatStrip { start: numbers.as_ptr(), step: 0, length, borrow: PhantomData }
     }
     /// Eight numbers from place `k` on.
     #[inline(always)]
