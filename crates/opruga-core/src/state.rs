@@ -182,6 +182,11 @@ impl Parameter {
             Numbers::Each(column) => column[place],
         }
     }
+    /// Whether eight values stand for the whole column.
+    #[inline(always)]
+    pub fn repeats(&self) -> bool {
+        matches!(self.0, Numbers::Repeated(_))
+    }
     /// Whether it is zero everywhere.
     pub fn is_zero(&self) -> bool {
         let numbers: &[f64] = match &self.0 {

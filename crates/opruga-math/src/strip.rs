@@ -8,7 +8,7 @@
 //! asserts that it stays below the common length.
 #![allow(unsafe_code)]
 
-use crate::lane::{Pack, WIDTH};
+use crate::lane::{Pack, Register, WIDTH};
 use core::marker::PhantomData;
 
 /// The same piece of `N` columns, to be read.
@@ -44,6 +44,13 @@ impl<'a, const N: usize> Strip<'a, N> {
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
     }
+    /// One part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
+    }
 }
 
 impl<'a, const N: usize> StripMut<'a, N> {
@@ -62,6 +69,13 @@ impl<'a, const N: usize> StripMut<'a, N> {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
+    }
+    /// One part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
     }
     /// Writes eight numbers of a column from place `k` on.
     #[inline(always)]
@@ -98,5 +112,12 @@ impl<'a> RepeatStrip<'a> {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file; with step zero the first eight numbers are read.
         unsafe { P::read(self.start.add(k * self.step)) }
+    }
+    /// One part of the eight numbers from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file; with step zero the first eight numbers are read.
+        unsafe { P::Part::read(self.start.add(k * self.step + part * P::Part::NUMBERS)) }
     }
 }
