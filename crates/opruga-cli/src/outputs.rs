@@ -29,6 +29,7 @@ pub(crate) struct Recorder {
     /// The length of a frame of the scene [s].
     frame: f64,
     arrows: bool,
+    gif: bool,
 }
 
 /// A checkpoint's payload: the snapshot and how the run was called.
@@ -109,6 +110,7 @@ impl Recorder {
             every,
             frame,
             arrows: call.arrows,
+            gif: call.gif,
         }
     }
 
@@ -266,7 +268,7 @@ impl Outputs<'_> {
         let png = strip.to_png().map_err(draw_failed)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
-        if moments.len() > 1 && !self.stop.load(Ordering::Relaxed) {
+        if !self.stop.load(Ordering::Relaxed) {
             files.push(self.video(scenery, recorder, &view)?);
         }
         Ok(())
@@ -275,22 +277,34 @@ impl Outputs<'_> {
     /// The animation of the run, drawn frame by frame.
     fn video(&self, scenery: &Scenery, recorder: &Recorder, view: &draw::View) -> Result<String, Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let style = draw::Style { width: 640, height: 480, ..draw::Style::default() };
+        let [width, height] = if recorder.gif { [640, 480] } else { [800, 600] };
+        let style = draw::Style { width, height, ..draw::Style::default() };
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
-        let samples: Vec<draw::Image> =
-            draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
         let rate = 1.0 / (recorder.every as f64 * recorder.frame);
-        let mut bytes = Vec::new();
-        let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
-        for moment in &recorder.moments {
-            if self.stop.load(Ordering::Relaxed) {
-                break;
+        let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
+            for moment in &recorder.moments {
+                if self.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                take(&draw_moment(moment)?).map_err(draw_failed)?;
             }
-            writer.push(&draw_moment(moment)?).map_err(draw_failed)?;
-        }
-        drop(writer);
-        self.folder.write("video.gif", false, |out| out.write_all(&bytes))?;
-        Ok("video.gif".into())
+            Ok(())
+        };
+        let mut bytes = Vec::new();
+        let name = if recorder.gif {
+            let samples: Vec<draw::Image> =
+                draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
+            let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
+            every(&mut |image| writer.push(image))?;
+            "video.gif"
+        } else {
+            let mut writer = draw::Mp4Writer::new(&mut bytes, [width, height], rate).map_err(draw_failed)?;
+            every(&mut |image| writer.push(image))?;
+            writer.finish().map_err(draw_failed)?;
+            "video.mp4"
+        };
+        self.folder.write(name, false, |out| out.write_all(&bytes))?;
+        Ok(name.into())
     }
 
     /// A few lines for people.
