@@ -152,7 +152,7 @@ pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Pla
         return;
     }
     let extent = view.extent();
-    let square = crate::ticks::nice_length(0.3 * extent);
+    let square = view.square();
     let first = unit(if plane.normal[0].abs() < 0.9 {
         along([1.0, 0.0, 0.0], plane.normal, -plane.normal[0])
     } else {

@@ -131,7 +131,7 @@ impl Painter<'_> {
 
     /// Draws the walls of a room which are seen from inside: their edges, and lines at round distances.
     fn room(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
-        let square = crate::ticks::nice_length(0.3 * self.view.extent());
+        let square = self.view.square();
         for (corners, axis, high) in FACES {
             let corners = corners.map(|bits| corner(min, max, bits));
             let towards = between(corners[0], self.camera.place)[axis];

@@ -23,7 +23,7 @@ use parameters::{Parameters, Rate};
 use std::io::Write;
 
 /// The quantiser: small numbers keep more of the pictures.
-const QUANTISER: u8 = 24;
+const QUANTISER: u8 = 20;
 
 /// The time from a frame that needs no other to the next [s]: how exactly a player can jump.
 const PERIOD: f64 = 2.0;
