@@ -282,8 +282,9 @@ impl Outputs<'_> {
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
         let rate = 1.0 / (recorder.every as f64 * recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
-            for moment in &recorder.moments {
-                if self.stop.load(Ordering::Relaxed) {
+            for (number, moment) in recorder.moments.iter().enumerate() {
+                // An interrupted film is cut short, but a film has at least one frame.
+                if number > 0 && self.stop.load(Ordering::Relaxed) {
                     break;
                 }
                 take(&draw_moment(moment)?).map_err(draw_failed)?;

@@ -1,7 +1,7 @@
 //! Pictures, film strips, plots and videos of deformable bodies, without a graphics card.
 //!
 //! A [`Picture`] says what is seen at one moment. A [`View`], fitted to all pictures of a run, says from where. Then
-//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`GifWriter`] an animation.
+//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`Mp4Writer`] or [`GifWriter`] a film.
 // The fixed elementary functions are for physics; a picture may differ in a last bit.
 #![allow(clippy::disallowed_methods)]
 

@@ -235,14 +235,37 @@ impl Drawing<'_> {
         if self.size > 30.0 {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
+        // Neighbours of nearly the same colour are one line; on small bodies fewer colours can be told apart.
+        let shades = if self.size > 60.0 { 64.0 } else { 24.0 };
+        let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {
             let count = if chain.closed { chain.nodes.len() } else { chain.nodes.len() - 1 };
+            let mut last = None;
             for place in 0..count {
                 let ends = [chain.nodes[place], chain.nodes[(place + 1) % chain.nodes.len()]];
-                let colour = self.scalars.colour(Scalars::mean(self.body, ends.into_iter()));
-                canvas.line(&ends.map(|node| self.pixels[node as usize]), width, colour, 1.0);
+                let mean = self.scalars.place(Scalars::mean(self.body, ends.into_iter()));
+                let shade = (mean.clamp(0.0, 1.0) * shades).round() / shades;
+                let [from, to] = ends.map(|node| self.pixels[node as usize]);
+                if last != Some(shade) {
+                    self.coloured_line(canvas, &mut points, width, last);
+                    points.push(from);
+                    last = Some(shade);
+                }
+                let before = points[points.len() - 1];
+                if (to[0] - before[0]).abs() + (to[1] - before[1]).abs() > 0.4 {
+                    points.push(to);
+                }
             }
+            self.coloured_line(canvas, &mut points, width, last);
         }
+    }
+
+    /// Draws a part of an outline, and forgets it.
+    fn coloured_line(&self, canvas: &mut Canvas, points: &mut Vec<[f32; 2]>, width: f32, shade: Option<f64>) {
+        if let Some(shade) = shade {
+            canvas.line(points, width, self.scalars.map.colour(shade), 1.0);
+        }
+        points.clear();
     }
 
     /// Draws the nodes, where they are wanted and far enough apart.
