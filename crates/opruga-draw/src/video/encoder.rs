@@ -79,7 +79,7 @@ impl Encoder {
 
     /// What a decoder shows of the latest picture.
     #[cfg(test)]
-    pub(crate) fn drawn(&self) -> &Frame {
+    pub(crate) fn shown(&self) -> &Frame {
         &self.before
     }
 
@@ -283,7 +283,11 @@ impl Encoder {
                 }
                 let [x, y] = best.0;
                 let around = [[x - reach, y], [x + reach, y], [x, y - reach], [x, y + reach]];
-                if !around.into_iter().fold(false, |moved, motion| attempt(motion, &mut best) || moved) {
+                let mut moved = false;
+                for motion in around {
+                    moved |= attempt(motion, &mut best);
+                }
+                if !moved {
                     break;
                 }
             }

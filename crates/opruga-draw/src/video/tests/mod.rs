@@ -19,7 +19,7 @@ fn film(name: &str, size: [u32; 2], rate: f64, images: &[Image]) -> Made {
     let mut shown = Vec::new();
     for image in images {
         writer.push(image).expect("a frame");
-        shown.push(planes(writer.encoder.drawn(), size));
+        shown.push(planes(writer.encoder.shown(), size));
     }
     let bytes = writer.finish().expect("a film");
     if let Ok(folder) = std::env::var("OPRUGA_FILMS") {
