@@ -22,6 +22,8 @@ const MOST_BODY_COLUMNS: usize = 64;
 /// What is kept of every frame.
 pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
+    /// The first column of the table that belongs to a probe.
+    first_probe: usize,
     scenery: Option<Scenery>,
     moments: Vec<Moment>,
     /// Frames of the scene between two pictures.
@@ -88,6 +90,7 @@ impl Recorder {
             let name = world.blueprint().bodies[body].name.clone();
             columns.extend(world.readings(body).iter().map(|(what, _)| format!("{name}.{what}")));
         }
+        let first_probe = columns.len();
         for probe in 0..world.blueprint().probes.len() {
             columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
         }
@@ -105,6 +108,7 @@ impl Recorder {
         }
         Recorder {
             table: NumberTable::new(columns),
+            first_probe,
             scenery: (!call.no_pictures).then(|| Scenery::new(world)),
             moments: Vec::new(),
             every,
@@ -254,7 +258,8 @@ impl Outputs<'_> {
     /// Strip, video and plots.
     fn pictures(&self, scenery: &Scenery, recorder: &Recorder, files: &mut Vec<String>) -> Result<(), Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let plots = crate::plots::of_run(&recorder.table, &self.source.name).map_err(draw_failed)?;
+        let plots =
+            crate::plots::of_run(&recorder.table, recorder.first_probe, &self.source.name).map_err(draw_failed)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;
         files.push("plots.svg".into());
         let moments = &recorder.moments;
