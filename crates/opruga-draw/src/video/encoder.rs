@@ -210,9 +210,11 @@ impl Encoder {
     fn renew(&mut self, bits: &mut Bits, place: [usize; 2], skipped: &mut u32) {
         let ([expected, left_out], neighbours) = self.neighbours(place);
         let (motion, pixels, cost) = self.search(place, expected, left_out, neighbours);
-        if cost > 256 {
+        // What a body leaves behind is drawn anew where it is empty, so that no traces stay.
+        let empty = cost > 0 && self.source.is_empty(place);
+        if cost > 256 || empty {
             let alone = self.alone(place);
-            if alone.cost < cost {
+            if alone.cost < cost || empty {
                 bits.ue(std::mem::take(skipped));
                 self.write_alone(bits, place, &alone, 5);
                 return;
@@ -298,9 +300,12 @@ impl Encoder {
     /// The best expectation from the neighbours.
     fn alone(&self, place: [usize; 2]) -> Alone {
         let best = |plane: usize| {
-            let directions = [Direction::Mean, Direction::Right, Direction::Down];
+            let directions: &[Direction] = match self.source.is_empty(place) {
+                true => &[Direction::Mean],
+                false => &[Direction::Mean, Direction::Right, Direction::Down],
+            };
             let mut best = (Direction::Mean, [0; 256], u32::MAX);
-            for direction in directions.into_iter().filter(|direction| direction.is_possible(place)) {
+            for direction in directions.iter().copied().filter(|direction| direction.is_possible(place)) {
                 let pixels = from_neighbours(&self.drawn, plane, place, direction);
                 let cost = difference(&self.source, plane, place, &pixels, best.2);
                 if cost < best.2 {

@@ -38,6 +38,13 @@ impl Frame {
         (y * self.stride(plane) + x) * Frame::side(plane)
     }
 
+    /// Whether a macroblock has the same brightness everywhere.
+    pub(crate) fn is_empty(&self, place: [usize; 2]) -> bool {
+        let (stride, start) = (self.stride(0), self.start(0, place));
+        let pixels = &self.planes[0];
+        (0..BLOCK).all(|row| pixels[start + row * stride..][..BLOCK].iter().all(|pixel| *pixel == pixels[start]))
+    }
+
     /// Copies a macroblock from another frame of the same size.
     pub(crate) fn copy_block(&mut self, from: &Frame, place: [usize; 2]) {
         for plane in 0..3 {

@@ -2,7 +2,7 @@
 
 use super::bits::Bits;
 use super::entropy::{Context, write_levels};
-use super::frame::{BLOCK, Frame};
+use super::frame::Frame;
 use super::predict::Pixels;
 use super::transform::{Block, Quantiser, ZIGZAG, add_inverse, chroma_quantiser, forward, hadamard, hadamard_four};
 
@@ -13,15 +13,13 @@ pub(crate) struct Quantisers {
     alone: [Quantiser; 2],
     /// For what is expected from the frame before: brightness, colour.
     moved: [Quantiser; 2],
-    /// The same where the picture is empty, and traces of what was there before would be seen.
-    empty: [Quantiser; 2],
 }
 
 impl Quantisers {
     /// The quantisers of a number from 12 (fine) to 51 (coarse).
     pub(crate) fn new(quantiser: u8) -> Quantisers {
         let both = |share| [quantiser, chroma_quantiser(quantiser)].map(|number| Quantiser::new(number, share));
-        Quantisers { alone: both(3), moved: both(6), empty: both(2) }
+        Quantisers { alone: both(3), moved: both(6) }
     }
 }
 
@@ -106,13 +104,6 @@ fn differences(source: &Frame, plane: usize, start: usize, expected: &Pixels, [x
     block
 }
 
-/// Whether a macroblock has the same brightness everywhere.
-fn is_empty(source: &Frame, place: [usize; 2]) -> bool {
-    let (stride, start) = (source.stride(0), source.start(0, place));
-    let pixels = &source.planes[0];
-    (0..BLOCK).all(|row| pixels[start + row * stride..][..BLOCK].iter().all(|pixel| *pixel == pixels[start]))
-}
-
 impl Residual {
     /// Finds the levels of a macroblock of `source`, and draws in `drawn` what a decoder makes of them.
     pub(crate) fn new(
@@ -123,11 +114,7 @@ impl Residual {
         alone: bool,
         quantisers: &Quantisers,
     ) -> Residual {
-        let [luma, colour] = match alone {
-            true => &quantisers.alone,
-            false if is_empty(source, place) => &quantisers.empty,
-            false => &quantisers.moved,
-        };
+        let [luma, colour] = if alone { &quantisers.alone } else { &quantisers.moved };
         let mut out = Residual {
             alone,
             sums: [0; 16],
