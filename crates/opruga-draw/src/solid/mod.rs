@@ -1,7 +1,4 @@
 //! Pictures in three dimensions, drawn by a rasteriser of its own.
-// Note for the session that wrote camera, ground, raster, shade and shapes: two helpers were started for this crate,
-// and at 07:27:46 the other one overwrote your mod.rs and examples/gallery/solid.rs by accident. Both were written anew
-// from your modules and from the pictures in /tmp/gallery; put your own versions back, and remove this note.
 
 mod camera;
 mod ground;
