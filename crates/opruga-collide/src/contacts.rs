@@ -7,12 +7,20 @@ use crate::picture::{Picture, picture};
 use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
 use crate::shape::{Shape, entry};
 use crate::vector::{dot, subtract};
+use core::any::Any;
 use opruga_core::contacts::{Contacts, Moved};
 use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
 use opruga_core::tile::TILE;
 use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
 use std::sync::Arc;
+
+fn of_the_plane(colliders: Arc<Colliders<2>>) -> Arc<dyn Contacts<2>> {
+    colliders
+}
+fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
+    colliders
+}
 
 /// The rigid obstacles of a world. Cloning shares them.
 #[derive(Clone, Debug)]
@@ -31,6 +39,19 @@ impl<const D: usize> Colliders<D> {
             colliders.push(Collider::build(number, values)?);
         }
         Ok(Colliders(colliders.into()))
+    }
+    /// The colliders as what a system collides with.
+    pub fn into_contacts(self: Arc<Self>) -> Arc<dyn Contacts<D>> {
+        // Through functions that are not generic: the passes are compiled once, with this crate.
+        let any: Arc<dyn Any + Send + Sync> = self.clone();
+        let contacts: Option<Box<dyn Any>> = match any.downcast::<Colliders<2>>() {
+            Ok(plane) => Some(Box::new(of_the_plane(plane))),
+            Err(any) => any.downcast::<Colliders<3>>().ok().map(|space| Box::new(of_space(space)) as Box<dyn Any>),
+        };
+        match contacts.map(|c| c.downcast::<Arc<dyn Contacts<D>>>()) {
+            Some(Ok(contacts)) => *contacts,
+            _ => unreachable!("there are colliders in two and three dimensions only"),
+        }
     }
     /// The number of colliders.
     pub fn len(&self) -> usize {

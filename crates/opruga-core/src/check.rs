@@ -30,7 +30,7 @@ use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, Weight};
 use core::fmt;
 use core::ops::Range;
-use opruga_math::{Column, Lane, Pack, Simd, WIDTH, Work, sum_in_fixed_order};
+use opruga_math::{Column, Lane, Simd, WIDTH, sum_in_fixed_order};
 use opruga_mesh::Mesh;
 
 /// In which states a model is checked, and what it does not claim.
@@ -378,7 +378,7 @@ impl<'a, const D: usize> Case<'a, D> {
                 let force = buffers.each_mut().map(Vec::as_mut_slice);
                 let weight = heaviness.take();
                 let mut tile = Tile { range: range.clone(), force, power: &mut power, weight, slots: &mut slots };
-                simd.run(Settle { tile: &mut tile });
+                tile.settle(simd);
             }
             let force = buffers.each_mut().map(Vec::as_mut_slice);
             let mut tile =
@@ -395,17 +395,6 @@ impl<'a, const D: usize> Case<'a, D> {
         let tiles = regular(self.places(), TILE);
         let (columns, power) = self.forces(simd, &tiles, None)?;
         Ok((by_node(&columns, self.layout, self.nodes, 0), sum_in_fixed_order(&power)))
-    }
-}
-
-struct Settle<'a, 'b, const D: usize> {
-    tile: &'a mut Tile<'b, D>,
-}
-impl<const D: usize> Work for Settle<'_, '_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        self.tile.settle::<P>();
     }
 }
 

@@ -417,7 +417,7 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work fo
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        self.tile.settle::<P>();
+        self.tile.settle_by::<P>();
         let blocks = self.stencils.blocks.len() - 1;
         let last = self.tile.range.end.div_ceil(TILE).min(blocks);
         for block in self.tile.range.start / TILE..last {

@@ -292,7 +292,7 @@ impl<const D: usize> System<D> {
                 weight: heaviness.take(),
                 slots: &mut self.slots,
             };
-            self.simd.run(Settle { tile: &mut tile });
+            tile.settle(self.simd);
         }
         for member in &self.members {
             let mut tile = Tile {
@@ -443,18 +443,6 @@ fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: S
         Stage::Work(k) => (&state.work[k][0], &state.work[k][1]),
     };
     View { x: x.slices(), v: v.slices(), nodes, layout, time }
-}
-
-/// Begins the forces of a tile with the weight.
-struct Settle<'a, 'b, const D: usize> {
-    tile: &'a mut Tile<'b, D>,
-}
-impl<const D: usize> Work for Settle<'_, '_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        self.tile.settle::<P>();
-    }
 }
 
 /// Hands a tile to the integrator.

@@ -2,7 +2,7 @@
 
 use crate::state::Parameter;
 use core::ops::Range;
-use opruga_math::{Column, Pack, StripMut, WIDTH, lanes};
+use opruga_math::{Column, Pack, Simd, StripMut, WIDTH, Work, lanes};
 
 /// Places of a tile.
 pub const TILE: usize = 512;
@@ -34,8 +34,14 @@ pub struct Weight<'a, const D: usize> {
 
 impl<const D: usize> Tile<'_, D> {
     /// Begins the forces with the weight, unless that is done.
+    pub fn settle(&mut self, simd: Simd) {
+        if self.weight.is_some() {
+            simd.run(Settle { tile: self });
+        }
+    }
+    /// The same within work for a set of instructions.
     #[inline(always)]
-    pub fn settle<P: Pack>(&mut self) {
+    pub fn settle_by<P: Pack>(&mut self) {
         let Some(weight) = self.weight.take() else { return };
         let length = self.range.len();
         let mass = weight.mass.strip(self.range.start, length);
@@ -47,6 +53,17 @@ impl<const D: usize> Tile<'_, D> {
                 force.store(d, k, m * gravity[d]);
             }
         }
+    }
+}
+
+struct Settle<'a, 'b, const D: usize> {
+    tile: &'a mut Tile<'b, D>,
+}
+impl<const D: usize> Work for Settle<'_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        self.tile.settle_by::<P>();
     }
 }
 

@@ -10,10 +10,28 @@ pub mod verlet;
 #[cfg(test)]
 mod testing;
 
+use core::any::Any;
 use opruga_core::integrator::IntegratorKind;
 
-/// Every integrator of this crate.
+/// Every integrator of this crate, in two or three dimensions.
 pub fn all<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
+    let every: Box<dyn Any> = match D {
+        2 => Box::new(of_the_plane()),
+        3 => Box::new(of_space()),
+        _ => return Vec::new(),
+    };
+    every.downcast().map_or_else(|_| Vec::new(), |integrators| *integrators)
+}
+
+// Not generic: the integrators are compiled once, with this crate, and not again with every crate that asks for them.
+fn of_the_plane() -> Vec<Box<dyn IntegratorKind<2>>> {
+    list()
+}
+fn of_space() -> Vec<Box<dyn IntegratorKind<3>>> {
+    list()
+}
+
+fn list<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
     vec![
         Box::new(symplectic_euler::SymplecticEulerKind),
         Box::new(explicit_euler::ExplicitEulerKind),

@@ -137,8 +137,6 @@ pub trait Register: Lane {
     fn gather(from: &[f64], places: &[u32]) -> Self;
     /// The numbers moved up by one place, the last number of the register before them first.
     fn after(self, before: Self) -> Self;
-    /// The numbers moved down by one place, the first number of the register behind them last.
-    fn ahead_of(self, behind: Self) -> Self;
     /// Where the place in the register is less than `count`.
     fn first(count: usize) -> Self::Mask;
 }
@@ -151,9 +149,6 @@ pub trait Pack: Lane {
     type Part: Register;
     /// How many of them make eight numbers.
     const PARTS: usize;
-    /// Whether a pack is one register. Then reading it from the middle of a cache line costs twice, and the neighbours of
-    /// the numbers are better had by moving them than by reading again.
-    const WHOLE: bool = Self::PARTS == 1;
     /// One of the parts.
     fn part(self, number: usize) -> Self::Part;
     /// Replaces one of the parts.
@@ -182,8 +177,6 @@ pub trait Pack: Lane {
     fn from_array(numbers: [f64; WIDTH]) -> Self;
     /// The numbers moved up by one place, the last number of `previous` first.
     fn after(self, previous: Self) -> Self;
-    /// The numbers moved down by one place, the first number of `next` last.
-    fn ahead_of(self, next: Self) -> Self;
     /// Where the place is less than `count`.
     fn first(count: usize) -> Self::Mask;
     /// The sum of the eight numbers in one fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).

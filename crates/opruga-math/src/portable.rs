@@ -27,10 +27,6 @@ impl Register for f64 {
         before
     }
     #[inline(always)]
-    fn ahead_of(self, behind: f64) -> f64 {
-        behind
-    }
-    #[inline(always)]
     fn first(count: usize) -> bool {
         count > 0
     }

@@ -183,13 +183,6 @@ impl<R: Register, const N: usize> Pack for Registers<R, N> {
         })
     }
     #[inline(always)]
-    fn ahead_of(self, next: Self) -> Self {
-        each!(r => {
-            let behind = if r + 1 == N { next.0[0] } else { self.0[r + 1] };
-            self.0[r].ahead_of(behind)
-        })
-    }
-    #[inline(always)]
     fn first(count: usize) -> Self::Mask {
         let mut out = [R::zero().less(R::zero()); N];
         for r in 0..N {

@@ -73,7 +73,7 @@ impl Simd {
                 Simd::Avx2 if Simd::best() >= Simd::Avx2 => return unsafe { run_avx2(work) },
                 _ => {}
             }
-            work.run::<Registers<crate::x86_64::Sse2, 4>>()
+            run_sse2(work)
         }
         #[cfg(not(target_arch = "x86_64"))]
         work.run::<Registers<f64, 8>>()
@@ -92,6 +92,13 @@ pub trait Work {
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 fn run_avx512<W: Work>(work: W) -> W::Output {
     work.run::<Registers<crate::x86_64::Avx512, 1>>()
+}
+
+/// A function of its own, so that callers stay small.
+#[cfg(target_arch = "x86_64")]
+#[inline(never)]
+fn run_sse2<W: Work>(work: W) -> W::Output {
+    work.run::<Registers<crate::x86_64::Sse2, 4>>()
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -129,7 +136,6 @@ mod tests {
                 P::select(less, a, b),
                 P::select(P::both(less, a.less_or_equal(P::zero())), a, b),
                 a.after(b),
-                a.ahead_of(b),
                 P::select(P::first(3), a, b),
                 P::gather(&numbers, &[7, 0, 6, 1, 5, 2, 4, 3]),
                 positive.ln(),
@@ -147,7 +153,7 @@ mod tests {
     #[test]
     fn all_sets_of_instructions_give_the_bits_of_plain_rust() {
         let plain = Everything.run::<Registers<f64, 8>>();
-        assert_eq!(plain.len(), 2 + 18 * WIDTH);
+        assert_eq!(plain.len(), 2 + 17 * WIDTH);
         for simd in Simd::available() {
             assert_eq!(simd.run(Everything), plain, "{simd:?}");
         }

@@ -16,7 +16,7 @@ macro_rules! register {
     ($(#[$note:meta])* $type:ident($register:ty), $count:literal numbers, masks $mask:ty,
      $add:ident $sub:ident $mul:ident $div:ident $set:ident $sqrt:ident $load:ident $store:ident $min:ident $max:ident,
      abs $abs:expr, less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, both $both:expr, any $any:expr,
-     after $after:expr, ahead_of $ahead_of:expr, first $first:expr, gather $gather:expr) => {
+     after $after:expr, first $first:expr, gather $gather:expr) => {
         $(#[$note])*
         #[derive(Clone, Copy)]
         #[repr(transparent)]
@@ -104,8 +104,6 @@ macro_rules! register {
             #[inline(always)]
             fn after(self, before: Self) -> Self { $type(unsafe { $after(self.0, before.0) }) }
             #[inline(always)]
-            fn ahead_of(self, behind: Self) -> Self { $type(unsafe { $ahead_of(self.0, behind.0) }) }
-            #[inline(always)]
             fn first(count: usize) -> $mask { unsafe { $first(count) } }
             #[inline(always)]
             fn gather(from: &[f64], places: &[u32]) -> Self { $type(unsafe { $gather(from, &places[..$count]) }) }
@@ -131,7 +129,6 @@ register! {
     select |m, yes, no| _mm_or_pd(_mm_and_pd(m, yes), _mm_andnot_pd(m, no)),
     both |a, b| _mm_and_pd(a, b), any |m| _mm_movemask_pd(m) != 0,
     after |a, before| _mm_shuffle_pd::<0b01>(before, a),
-    ahead_of |a, behind| _mm_shuffle_pd::<0b01>(a, behind),
     first |count| _mm_cmplt_pd(_mm_loadu_pd(PLACES.as_ptr()), _mm_set1_pd(few(count))),
     gather |from: &[f64], at: &[u32]| _mm_setr_pd(from[at[0] as usize], from[at[1] as usize])
 }
@@ -145,7 +142,6 @@ register! {
     select |m, yes, no| _mm256_blendv_pd(no, yes, m),
     both |a, b| _mm256_and_pd(a, b), any |m| _mm256_movemask_pd(m) != 0,
     after |a, before| _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(before, a), a),
-    ahead_of |a, behind| _mm256_shuffle_pd::<0b0101>(a, _mm256_permute2f128_pd::<0x21>(a, behind)),
     first |count| _mm256_cmp_pd::<_CMP_LT_OQ>(_mm256_loadu_pd(PLACES.as_ptr()), _mm256_set1_pd(few(count))),
     gather |from: &[f64], at: &[u32]| {
         _mm256_setr_pd(from[at[0] as usize], from[at[1] as usize], from[at[2] as usize], from[at[3] as usize])
@@ -162,9 +158,6 @@ register! {
     both |a, b| a & b, any |m| m != 0,
     after |a, before| {
         _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(_mm512_castpd_si512(a), _mm512_castpd_si512(before)))
-    },
-    ahead_of |a, behind| {
-        _mm512_castsi512_pd(_mm512_alignr_epi64::<1>(_mm512_castpd_si512(behind), _mm512_castpd_si512(a)))
     },
     first |count| if count >= 8 { 0xff } else { ((1u32 << count) - 1) as u8 },
     gather |from: &[f64], at: &[u32]| gather_avx512(from, at)

@@ -6,10 +6,28 @@ pub mod drag;
 pub mod mass_spring;
 pub mod pressure;
 
+use core::any::Any;
 use opruga_core::potential::Model;
 
-/// Every model of this crate.
+/// Every model of this crate, in two or three dimensions.
 pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
+    let every: Box<dyn Any> = match D {
+        2 => Box::new(of_the_plane()),
+        3 => Box::new(of_space()),
+        _ => return Vec::new(),
+    };
+    every.downcast().map_or_else(|_| Vec::new(), |models| *models)
+}
+
+// Not generic: the models are compiled once, with this crate, and not again with every crate that asks for them.
+fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
+    list()
+}
+fn of_space() -> Vec<Box<dyn Model<3>>> {
+    list()
+}
+
+fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     vec![
         Box::new(mass_spring::MassSpring),
         Box::new(pressure::PressureModel),

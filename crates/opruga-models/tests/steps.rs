@@ -5,7 +5,7 @@ mod support;
 use opruga_core::state::{Parameter, View};
 use opruga_core::system::{Stage, State, System, Update};
 use opruga_core::tile::Tile;
-use opruga_math::{Pack, WIDTH};
+use opruga_math::{Column, Pack, WIDTH};
 use opruga_mesh::Mesh;
 use opruga_models::bending::BendingModel as Bending;
 use opruga_models::mass_spring::MassSpring;
@@ -46,7 +46,7 @@ fn compare<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) {
 
     let places = system.places();
     let mut whole: [Vec<f64>; D] = core::array::from_fn(|_| vec![0.0; places + WIDTH]);
-    let (mut power, mut slots) = ([0.0; WIDTH], Vec::new());
+    let (mut power, mut slots) = ([0.0; WIDTH], Column::default());
     let view: View<D> = system.view(Stage::Current, 0.0);
     for member in &system.members {
         let force = whole.each_mut().map(Vec::as_mut_slice);

@@ -100,7 +100,7 @@ impl<const D: usize> Island<D> {
         self.system.work = Work8::default();
         self.system.contacts = None;
         if let (true, Some(colliders)) = (near, plan.colliders) {
-            self.system.contacts = Some(Arc::clone(colliders) as Arc<dyn opruga_core::contacts::Contacts<D>>);
+            self.system.contacts = Some(Arc::clone(colliders).into_contacts());
         }
         for substep in 0..plan.substeps {
             self.system.time = plan.start + f64::from(substep) * plan.h;
@@ -115,7 +115,7 @@ impl<const D: usize> Island<D> {
 
     /// Repeats the frame, looking at every substep.
     fn name_culprit(&mut self, plan: &FramePlan<D>) -> Option<StepError> {
-        self.system.contacts = plan.colliders.map(|c| Arc::clone(c) as Arc<dyn opruga_core::contacts::Contacts<D>>);
+        self.system.contacts = plan.colliders.map(|c| Arc::clone(c).into_contacts());
         for substep in 0..plan.substeps {
             let time = plan.start + f64::from(substep) * plan.h;
             self.system.time = time;

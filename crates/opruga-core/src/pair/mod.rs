@@ -11,22 +11,21 @@
 
 mod chain;
 
-use chain::Chain;
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
 use crate::tile::Tile;
+use chain::Chain;
 use core::ops::Range;
-use opruga_math::{Lane, Pack, Strip, StripMut, WIDTH, lanes};
+use opruga_math::{Lane, Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
 
 /// The law of a pair: the force on its first node as a function of the differences of its ends.
 pub trait PairLaw<const D: usize>: Copy {
     /// Whether the law reads velocities.
     const DAMPED: bool;
-    /// Whether the force is linear in d, reads no velocities and has the same parameters for all pairs: then two pairs that
-    /// follow each other act on the node between them like one from the node before it to the node behind it.
-    const LINEAR: bool = false;
+    /// Whether the second and the third parameter are the same for all pairs, whatever the body.
+    const UNIFORM: bool;
     /// The force on the second node is this times the force on the first: −1 or +1.
     const SECOND: f64;
-    /// Three numbers per pair that the law reads. The last two are mostly the same for all pairs; then they are read once.
+    /// Three numbers per pair that the law reads.
     fn parameters(&self) -> [&Parameter; 3];
     /// Force on the first node [N] and dissipated power [W] of pairs, from d = xₐ − x_b and its rate.
     fn force<S: Lane>(&self, parameters: [S; 3], d: [S; D], rate: [S; D]) -> ([S; D], S);
@@ -36,8 +35,71 @@ pub trait PairLaw<const D: usize>: Copy {
 pub trait PairTerm<P: Pack, const D: usize>: Copy {
     /// Three numbers per pair that the function reads.
     fn parameters(&self) -> [&Parameter; 3];
-    /// The value for the pairs of one part of a pack with these ends.
-    fn of(&self, part: usize, parameters: [P::Part; 3], a: [P::Part; D], b: [P::Part; D]) -> P::Part;
+    /// The value for eight pairs with these ends.
+    fn of(&self, parameters: [P; 3], a: [P; D], b: [P; D]) -> P;
+}
+
+/// A run of at most one pack.
+struct Short<'a, 'v, 't, L, const D: usize> {
+    table: &'a PairTable,
+    law: L,
+    view: &'a View<'v, D>,
+    place: [usize; 4],
+    own: Range<usize>,
+    other: Range<usize>,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Short<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let mut power = P::load(self.power);
+        self.table.short::<P, L, D>(self.law, self.view, self.place, self.own, self.other, self.tile, &mut power);
+        power.store(self.power);
+    }
+}
+
+/// A run of more than one pack.
+struct Long<'a, 'v, 't, L, const D: usize> {
+    table: &'a PairTable,
+    law: L,
+    view: &'a View<'v, D>,
+    place: [usize; 3],
+    all: Range<usize>,
+    own: Range<usize>,
+    other: Range<usize>,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let mut power = P::load(self.power);
+        let Long { law, view, place, all, own, other, tile, .. } = self;
+        self.table.run::<P, L, D>(law, view, place, all, own, other, tile, &mut power);
+        power.store(self.power);
+    }
+}
+
+/// Pairs outside of long runs.
+struct Gather<'a, 'v, 't, L, const D: usize> {
+    table: &'a PairTable,
+    pull: &'a Pull,
+    law: L,
+    view: &'a View<'v, D>,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Gather<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let mut power = P::load(self.power);
+        self.table.pull::<P, L, D>(self.pull, self.law, self.view, self.tile, &mut power);
+        power.store(self.power);
+    }
 }
 
 /// A stretch of pairs (a + k, b + k); `first` is the number of its first pair.
@@ -151,11 +213,10 @@ impl PairTable {
     }
 
     /// Adds the forces of all pairs on the nodes of a tile.
-    #[inline(always)]
-    pub fn add_force<P: Pack, L: PairLaw<D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) {
+    pub fn add_force<L: PairLaw<D>, const D: usize>(&self, simd: Simd, law: L, view: &View<D>, tile: &mut Tile<D>) {
         let stride = self.layout.stride();
         let (start, end) = (tile.range.start, tile.range.end);
-        let mut power = P::zero();
+        let mut power = [0.0; WIDTH];
         for run in &self.runs {
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
@@ -166,36 +227,33 @@ impl PairTable {
                 continue;
             }
             if run.b == run.a + 1 && length > WIDTH {
-                let whole = a <= start && end <= a + length + stride;
-                let weight = if whole && !L::LINEAR { tile.weight.take() } else { None };
-                tile.settle::<P>();
-                let chain = Chain { law, view, a, first, length };
-                match self.layout {
-                    _ if L::LINEAR => chain.add_linear::<P>(stride, tile),
-                    Layout::Single => chain.add::<P, false>(weight, tile, &mut power),
-                    Layout::Batch => chain.add::<P, true>(weight, tile, &mut power),
-                }
+                Chain { law, view, a, first, length, layout: self.layout }.add(simd, tile, &mut power);
                 continue;
             }
-            tile.settle::<P>();
+            tile.settle(simd);
             if length <= WIDTH {
-                self.short::<P, L, D>(law, view, [a, b, first, length], own, other, tile, &mut power);
+                let place = [a, b, first, length];
+                simd.run(Short { table: self, law, view, place, own, other, tile, power: &mut power });
                 continue;
             }
-            if other.start <= own.end && own.start <= other.end {
-                let all = own.start.min(other.start)..own.end.max(other.end);
-                self.run::<P, L, D>(law, view, [a, b, first], all, own, other, tile, &mut power);
+            let place = [a, b, first];
+            let parts = if other.start <= own.end && own.start <= other.end {
+                [(own.start.min(other.start)..own.end.max(other.end), own, other), (0..0, 0..0, 0..0)]
             } else {
-                self.run::<P, L, D>(law, view, [a, b, first], own.clone(), own, 0..0, tile, &mut power);
-                self.run::<P, L, D>(law, view, [a, b, first], other.clone(), 0..0, other, tile, &mut power);
+                [(own.clone(), own, 0..0), (other.clone(), 0..0, other)]
+            };
+            for (all, own, other) in parts {
+                simd.run(Long { table: self, law, view, place, all, own, other, tile, power: &mut power });
             }
         }
-        tile.settle::<P>();
+        tile.settle(simd);
         if let Some(pull) = &self.pull {
-            self.pull::<P, L, D>(pull, law, view, tile, &mut power);
+            simd.run(Gather { table: self, pull, law, view, tile, power: &mut power });
         }
         if L::DAMPED {
-            (P::from_array(*tile.power) + power).store(tile.power);
+            for l in 0..WIDTH {
+                tile.power[l] += power[l];
+            }
         }
     }
 
@@ -405,29 +463,12 @@ impl PairTable {
             let packed = length.next_multiple_of(WIDTH);
             let base = a.min(b);
             let (to_a, to_b) = (a - base, b - base);
-            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b).max(WIDTH));
-            let follows = P::WHOLE && b == a + stride;
-            let mut here = lanes!(P, i => x.load::<P>(i, to_a));
+            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b));
             let [p0, p1, p2] = term.parameters();
             let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
             for k in (0..packed).step_by(WIDTH) {
-                let mut values = P::zero();
-                if follows {
-                    let next = lanes!(P, i => x.load::<P>(i, k + WIDTH));
-                    let to = lanes!(P, i => if stride == 1 { here[i].ahead_of(next[i]) } else { next[i] });
-                    values = of_all_parts(term, [p0.load(k), p1.load(k), p2.load(k)], here, to);
-                    here = next;
-                    sum.add(k, length, values);
-                    continue;
-                }
-                for part in 0..P::PARTS {
-                    let from = lanes!(P::Part, i => x.load_part::<P>(i, k + to_a, part));
-                    let to = lanes!(P::Part, i => x.load_part::<P>(i, k + to_b, part));
-                    let parameters =
-                        [p0.load_part::<P>(k, part), p1.load_part::<P>(k, part), p2.load_part::<P>(k, part)];
-                    values.set_part(part, term.of(part, parameters, from, to));
-                }
-                sum.add(k, length, values);
+                let (from, to) = (lanes!(P, i => x.load::<P>(i, k + to_a)), lanes!(P, i => x.load::<P>(i, k + to_b)));
+                sum.add(k, length, term.of([p0.load(k), p1.load(k), p2.load(k)], from, to));
             }
         }
         if let Some(pull) = &self.pull {
@@ -437,33 +478,24 @@ impl PairTable {
                         let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
                         let xa = lanes!(P, i => P::gather(view.x[i], a));
                         let xb = lanes!(P, i => P::gather(view.x[i], b));
-                        let parameters = load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH]));
-                        sum.add(k, pull.loose.len(), of_all_parts(term, parameters, xa, xb));
+                        sum.add(
+                            k,
+                            pull.loose.len(),
+                            term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb),
+                        );
                     }
                 }
                 Layout::Batch => {
                     for (k, &pair) in pull.loose.iter().enumerate() {
                         let (a, b) = (pull.ends[0][k] as usize * WIDTH, pull.ends[1][k] as usize * WIDTH);
                         let at = load_parameters(&term.parameters(), At::Run(pair as usize * WIDTH));
-                        sum.add(k * WIDTH, usize::MAX, of_all_parts(term, at, load(&view.x, a), load(&view.x, b)));
+                        sum.add(k * WIDTH, usize::MAX, term.of(at, load(&view.x, a), load(&view.x, b)));
                     }
                 }
             }
         }
         sum.total()
     }
-}
-
-/// A function of eight pairs.
-#[inline(always)]
-fn of_all_parts<P: Pack, T: PairTerm<P, D>, const D: usize>(term: T, p: [P; 3], a: [P; D], b: [P; D]) -> P {
-    let mut values = P::zero();
-    for part in 0..P::PARTS {
-        let parameters = [p[0].part(part), p[1].part(part), p[2].part(part)];
-        let (from, to) = (lanes!(P::Part, i => a[i].part(part)), lanes!(P::Part, i => b[i].part(part)));
-        values.set_part(part, term.of(part, parameters, from, to));
-    }
-    values
 }
 
 #[inline(always)]

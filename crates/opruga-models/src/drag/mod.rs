@@ -67,7 +67,7 @@ impl<const D: usize> Work for Force<'_, '_, '_, D> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         let Force { drag, view, tile } = self;
-        tile.settle::<P>();
+        tile.settle_by::<P>();
         let start = tile.range.start;
         let end = view.nodes * view.layout.stride();
         let mut power = P::from_array(*tile.power);

@@ -37,6 +37,7 @@ pub(super) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {
 
 impl<const DAMPED: bool, const D: usize> PairLaw<D> for SpringLaw<'_, DAMPED> {
     const DAMPED: bool = DAMPED;
+    const UNIFORM: bool = false;
     const SECOND: f64 = -1.0;
 
     #[inline(always)]
@@ -68,16 +69,10 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for SpringLaw<'_, false> {
         [self.rest_length, self.stiffness, self.damping]
     }
     #[inline(always)]
-    fn of(
-        &self,
-        _part: usize,
-        [rest_length, stiffness, _]: [P::Part; 3],
-        a: [P::Part; D],
-        b: [P::Part; D],
-    ) -> P::Part {
-        let d = lanes!(P::Part, i => a[i] - b[i]);
+    fn of(&self, [rest_length, stiffness, _]: [P; 3], a: [P; D], b: [P; D]) -> P {
+        let d = lanes!(P, i => a[i] - b[i]);
         let (length, _) = length(&d);
         let stretch = length - rest_length;
-        P::Part::splat(0.5) * stiffness * stretch * stretch
+        P::splat(0.5) * stiffness * stretch * stretch
     }
 }

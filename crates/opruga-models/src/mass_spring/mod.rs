@@ -123,7 +123,11 @@ impl<const D: usize> Potential<D> for Springs {
         true
     }
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
-        simd.run(Force { springs: self, view, tile });
+        if self.damped {
+            self.table.add_force(simd, self.law::<true>(), view, tile);
+        } else {
+            self.table.add_force(simd, self.law::<false>(), view, tile);
+        }
     }
     fn energy(&self, simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         simd.run(Energy { springs: self, view })
@@ -165,23 +169,6 @@ impl<const D: usize> Potential<D> for Springs {
             + self.rest_length.heap_bytes()
             + self.stiffness.heap_bytes()
             + self.damping.heap_bytes()
-    }
-}
-
-struct Force<'a, 'b, 'c, const D: usize> {
-    springs: &'a Springs,
-    view: &'a View<'a, D>,
-    tile: &'b mut Tile<'c, D>,
-}
-impl<const D: usize> Work for Force<'_, '_, '_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        if self.springs.damped {
-            self.springs.table.add_force::<P, _, D>(self.springs.law::<true>(), self.view, self.tile);
-        } else {
-            self.springs.table.add_force::<P, _, D>(self.springs.law::<false>(), self.view, self.tile);
-        }
     }
 }
 

@@ -4,7 +4,7 @@ use opruga_core::pair::{PairLaw, PairTable, PairTerm};
 use opruga_core::potential::Sink;
 use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
 use opruga_core::tile::Tile;
-use opruga_math::{Lane, Pack, WIDTH, lanes};
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work, lanes};
 use opruga_mesh::Adjacency;
 
 /// A closed boundary.
@@ -35,7 +35,7 @@ struct EdgePush<'a> {
 
 impl<const D: usize> PairLaw<D> for EdgePush<'_> {
     const DAMPED: bool = false;
-    const LINEAR: bool = true;
+    const UNIFORM: bool = true;
     const SECOND: f64 = 1.0;
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
@@ -50,21 +50,45 @@ impl<const D: usize> PairLaw<D> for EdgePush<'_> {
     }
 }
 
-/// Twice the area between an edge and the line x = origin, positive where the edge goes up: twice ∮ x dy.
+/// Twice the area of the triangle between an edge and the origin.
 #[derive(Clone, Copy)]
-struct TwiceArea<'a, P> {
-    twice_origin: P,
+struct TwiceArea<'a, P, const D: usize> {
+    origin: [P; D],
     none: &'a Parameter,
 }
 
-impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P> {
+impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
         [self.none; 3]
     }
     #[inline(always)]
-    fn of(&self, part: usize, _none: [P::Part; 3], a: [P::Part; D], b: [P::Part; D]) -> P::Part {
-        ((a[0] + b[0]) - self.twice_origin.part(part)) * (b[1] - a[1])
+    fn of(&self, _none: [P; 3], a: [P; D], b: [P; D]) -> P {
+        let (xa, ya) = (a[0] - self.origin[0], a[1] - self.origin[1]);
+        let (xb, yb) = (b[0] - self.origin[0], b[1] - self.origin[1]);
+        xa * yb - xb * ya
+    }
+}
+
+/// Gauge pressure times the area vectors of the nodes of a tile.
+struct Push<'a, 't, const D: usize> {
+    gauge: &'a [f64],
+    area: &'a [f64],
+    tile: &'a mut Tile<'t, D>,
+}
+impl<const D: usize> Work for Push<'_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let (gauge, tile) = (P::load(self.gauge), self.tile);
+        let places = self.area.len() / D;
+        for place in tile.range.clone().step_by(WIDTH) {
+            let k = place - tile.range.start;
+            for d in 0..D {
+                let force = P::load(&tile.force[d][k..]) + gauge * P::load(&self.area[d * places + place..]);
+                force.store(&mut tile.force[d][k..]);
+            }
+        }
     }
 }
 
@@ -84,7 +108,7 @@ impl Boundary {
         let origin = origin::<P, D>(view);
         match self {
             Boundary::Plane(edges) => {
-                let twice = edges.sum::<P, _, D>(view, TwiceArea { twice_origin: origin[0] + origin[0], none: &Parameter::NONE });
+                let twice = edges.sum::<P, _, D>(view, TwiceArea { origin, none: &Parameter::NONE });
                 twice * P::splat(0.5)
             }
             Boundary::Space(rings) => rings.volume::<P, D>(view, &origin, area),
@@ -92,30 +116,24 @@ impl Boundary {
     }
 
     /// Adds gauge pressure times ∂V/∂x on the nodes of a tile.
-    #[inline(always)]
-    pub(super) fn add_force<P: Pack, const D: usize>(
+    pub(super) fn add_force<const D: usize>(
         &self,
+        simd: Simd,
         view: &View<D>,
-        gauge: P,
+        gauge: &[f64],
         area: &[f64],
         tile: &mut Tile<D>,
     ) {
         match self {
             Boundary::Plane(edges) => {
-                let half = gauge * P::splat(0.5);
-                let (half, minus_half) = (Parameter::by_body(half.to_array()), Parameter::by_body((-half).to_array()));
-                edges.add_force::<P, _, D>(EdgePush { half: &half, minus_half: &minus_half }, view, tile)
-            }
-            Boundary::Space(_) => {
-                let places = area.len() / D;
-                for place in tile.range.clone().step_by(WIDTH) {
-                    let k = place - tile.range.start;
-                    for d in 0..D {
-                        let force = P::load(&tile.force[d][k..]) + gauge * P::load(&area[d * places + place..]);
-                        force.store(&mut tile.force[d][k..]);
-                    }
+                let mut halves = [0.0; WIDTH];
+                for l in 0..WIDTH {
+                    halves[l] = 0.5 * gauge[l];
                 }
+                let (half, minus_half) = (Parameter::by_body(halves), Parameter::by_body(halves.map(|p| -p)));
+                edges.add_force(simd, EdgePush { half: &half, minus_half: &minus_half }, view, tile);
             }
+            Boundary::Space(_) => simd.run(Push { gauge, area, tile }),
         }
     }
 

@@ -187,7 +187,10 @@ impl<const D: usize> Potential<D> for Pressure {
         Ok(())
     }
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        simd.run(Force { model: self, view, scratch, tile });
+        for chamber in &self.chambers {
+            let known = chamber.known(scratch);
+            chamber.boundary.add_force(simd, view, known.gauge, known.area, tile);
+        }
     }
     fn remember(&self, simd: Simd, view: &View<D>, h: f64, scratch: &[f64], memory: &mut [f64]) -> [f64; WIDTH] {
         let mut given = [0.0; WIDTH];
@@ -288,23 +291,6 @@ impl<const D: usize> Work for Volumes<'_, D> {
             let scratch = &mut self.scratch[chamber.scratch..chamber.scratch + NUMBERS + chamber.area_len];
             let (numbers, area) = scratch.split_at_mut(NUMBERS);
             chamber.boundary.volume::<P, D>(self.view, area).store(numbers);
-        }
-    }
-}
-
-struct Force<'a, 'b, 'c, const D: usize> {
-    model: &'a Pressure,
-    view: &'a View<'a, D>,
-    scratch: &'a [f64],
-    tile: &'b mut Tile<'c, D>,
-}
-impl<const D: usize> Work for Force<'_, '_, '_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        for chamber in &self.model.chambers {
-            let known = chamber.known(self.scratch);
-            chamber.boundary.add_force::<P, D>(self.view, P::load(known.gauge), known.area, self.tile);
         }
     }
 }
