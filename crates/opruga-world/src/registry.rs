@@ -3,6 +3,7 @@
 use opruga_core::integrator::IntegratorKind;
 use opruga_core::potential::Model;
 use opruga_core::spec::Spec;
+use std::any::Any;
 
 /// Models and integrators by name. A user's crate adds its own.
 pub struct Registry<const D: usize> {
@@ -12,8 +13,29 @@ pub struct Registry<const D: usize> {
 
 impl<const D: usize> Default for Registry<D> {
     fn default() -> Self {
-        Registry { models: opruga_models::all(), integrators: opruga_integrators::all() }
+        if D == 2 { same_dimension(plane()) } else { same_dimension(space()) }
     }
+}
+
+/// Every model and integrator of this library in the plane.
+///
+/// It and [`space`] are functions without parameters of type, so that the kernels are compiled once, here, and not
+/// again in every crate, program and test that builds a world.
+#[inline(never)]
+fn plane() -> Registry<2> {
+    Registry::of_this_library()
+}
+
+/// Every model and integrator of this library in space.
+#[inline(never)]
+fn space() -> Registry<3> {
+    Registry::of_this_library()
+}
+
+/// What is already there under another name of its dimension.
+fn same_dimension<const A: usize, const D: usize>(registry: Registry<A>) -> Registry<D> {
+    let registry: Box<dyn Any> = Box::new(registry);
+    registry.downcast().map_or_else(|_| Registry { models: Vec::new(), integrators: Vec::new() }, |r| *r)
 }
 
 impl<const D: usize> core::fmt::Debug for Registry<D> {
@@ -27,6 +49,9 @@ impl<const D: usize> core::fmt::Debug for Registry<D> {
 }
 
 impl<const D: usize> Registry<D> {
+    fn of_this_library() -> Self {
+        Registry { models: opruga_models::all(), integrators: opruga_integrators::all() }
+    }
     /// Adds a model; it takes precedence over one of the same name.
     pub fn add_model(&mut self, model: Box<dyn Model<D>>) {
         self.models.insert(0, model);
