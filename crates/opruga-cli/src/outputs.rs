@@ -22,6 +22,8 @@ const MOST_BODY_COLUMNS: usize = 64;
 /// What is kept of every frame.
 pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
+    /// Bodies with columns of their own, and how many.
+    bodies: Vec<(usize, usize)>,
     scenery: Option<Scenery>,
     moments: Vec<Moment>,
     /// Frames of the scene between two pictures.
@@ -83,9 +85,13 @@ impl Recorder {
             .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
         columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
+        // Bodies that commands add later have none: the head of the table is written for the whole run.
+        let mut bodies = Vec::new();
         for body in 0..world.blueprint().bodies.len().min(MOST_BODY_COLUMNS) {
             let name = world.blueprint().bodies[body].name.clone();
-            columns.extend(world.readings(body).iter().map(|(what, _)| format!("{name}.{what}")));
+            let readings = world.readings(body);
+            columns.extend(readings.iter().map(|(what, _)| format!("{name}.{what}")));
+            bodies.push((body, readings.len()));
         }
         for probe in 0..world.blueprint().probes.len() {
             columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
@@ -104,6 +110,7 @@ impl Recorder {
         }
         Recorder {
             table: NumberTable::new(columns),
+            bodies,
             scenery: (!call.no_pictures).then(|| Scenery::new(world)),
             moments: Vec::new(),
             every,
@@ -132,15 +139,15 @@ impl Recorder {
         ];
         row.extend(m.linear.0);
         row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
-        let there: Vec<bool> = (0..world.blueprint().bodies.len()).map(|b| world.handle(b).is_some()).collect();
-        for body in 0..there.len().min(MOST_BODY_COLUMNS) {
-            let readings = world.readings(body);
-            row.extend(readings.iter().map(|(_, x)| if there[body] { *x } else { f64::NAN }));
+        for &(body, columns) in &self.bodies {
+            let mut readings: Vec<f64> = world.readings(body).iter().map(|(_, x)| *x).collect();
+            // A body that is gone leaves its columns empty.
+            readings.resize(columns, f64::NAN);
+            row.extend(readings);
         }
         for probe in 0..world.blueprint().probes.len() {
             row.extend(world.probe(probe).into_iter().map(|(_, x)| x));
         }
-        row.resize(self.table.columns().len(), f64::NAN);
         self.table.push(&row);
         if let Some(scenery) = &self.scenery
             && world.frames().is_multiple_of(self.every)
