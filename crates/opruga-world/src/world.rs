@@ -10,7 +10,7 @@ use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
-use opruga_core::error::StepError;
+use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::{Stability, estimate};
 use opruga_core::state::View;
@@ -251,8 +251,11 @@ impl<const D: usize> World<D> {
             }
             seen.push(key);
             let name = blueprint.name.clone();
-            let stability = estimate(&self.islands[number].system, &*self.integrator)
-                .map_err(|e| WorldError::Step { body: name.clone(), message: e.to_string() })?;
+            let stability =
+                estimate(&self.islands[number].system, &*self.integrator).map_err(|e| WorldError::Build {
+                    place: format!("body `{name}`"),
+                    source: BuildError::new("stability", "step.not_finite", step_message(&e)),
+                })?;
             match stability.largest_stable_step {
                 Some(limit) if h > limit => {
                     let error = WorldError::UnstableStep {
@@ -582,6 +585,14 @@ impl<const D: usize> World<D> {
     /// Bytes on the heap for the state and the models of all bodies.
     pub fn heap_bytes(&self) -> usize {
         self.islands.iter().map(Island::heap_bytes).sum()
+    }
+}
+
+/// What an error of the estimate says, without the name of the estimate.
+fn step_message(error: &StepError) -> String {
+    match error {
+        StepError::Model { message, .. } => message.clone(),
+        other => other.to_string(),
     }
 }
 
