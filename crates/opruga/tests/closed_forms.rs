@@ -154,17 +154,16 @@ fn free_fall_follows_the_recurrence_of_every_integrator() {
 /// after 2.5 s it has moved by 0.274198 m at 0.219358 m/s.
 #[test]
 fn a_chain_slides_down_a_slope_by_the_closed_form() {
-    for (mu, s, v) in [(0.49, 0.274_197_835_740_912_7, 0.219_358_268_592_730_17)] {
-        let mut world = built(plane(&slope(mu, CHAIN)));
-        let start = world.position(0, 3);
-        frames(&mut world, 150);
-        let (end, speed) = (world.position(0, 3), world.velocity(0, 3));
-        let way = ((end[0] - start[0]).powi(2) + (end[1] - start[1]).powi(2)).sqrt();
-        let speed = (speed[0] * speed[0] + speed[1] * speed[1]).sqrt();
-        println!("slope: way {:.1e}, speed {:.1e} off", way / s - 1.0, speed / v - 1.0);
-        assert!((way / s - 1.0).abs() < 3e-4 && (speed / v - 1.0).abs() < 1e-6, "{way} {speed}");
-        assert!((end[1] + 0.5 * end[0]).abs() < 1e-12, "it stays on the slope");
-    }
+    let mut world = built(plane(&slope(0.49, CHAIN)));
+    let start = world.position(0, 3);
+    frames(&mut world, 150);
+    let (end, speed) = (world.position(0, 3), world.velocity(0, 3));
+    let way = ((end[0] - start[0]).powi(2) + (end[1] - start[1]).powi(2)).sqrt();
+    let speed = (speed[0] * speed[0] + speed[1] * speed[1]).sqrt();
+    println!("way {way} m, speed {speed} m/s");
+    assert!((way / 0.274_197_835_740_912_7 - 1.0).abs() < 3e-4, "{way}");
+    assert!((speed / 0.219_358_268_592_730_17 - 1.0).abs() < 1e-6, "{speed}");
+    assert!((end[1] + 0.5 * end[0]).abs() < 1e-12, "it stays on the slope");
 }
 
 /// With μ = tan θ = 0.50 the chain stays: it creeps by less than 1e-4 m in 10 s; so does a soft block with μ = 0.6 once

@@ -8,6 +8,11 @@ use opruga::mesh::Mesh;
 use opruga::{Options, Simd, World, collide};
 use std::sync::Arc;
 
+/// A map of the plane.
+type Map<'a> = &'a dyn Fn([f64; 2]) -> [f64; 2];
+/// What is kept of a scene.
+type Keep<'a> = &'a dyn Fn(&mut Blueprint<2>);
+
 /// Two bodies with everything that acts in the plane, on a floor, beside a round obstacle, one of them pulled.
 fn scene() -> Blueprint<2> {
     plane(&format!(
@@ -25,7 +30,7 @@ fn scene() -> Blueprint<2> {
 }
 
 /// The scene under a linear map that keeps lengths; `mirror` says that it turns left into right.
-fn mapped(mut scene: Blueprint<2>, map: &dyn Fn([f64; 2]) -> [f64; 2], mirror: bool) -> Blueprint<2> {
+fn mapped(mut scene: Blueprint<2>, map: Map, mirror: bool) -> Blueprint<2> {
     let pair = |v: &[f64]| map([v[0], v[1]]);
     scene.surroundings.gravity = map(scene.surroundings.gravity);
     for body in &mut scene.bodies {
@@ -77,7 +82,7 @@ fn ran<const D: usize>(scene: Blueprint<D>, count: u64) -> World<D> {
 }
 
 /// The largest difference between a state, mapped, and another.
-fn difference(a: &[[f64; 2]], b: &[[f64; 2]], map: &dyn Fn([f64; 2]) -> [f64; 2]) -> f64 {
+fn difference(a: &[[f64; 2]], b: &[[f64; 2]], map: Map) -> f64 {
     largest(a.iter().zip(b).flat_map(|(a, b)| {
         let a = map(*a);
         [a[0] - b[0], a[1] - b[1]]
@@ -86,10 +91,10 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]], map: &dyn Fn([f64; 2]) -> [f64; 2]
 
 #[test]
 fn a_scene_turned_by_right_angles_has_the_same_bits() {
-    let turns: [(&str, &dyn Fn([f64; 2]) -> [f64; 2]); 3] =
+    let turns: [(&str, Map); 3] =
         [("90°", &|[x, y]| [-y, x]), ("180°", &|[x, y]| [-x, -y]), ("270°", &|[x, y]| [y, -x])];
     // A round obstacle pushes along a direction that is not turned to the bit.
-    let parts: [(&str, &dyn Fn(&mut Blueprint<2>), f64); 3] = [
+    let parts: [(&str, Keep, f64); 3] = [
         ("models and a pull", &|s| s.colliders.clear(), 0.0),
         ("a floor", &|s| s.colliders.truncate(1), 0.0),
         ("a floor and a round obstacle", &|_| {}, 1e-10),

@@ -293,3 +293,23 @@ fn numbers_of_threads() {
     };
     assert_eq!(hash(1), hash(256));
 }
+
+/// Bodies that a command adds are drawn from then on, in a resumed world too.
+#[test]
+fn bodies_that_come_later_are_drawn() {
+    let late = "[[command]]\ndo = \"add\"\nat = 0.05\nbody = { name = \"late\", mass = 1, position = [3, 1], \
+                shape = { kind = \"ring\", radius = 0.5, vertices = 7 } }\n";
+    let scene = || plane(&ring(32, BALL, late));
+    let mut world = built(scene());
+    let scenery = opruga::pictures::Scenery::new(&world);
+    let drawn = |scenery: &opruga::pictures::Scenery, world: &World<2>| {
+        scenery.picture(&scenery.capture(world, false)).bodies.len()
+    };
+    assert_eq!(drawn(&scenery, &world), 1);
+    frames(&mut world, 6);
+    assert_eq!(drawn(&scenery, &world), 2);
+    let bytes = world.snapshot();
+    let mut other = built(scene());
+    other.restore(&bytes).expect("its own snapshot");
+    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &other), 2);
+}
