@@ -267,7 +267,14 @@ impl Outputs<'_> {
             return Ok(());
         }
         let pictures: Vec<draw::Picture> = draw::spread(moments, 60).into_iter().map(|m| scenery.picture(m)).collect();
-        let view = draw::View::fit(&pictures).map_err(draw_failed)?;
+        let view = match draw::View::fit(&pictures) {
+            Ok(view) => view,
+            Err(nothing @ draw::DrawError::Empty(_)) => {
+                eprintln!("note: no strip and no video: {nothing}");
+                return Ok(());
+            }
+            Err(error) => return Err(draw_failed(error)),
+        };
         let panels = draw::spread(&pictures, 10);
         let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(draw_failed)?;
         let png = strip.to_png().map_err(draw_failed)?;

@@ -428,3 +428,64 @@ fn a_resumed_run_knows_what_commands_have_changed() {
         assert_eq!(resumed, whole, "interrupted at {at} s");
     }
 }
+
+/// Row 17: a scene without bodies, and one that loses them all, run with pictures; time passes, nothing has energy.
+#[test]
+fn scenes_without_bodies_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for dimension in [2, 3] {
+        let head = format!(
+            "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 0.2\n[integrator]\nkind = \"verlet\"\n"
+        );
+        let shape = if dimension == 2 {
+            "{ kind = \"ring\", radius = 1, vertices = 8 }"
+        } else {
+            "{ kind = \"icosphere\", radius = 1, subdivisions = 1 }"
+        };
+        let lost = format!(
+            "{head}[[body]]\nname = \"b\"\nmass = 1\nshape = {shape}\nmodels = [{{ kind = \"pressure\", nRT = 1.0 }}]\n\
+             [[command]]\ndo = \"remove\"\nat = 0.1\nbody = \"b\"\n"
+        );
+        for (name, text) in [("none", &head), ("lost", &lost)] {
+            let (file, out) = (format!("{name}{dimension}.toml"), format!("{name}{dimension}"));
+            std::fs::write(folder.path().join(&file), text).expect("a file");
+            let output = opruga(folder.path(), &["run", &file, "--out", &out, "--json"]);
+            assert_eq!(code(&output), 0, "{file}: {}", said(&output));
+            let summary: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            assert_eq!((&summary["bodies"], &summary["energy"]["kinetic"]), (&0.into(), &0.0.into()));
+            assert!((summary["time"].as_f64().expect("a time") - 0.2).abs() < 1e-9);
+            let resume = format!("{out}/checkpoint");
+            let resumed = opruga(folder.path(), &["run", "--resume", &resume, "--seconds", "0.3", "--out", &out]);
+            assert_eq!(code(&resumed), 0, "{file}: {}", said(&resumed));
+        }
+    }
+}
+
+/// Rows 84 and 112: names that are no UTF-8, and streams that are closed from the beginning.
+#[cfg(target_os = "linux")]
+#[test]
+fn odd_names_and_closed_streams() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().expect("a folder");
+    let odd = std::ffi::OsStr::from_bytes(b"caf\xe9");
+    let output = program(folder.path(), &SHORT).arg(odd).output().expect("the program runs");
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(folder.path().join(odd).join("summary.json").exists());
+    let output = program(folder.path(), &["run"]).arg(odd).output().expect("the program runs");
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(!said(&output).contains("panicked"));
+    for (streams, expected) in [(">&-", 0), ("2>&-", 0), (">&- 2>&- <&-", 0)] {
+        let call = format!("exec {} list {streams}", env!("CARGO_BIN_EXE_opruga"));
+        let output = Command::new("bash").args(["-c", &call]).current_dir(folder.path()).output().expect("a shell");
+        assert!([expected, 4].contains(&code(&output)), "{streams}: {}", said(&output));
+        assert!(!said(&output).contains("panicked"), "{streams}: {}", said(&output));
+    }
+    for name in ["-", "--", "-x", "a\nb", "\u{202e}evil", "con.", ".."] {
+        let output = opruga(folder.path(), &["check", "--json", "--", name]);
+        assert!([2, 4].contains(&code(&output)), "{name:?}: {}", said(&output));
+        let error: Value = serde_json::from_slice(&output.stderr).unwrap_or_else(|e| panic!("{name:?}: {e}"));
+        assert!(error["code"].as_str().is_some_and(|c| c.starts_with("read.")), "{error}");
+        let output = opruga(folder.path(), &["check", "--", name]);
+        assert!(!said(&output).contains('\u{202e}') && !said(&output).contains("a\nb"), "{:?}", said(&output));
+    }
+}
