@@ -119,7 +119,7 @@ pub(crate) struct Run {
     /// No strip, video and plots
     #[arg(long)]
     pub(crate) no_pictures: bool,
-    /// Write the animation as GIF, which is what this version writes in any case
+    /// Write the animation as video.gif instead of video.mp4
     #[arg(long)]
     pub(crate) gif: bool,
     /// Go on from a checkpoint

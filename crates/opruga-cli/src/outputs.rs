@@ -24,6 +24,8 @@ pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
     /// Bodies with columns of their own, and how many.
     bodies: Vec<(usize, usize)>,
+    /// The first column of the table that belongs to a probe.
+    first_probe: usize,
     scenery: Option<Scenery>,
     moments: Vec<Moment>,
     /// Frames of the scene between two pictures.
@@ -31,6 +33,7 @@ pub(crate) struct Recorder {
     /// The length of a frame of the scene [s].
     frame: f64,
     arrows: bool,
+    gif: bool,
 }
 
 /// A checkpoint's payload: the snapshot and how the run was called.
@@ -93,6 +96,7 @@ impl Recorder {
             columns.extend(readings.iter().map(|(what, _)| format!("{name}.{what}")));
             bodies.push((body, readings.len()));
         }
+        let first_probe = columns.len();
         for probe in 0..world.blueprint().probes.len() {
             columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
         }
@@ -111,11 +115,13 @@ impl Recorder {
         Recorder {
             table: NumberTable::new(columns),
             bodies,
+            first_probe,
             scenery: (!call.no_pictures).then(|| Scenery::new(world)),
             moments: Vec::new(),
             every,
             frame,
             arrows: call.arrows,
+            gif: call.gif,
         }
     }
 
@@ -259,7 +265,8 @@ impl Outputs<'_> {
     /// Strip, video and plots.
     fn pictures(&self, scenery: &Scenery, recorder: &Recorder, files: &mut Vec<String>) -> Result<(), Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let plots = crate::plots::of_run(&recorder.table, &self.source.name).map_err(draw_failed)?;
+        let plots =
+            crate::plots::of_run(&recorder.table, recorder.first_probe, &self.source.name).map_err(draw_failed)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;
         files.push("plots.svg".into());
         let moments = &recorder.moments;
@@ -280,7 +287,7 @@ impl Outputs<'_> {
         let png = strip.to_png().map_err(draw_failed)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
-        if moments.len() > 1 && !self.stop.load(Ordering::Relaxed) {
+        if !self.stop.load(Ordering::Relaxed) {
             files.push(self.video(scenery, recorder, &view)?);
         }
         Ok(())
@@ -289,22 +296,35 @@ impl Outputs<'_> {
     /// The animation of the run, drawn frame by frame.
     fn video(&self, scenery: &Scenery, recorder: &Recorder, view: &draw::View) -> Result<String, Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let style = draw::Style { width: 640, height: 480, ..draw::Style::default() };
+        let [width, height] = if recorder.gif { [640, 480] } else { [800, 600] };
+        let style = draw::Style { width, height, ..draw::Style::default() };
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
-        let samples: Vec<draw::Image> =
-            draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
         let rate = 1.0 / (recorder.every as f64 * recorder.frame);
-        let mut bytes = Vec::new();
-        let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
-        for moment in &recorder.moments {
-            if self.stop.load(Ordering::Relaxed) {
-                break;
+        let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
+            for (number, moment) in recorder.moments.iter().enumerate() {
+                // An interrupted film is cut short, but a film has at least one frame.
+                if number > 0 && self.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                take(&draw_moment(moment)?).map_err(draw_failed)?;
             }
-            writer.push(&draw_moment(moment)?).map_err(draw_failed)?;
-        }
-        drop(writer);
-        self.folder.write("video.gif", false, |out| out.write_all(&bytes))?;
-        Ok("video.gif".into())
+            Ok(())
+        };
+        let mut bytes = Vec::new();
+        let name = if recorder.gif {
+            let samples: Vec<draw::Image> =
+                draw::spread(&recorder.moments, 6).into_iter().map(draw_moment).collect::<Result<_, _>>()?;
+            let mut writer = draw::GifWriter::new(&mut bytes, rate, &samples).map_err(draw_failed)?;
+            every(&mut |image| writer.push(image))?;
+            "video.gif"
+        } else {
+            let mut writer = draw::Mp4Writer::new(&mut bytes, [width, height], rate).map_err(draw_failed)?;
+            every(&mut |image| writer.push(image))?;
+            writer.finish().map_err(draw_failed)?;
+            "video.mp4"
+        };
+        self.folder.write(name, false, |out| out.write_all(&bytes))?;
+        Ok(name.into())
     }
 
     /// A few lines for people.

@@ -4,8 +4,8 @@ use crate::bench::Row;
 use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Panel};
 use opruga::io::tables::NumberTable;
 
-/// Energy, losses, momentum, volumes, pressures and probes over time.
-pub(crate) fn of_run(table: &NumberTable, name: &str) -> Result<String, DrawError> {
+/// Energy, losses, momentum, volumes, pressures and, from the column `first_probe` on, probes over time.
+pub(crate) fn of_run(table: &NumberTable, first_probe: usize, name: &str) -> Result<String, DrawError> {
     let columns = table.columns();
     let line = |place: usize, name: &str| Line {
         name: name.replace('_', " "),
@@ -26,12 +26,12 @@ pub(crate) fn of_run(table: &NumberTable, name: &str) -> Result<String, DrawErro
         lines
     };
     let ending = |ending: &str| -> Vec<Line> {
+        // Probes have a panel of their own.
+        let columns = &columns[..first_probe];
         let fits = |c: &&(usize, &String)| c.1.ends_with(ending);
         let all: Vec<(usize, &String)> = columns.iter().enumerate().collect();
         all.iter().filter(fits).take(8).map(|(p, c)| line(*p, c.strip_suffix(ending).unwrap_or(c))).collect()
     };
-    let first_probe =
-        columns.iter().rposition(|c| c.ends_with(".nRT") || c.starts_with("angular_momentum")).map_or(0, |p| p + 1);
     let probes: Vec<Line> = (first_probe..columns.len()).take(8).map(|p| line(p, &columns[p])).collect();
     let panel =
         |label: &str, unit: &str, lines: Vec<Line>| Panel { y: Axis::linear(label, unit), lines, ..Panel::default() };

@@ -79,6 +79,27 @@ fn a_run_writes_every_file_and_its_summary_keeps_the_contract() {
 }
 
 #[test]
+fn a_run_writes_a_film() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |arguments: &[&str], out: &str| {
+        let output = opruga(folder.path(), &[arguments, &["--out", out, "--json"]].concat());
+        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+        let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
+        let files = summary["files"].as_array().expect("a list").clone();
+        let films: Vec<&str> =
+            files.iter().filter_map(Value::as_str).filter(|file| file.starts_with("video")).collect();
+        assert_eq!(films.len(), 1, "{films:?}");
+        (films[0].to_string(), std::fs::read(folder.path().join(out).join(films[0])).expect("a film"))
+    };
+    let (name, film) = run(&["run", "pressures", "--seconds", "0.2"], "a");
+    assert_eq!((name.as_str(), &film[4..8]), ("video.mp4", b"ftyp".as_slice()));
+    assert_eq!(run(&["run", "pressures", "--seconds", "0.2", "--threads", "2"], "b").1, film, "the same bytes");
+    assert_eq!(run(&["run", "pressures", "--seconds", "0"], "c").0, "video.mp4", "of one frame");
+    let (name, film) = run(&["run", "pressures", "--seconds", "0.2", "--gif"], "d");
+    assert_eq!((name.as_str(), &film[..4]), ("video.gif", b"GIF8".as_slice()));
+}
+
+#[test]
 fn zero_seconds_write_the_state_at_the_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = opruga(folder.path(), &["run", "pressures", "--seconds", "0", "--out", "o", "--no-pictures"]);

@@ -30,7 +30,7 @@ use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, Weight};
 use core::fmt;
 use core::ops::Range;
-use opruga_math::{Lane, Pack, Simd, WIDTH, Work, sum_in_fixed_order};
+use opruga_math::{Column, Lane, Pack, Simd, WIDTH, Work, sum_in_fixed_order};
 use opruga_mesh::Mesh;
 
 /// In which states a model is checked, and what it does not claim.
@@ -370,7 +370,7 @@ impl<'a, const D: usize> Case<'a, D> {
         self.prepare(simd)?;
         let mut out = Columns::zeros(self.places());
         let mut power = [0.0; WIDTH];
-        let mut slots = Vec::new();
+        let mut slots = Column::default();
         for range in tiles {
             let mut buffers: [Vec<f64>; D] = core::array::from_fn(|_| vec![0.0; range.len() + WIDTH]);
             let mut heaviness = weight.map(|(mass, gravity, _)| Weight { mass, gravity });
@@ -730,7 +730,7 @@ impl<const D: usize> Suite<'_, D> {
                 let row = core::array::from_fn(|d| direction[node * D + d]);
                 along.set(case.layout.place(node, 0), row);
             }
-            let mut columns = out.0.each_mut().map(Vec::as_mut_slice);
+            let mut columns = out.0.each_mut().map(|c| &mut **c);
             case.potential.add_hessian_product(&case.view(), &case.scratch, &along.slices(), &mut columns);
             let product: Vec<f64> = by_node(&out, case.layout, case.nodes, 0).into_iter().flatten().collect();
             add("product", difference(&product, &assembled, scale), 1e-12);
@@ -819,7 +819,7 @@ impl<const D: usize> Suite<'_, D> {
                 let arm: [f64; D] = core::array::from_fn(|d| body.x[node][d] - center[d]);
                 along.set(node, times(&omega, &arm));
             }
-            let mut columns = out.0.each_mut().map(Vec::as_mut_slice);
+            let mut columns = out.0.each_mut().map(|c| &mut **c);
             potential.add_hessian_product(&case.view(), &case.scratch, &along.slices(), &mut columns);
             let product: Vec<f64> = by_node(&out, case.layout, nodes, 0).into_iter().flatten().collect();
             let expected: Vec<f64> = force.iter().flat_map(|f| times(&omega, &f.map(|c| -c))).collect();

@@ -35,7 +35,7 @@ use crate::integrator::{Integrator, spectral_radius};
 use crate::state::{Columns, Layout, View};
 use crate::system::System;
 use crate::tile::Tile;
-use opruga_math::{Lane, WIDTH, sum_in_fixed_order};
+use opruga_math::{Column, Lane, WIDTH, sum_in_fixed_order};
 
 /// Limits are lowered by this factor, for small changes of the state.
 const SAFETY: f64 = 0.98;
@@ -209,7 +209,7 @@ struct Probe<'a, const D: usize> {
     v: Columns<D>,
     /// What `prepare` leaves behind there.
     scratch: Vec<Vec<f64>>,
-    slots: Vec<f64>,
+    slots: Column,
     force: Columns<D>,
     /// Forces of damped models at rest.
     at_rest: Columns<D>,
@@ -249,7 +249,7 @@ impl<'a, const D: usize> Probe<'a, D> {
             x: system.state.x.clone(),
             v: Columns::zeros(places),
             scratch: system.members.iter().map(|m| vec![0.0; m.potential.scratch_len()]).collect(),
-            slots: Vec::new(),
+            slots: Column::default(),
             force: Columns::zeros(places),
             at_rest: Columns::zeros(places),
             small: DISPLACEMENT * if extent > 0.0 && extent.is_finite() { extent } else { 1.0 },
@@ -278,7 +278,7 @@ impl<'a, const D: usize> Probe<'a, D> {
                 continue;
             }
             member.potential.prepare(system.simd, &view, &member.memory, scratch)?;
-            let force = self.force.0.each_mut().map(Vec::as_mut_slice);
+            let force = self.force.0.each_mut().map(|f| &mut **f);
             let mut tile = Tile { range: 0..places, force, power: &mut power, weight: None, slots: &mut self.slots };
             member.potential.add_force(system.simd, &view, scratch, &mut tile);
         }
@@ -452,7 +452,7 @@ fn start<const D: usize>(weights: &Columns<D>) -> Columns<D> {
         }
     }
     let factor = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
-    out.0.iter_mut().flatten().for_each(|v| *v *= factor);
+    out.0.iter_mut().flat_map(|c| c.iter_mut()).for_each(|v| *v *= factor);
     out
 }
 

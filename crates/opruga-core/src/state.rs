@@ -1,7 +1,6 @@
 //! Where positions and velocities live: one column per coordinate, one body or eight alike bodies side by side.
 
-use opruga_math::{Pack, RepeatStrip, StripMut, WIDTH, lanes};
-use std::borrow::Cow;
+use opruga_math::{Column, Pack, RepeatStrip, StripMut, WIDTH, lanes};
 
 /// How the nodes of a block lie in its columns.
 ///
@@ -44,17 +43,17 @@ impl Layout {
 
 /// One column of numbers per coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Columns<const D: usize>(pub [Vec<f64>; D]);
+pub struct Columns<const D: usize>(pub [Column; D]);
 
 impl<const D: usize> Columns<D> {
     /// Zeros, with room for a whole pack behind the last place.
     pub fn zeros(places: usize) -> Columns<D> {
-        Columns(core::array::from_fn(|_| vec![0.0; places + WIDTH]))
+        Columns(core::array::from_fn(|_| Column::zeros(places + WIDTH)))
     }
     /// The columns as slices.
     #[inline(always)]
     pub fn slices(&self) -> [&[f64]; D] {
-        core::array::from_fn(|d| self.0[d].as_slice())
+        core::array::from_fn(|d| &*self.0[d])
     }
     /// Eight places at once.
     #[inline(always)]
@@ -71,7 +70,7 @@ impl<const D: usize> Columns<D> {
     /// A piece of every column for a loop over packs.
     #[inline(always)]
     pub fn strip_mut(&mut self, start: usize, length: usize) -> StripMut<'_, D> {
-        StripMut::new(self.0.each_mut().map(Vec::as_mut_slice), start, length)
+        StripMut::new(self.0.each_mut().map(|c| &mut **c), start, length)
     }
     /// The vector at one place.
     #[inline(always)]
@@ -95,14 +94,24 @@ pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], place: usize) -> [P;
 
 /// A number per place that is often the same everywhere: then eight values stand for the whole column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    values: Cow<'static, [f64]>,
-    step: usize,
+pub struct Parameter(Numbers);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Numbers {
+    /// The same eight numbers all along.
+    Repeated(Eight),
+    /// One number per place.
+    Each(Column),
 }
+
+/// Eight numbers on a cache line of their own.
+#[derive(Clone, Debug, PartialEq)]
+#[repr(align(64))]
+struct Eight([f64; WIDTH]);
 
 impl Parameter {
     /// Zero everywhere, for laws that read fewer numbers than there is room for.
-    pub const NONE: Parameter = Parameter { values: Cow::Borrowed(&[0.0; WIDTH]), step: 0 };
+    pub const NONE: Parameter = Parameter(Numbers::Repeated(Eight([0.0; WIDTH])));
 
     /// The same number everywhere.
     pub fn uniform(value: f64) -> Parameter {
@@ -110,16 +119,17 @@ impl Parameter {
     }
     /// One number for each of eight bodies side by side.
     pub fn by_body(values: [f64; WIDTH]) -> Parameter {
-        Parameter { values: Cow::Owned(values.to_vec()), step: 0 }
+        Parameter(Numbers::Repeated(Eight(values)))
     }
     /// A number for every place; stored once if they are all the same to the bit.
-    pub fn column(mut values: Vec<f64>) -> Parameter {
+    pub fn column(values: Vec<f64>) -> Parameter {
         let first = values.first().copied().unwrap_or(0.0);
         if values.iter().all(|v| v.to_bits() == first.to_bits()) {
             return Parameter::uniform(first);
         }
-        values.extend([0.0; WIDTH]);
-        Parameter { values: Cow::Owned(values), step: 1 }
+        let mut column = Column::zeros(values.len() + WIDTH);
+        column[..values.len()].copy_from_slice(&values);
+        Parameter(Numbers::Each(column))
     }
     /// From the number of every item (node, spring, …) and body, laid out like the columns.
     pub fn from_items(layout: Layout, items: usize, mut number: impl FnMut(usize, usize) -> f64) -> Parameter {
@@ -140,34 +150,57 @@ impl Parameter {
     /// The numbers of eight places.
     #[inline(always)]
     pub fn load<P: Pack>(&self, place: usize) -> P {
-        P::load(&self.values[place * self.step..])
+        match &self.0 {
+            Numbers::Repeated(eight) => P::load(&eight.0),
+            Numbers::Each(column) => P::load(&column[place..]),
+        }
     }
     /// A piece of the column for a loop over packs.
     #[inline(always)]
     pub fn strip(&self, start: usize, length: usize) -> RepeatStrip<'_> {
-        RepeatStrip::new(&self.values, self.step, start, length)
+        match &self.0 {
+            Numbers::Repeated(eight) => RepeatStrip::repeated(&eight.0, length),
+            Numbers::Each(column) => RepeatStrip::new(column, start, length),
+        }
     }
     /// The numbers of eight items.
     #[inline(always)]
     pub fn load_at<P: Pack>(&self, items: At) -> P {
         match items {
             At::Run(place) => self.load(place),
-            At::Each(places) if self.step == 1 => P::gather(&self.values, places),
-            At::Each(_) => P::load(&self.values),
+            At::Each(places) => match &self.0 {
+                Numbers::Repeated(eight) => P::load(&eight.0),
+                Numbers::Each(column) => P::gather(column, places),
+            },
         }
     }
     /// The number at one place.
     #[inline(always)]
     pub fn at(&self, place: usize) -> f64 {
-        if self.step == 0 { self.values[place % WIDTH] } else { self.values[place] }
+        match &self.0 {
+            Numbers::Repeated(eight) => eight.0[place % WIDTH],
+            Numbers::Each(column) => column[place],
+        }
+    }
+    /// Whether eight values stand for the whole column.
+    #[inline(always)]
+    pub fn repeats(&self) -> bool {
+        matches!(self.0, Numbers::Repeated(_))
     }
     /// Whether it is zero everywhere.
     pub fn is_zero(&self) -> bool {
-        self.values.iter().all(|v| *v == 0.0)
+        let numbers: &[f64] = match &self.0 {
+            Numbers::Repeated(eight) => &eight.0,
+            Numbers::Each(column) => column,
+        };
+        numbers.iter().all(|v| *v == 0.0)
     }
     /// The number of bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        self.values.len() * 8
+        match &self.0 {
+            Numbers::Repeated(_) => 0,
+            Numbers::Each(column) => column.heap_bytes(),
+        }
     }
 }
 

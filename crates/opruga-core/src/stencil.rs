@@ -188,9 +188,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         let (from, until) = (self.blocks[block] as usize, self.blocks[block + 1] as usize);
         let count = until - from;
         let stride = self.layout.stride();
-        if tile.slots.len() < N * D * count * stride {
-            tile.slots.resize(N * D * count * stride, 0.0);
-        }
+        tile.slots.grow(N * D * count * stride);
         let slots = &mut tile.slots[..N * D * count * stride];
 
         // Forces of all elements into slots.

@@ -6,7 +6,7 @@ use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, TilePlan, Weight};
 use core::ops::Range;
-use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+use opruga_math::{Column, Lane, Pack, Simd, WIDTH, Work};
 
 /// Which columns hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,9 +153,9 @@ pub struct System<const D: usize> {
     /// Energy that went in and out.
     pub work: Work8,
     plan: TilePlan,
-    forces: [Vec<f64>; D],
-    before: [Vec<f64>; D],
-    slots: Vec<f64>,
+    forces: [Column; D],
+    before: [Column; D],
+    slots: Column,
 }
 
 impl<const D: usize> System<D> {
@@ -192,9 +192,9 @@ impl<const D: usize> System<D> {
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             plan: TilePlan::new(places, std::iter::empty()),
-            forces: core::array::from_fn(|_| Vec::new()),
-            before: core::array::from_fn(|_| vec![0.0; TILE + WIDTH]),
-            slots: Vec::new(),
+            forces: core::array::from_fn(|_| Column::default()),
+            before: core::array::from_fn(|_| Column::zeros(TILE + WIDTH)),
+            slots: Column::default(),
         }
     }
     /// Adds a model.
@@ -221,7 +221,7 @@ impl<const D: usize> System<D> {
             });
         }
         self.plan = TilePlan::new(places, spans.into_iter());
-        self.forces = core::array::from_fn(|_| vec![0.0; self.plan.buffer_places() + WIDTH]);
+        self.forces = core::array::from_fn(|_| Column::zeros(self.plan.buffer_places() + WIDTH));
         self.state.work.resize_with(work_columns, || [Columns::zeros(places), Columns::zeros(places)]);
     }
     /// The number of places.
@@ -348,7 +348,7 @@ impl<const D: usize> System<D> {
             &mut Moved {
                 range,
                 places_used: self.nodes * self.layout.stride(),
-                before: self.before.each_ref().map(|b| b.as_slice()),
+                before: self.before.each_ref().map(|b| &**b),
                 x: &mut self.state.x,
                 v: &mut self.state.v,
                 mass: &self.mass,
@@ -399,7 +399,7 @@ impl<const D: usize> System<D> {
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let columns = |c: &[Vec<f64>; D]| c.iter().map(|v| v.capacity() * 8).sum::<usize>();
+        let columns = |c: &[Column; D]| c.iter().map(Column::heap_bytes).sum::<usize>();
         let state = columns(&self.state.x.0) + columns(&self.state.v.0);
         let work: usize = self.state.work.iter().flatten().map(|c| columns(&c.0)).sum();
         let models: usize = self

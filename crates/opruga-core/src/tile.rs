@@ -2,7 +2,7 @@
 
 use crate::state::Parameter;
 use core::ops::Range;
-use opruga_math::{Pack, StripMut, WIDTH, lanes};
+use opruga_math::{Column, Pack, StripMut, WIDTH, lanes};
 
 /// Places of a tile.
 pub const TILE: usize = 512;
@@ -20,7 +20,7 @@ pub struct Tile<'a, const D: usize> {
     /// says [`crate::potential::Potential::begins_tiles`]; then it owes [`Tile::settle`] or the same result.
     pub weight: Option<Weight<'a, D>>,
     /// Room for the forces of stencils before they are added up at the nodes.
-    pub slots: &'a mut Vec<f64>,
+    pub slots: &'a mut Column,
 }
 
 /// Mass of each node and the acceleration of gravity.

@@ -11,7 +11,9 @@ pub struct GifWriter<W: Write> {
     /// The palette entry of every colour of five bits a channel.
     nearest: Vec<u8>,
     last: Option<Vec<u8>>,
-    delay: u16,
+    /// The length of a frame in hundredths of a second, which are what GIF counts.
+    delay: f64,
+    frames: u64,
 }
 
 impl<W: Write> core::fmt::Debug for GifWriter<W> {
@@ -66,9 +68,9 @@ impl<W: Write> GifWriter<W> {
         let palette: Vec<u8> = order.iter().flat_map(|c| fine(*c).map(|x| x as u8)).collect();
         let mut encoder = gif::Encoder::new(out, width, height, &palette).map_err(failed)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
-        // GIF counts hundredths of a second.
-        let delay = (100.0 / frames_per_second).round().clamp(2.0, 6000.0) as u16;
-        Ok(GifWriter { encoder, size, nearest, last: None, delay })
+        // Viewers play frames of less than two hundredths slowly.
+        let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
+        Ok(GifWriter { encoder, size, nearest, last: None, delay, frames: 0 })
     }
 
     /// Adds a frame.
@@ -89,8 +91,12 @@ impl<W: Write> GifWriter<W> {
         for row in top..bottom {
             part.extend(&pixels[row * width + left..row * width + right]);
         }
+        // Each frame ends at the nearest hundredth, so that what is rounded off does not add up.
+        let end = |frames: u64| (frames as f64 * self.delay).round() as u64;
+        let delay = (end(self.frames + 1) - end(self.frames)) as u16;
+        self.frames += 1;
         let frame = gif::Frame {
-            delay: self.delay,
+            delay,
             left: left as u16,
             top: top as u16,
             width: (right - left) as u16,
@@ -124,6 +130,26 @@ fn changed(a: &[u8], b: &[u8], width: usize) -> [usize; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rounded_delays_do_not_add_up() {
+        let image = Image::new(2, 2, [0; 3]).expect("an image");
+        for rate in [30.0, 24.0, 60.0, 12.5, 1000.0 / 48.0] {
+            let mut bytes = Vec::new();
+            let mut writer = GifWriter::new(&mut bytes, rate, std::slice::from_ref(&image)).expect("a writer");
+            (0..100).for_each(|_| writer.push(&image).expect("a frame"));
+            drop(writer);
+            let mut decoder = gif::DecodeOptions::new().read_info(&bytes[..]).expect("a GIF");
+            let (mut time, mut frames) = (0, 0);
+            while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+                (time, frames) = (time + i32::from(frame.delay), frames + 1);
+                let exact = f64::from(frames) * (100.0 / rate).max(2.0);
+                assert!((f64::from(time) - exact).abs() <= 0.5 + 1e-9, "{rate}: frame {frames} ends at {time}");
+                assert!((f64::from(frame.delay) - 100.0 / rate).abs() < 1.0 || rate > 50.0);
+            }
+            assert_eq!(frames, 100);
+        }
+    }
 
     #[test]
     fn frames_come_back_with_their_size_delay_and_colours() {

@@ -3,7 +3,7 @@
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::{FRAME, INK, SOFT_INK};
 use crate::marks::{arrow_colour, arrow_name};
-use crate::picture::{Legend, Picture};
+use crate::picture::{ColliderPicture, Legend, Picture};
 use crate::ticks::{format_tick, format_value, nice_length, nice_ticks};
 use crate::view::View;
 
@@ -90,11 +90,14 @@ impl Layout {
         }
         if style.footer {
             let base = top + height + 26.0 * unit;
-            let end = scale.map_or(left, |scale| self.scale_bar(canvas, [left, base], width, scale));
+            let end = match scale {
+                Some(scale) => self.scale_bar(canvas, [left, base], width, scale),
+                None => self.squares(canvas, [left, base], picture, view),
+            };
             self.arrow_names(canvas, &[picture], view, [end + 24.0 * unit, left + width], base);
         }
         if let (Some(legend), true) = (&picture.legend, style.legend) {
-            self.legend(canvas, legend, view.range(picture));
+            self.legend(canvas, legend, view, picture);
         }
     }
 
@@ -112,6 +115,17 @@ impl Layout {
         let text = length_text(length);
         canvas.text(&text, [left + bar + 8.0 * unit, base], 14.0 * unit, Anchor::Start, INK);
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
+    }
+
+    /// Writes how large the squares of a floor in three dimensions are, and gives the place where the text ends.
+    pub(crate) fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
+        if !picture.colliders.iter().any(|collider| matches!(collider, ColliderPicture::HalfSpace { .. })) {
+            return left;
+        }
+        let size = 14.0 * self.unit;
+        let text = format!("squares of {}", length_text(view.square()));
+        canvas.text(&text, [left, base], size, Anchor::Start, INK);
+        left + text_width(&text, size)
     }
 
     /// Writes the names of the arrows in the pictures, from the right.
@@ -144,8 +158,9 @@ impl Layout {
     }
 
     /// Draws the bar of colours with its values.
-    pub(crate) fn legend(&self, canvas: &mut Canvas, legend: &Legend, range: [f64; 2]) {
+    pub(crate) fn legend(&self, canvas: &mut Canvas, legend: &Legend, view: &View, picture: &Picture) {
         let unit = self.unit;
+        let range = view.range(picture);
         let [left, top, width, height] = self.scene.map(|value| value as f32);
         let start = (left + width + 16.0 * unit).round();
         let size = 13.0 * unit;
@@ -154,12 +169,21 @@ impl Layout {
             let base = top + 12.0 * unit + 17.0 * unit * index as f32;
             canvas.text(line, [start, base], size, Anchor::Start, INK);
         }
-        let bar_top = (top + 17.0 * unit * lines.len() as f32 + 10.0 * unit).round();
+        let bar_top = (top + 17.0 * unit * lines.len() as f32 + 14.0 * unit).round();
         let bar = [start, bar_top, (14.0 * unit).round(), (top + height - bar_top).min(300.0 * unit).round()];
         let rows = bar[3] as u32;
         for row in 0..rows {
             let place = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
             canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(place), 1.0);
+        }
+        if legend.range.is_none() {
+            // A point at an end says that a few scalars lie beyond it.
+            let ends = [(bar[1] + bar[3], 1.0, 0.0), (bar[1], -1.0, 1.0)];
+            for (&(end, outwards, place), _) in ends.iter().zip(view.strays).filter(|(_, strays)| *strays) {
+                let tip = [bar[0] + 0.5 * bar[2], end + outwards * 7.0 * unit];
+                let corners = [[bar[0], end], [bar[0] + bar[2], end], tip];
+                canvas.polygon(&corners, legend.map.colour(place), 1.0);
+            }
         }
         let ticks = nice_ticks(range[0], range[1], 5);
         let step = if ticks.len() > 1 { ticks[1] - ticks[0] } else { range[0].abs() };

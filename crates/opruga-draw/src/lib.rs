@@ -1,7 +1,7 @@
 //! Pictures, film strips, plots and videos of deformable bodies, without a graphics card.
 //!
 //! A [`Picture`] says what is seen at one moment. A [`View`], fitted to all pictures of a run, says from where. Then
-//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`GifWriter`] an animation.
+//! [`draw`] makes an [`Image`], [`strip`] a row of them, and [`Mp4Writer`] or [`GifWriter`] a film.
 // The fixed elementary functions are for physics; a picture may differ in a last bit.
 #![allow(clippy::disallowed_methods)]
 
@@ -18,6 +18,7 @@ mod plot;
 mod solid;
 mod strip;
 mod ticks;
+mod video;
 mod view;
 
 pub use animation::GifWriter;
@@ -29,6 +30,7 @@ pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets,
 pub use plot::{Axis, Chart, Level, Line, Marker, Panel};
 pub use strip::{StripStyle, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
+pub use video::Mp4Writer;
 pub use view::View;
 
 /// Draws a picture as it is seen in a view.

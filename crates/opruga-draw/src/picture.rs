@@ -22,6 +22,8 @@ pub struct Picture {
     pub pulls: Vec<PullPicture>,
     /// What the scalars of the bodies mean.
     pub legend: Option<Legend>,
+    /// Whether y counts downwards, as on a screen; only in two dimensions.
+    pub y_down: bool,
 }
 
 impl Default for Picture {
@@ -35,6 +37,7 @@ impl Default for Picture {
             arrows: Vec::new(),
             pulls: Vec::new(),
             legend: None,
+            y_down: false,
         }
     }
 }

@@ -29,6 +29,9 @@ impl Default for StripStyle {
     }
 }
 
+/// The most that a panel is high, in pixels of a strip 1400 pixels wide.
+const TALLEST: f32 = 560.0;
+
 /// Picks up to `count` pictures at even distances, with the first and the last.
 pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
     let kept = count.min(pictures.len());
@@ -52,11 +55,15 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     let legend = Layout::legend_space(first, view, unit, style.legend);
     let gap = (10.0 * unit).round();
     let width = style.width as f32 - 2.0 * margin - legend;
-    let panel = ((width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
+    let aspect = style.aspect.unwrap_or_else(|| natural_aspect(view, first.dimension)) as f32;
+    let room = ((width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
+    // Few panels are not larger than can be seen at once.
+    let panel = room.min((TALLEST * unit / aspect).floor());
     if panel < 8.0 {
         return Err(DrawError::Size { width: panel.max(0.0) as u32, height: 0 });
     }
-    let tall = (panel * style.aspect.unwrap_or_else(|| natural_aspect(view, first.dimension)) as f32).round();
+    let tall = (panel * aspect).round();
+    let width = columns as f32 * (panel + gap) - gap;
     let line = (26.0 * unit).round();
     let height = head + rows as f32 * (tall + line) + (rows as f32 - 1.0) * 0.4 * gap + foot;
     let mut image = Image::new(style.width, height.round() as u32, style.background)?;
@@ -84,11 +91,11 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     let base = bottom + 26.0 * unit;
     let end = match scale {
         Some(scale) => layout.scale_bar(&mut canvas, [margin, base], panel.max(120.0 * unit) * 2.0, scale),
-        None => margin,
+        None => layout.squares(&mut canvas, [margin, base], first, view),
     };
     layout.arrow_names(&mut canvas, pictures, view, [end + 24.0 * unit, margin + width], base);
     if let (Some(legend), true) = (&first.legend, style.legend) {
-        layout.legend(&mut canvas, legend, view.range(first));
+        layout.legend(&mut canvas, legend, view, first);
     }
     Ok(image)
 }
@@ -104,6 +111,34 @@ fn natural_aspect(view: &View, dimension: u8) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_is_cropped_at_the_border() {
+        use crate::picture::{BodyPicture, Legend};
+        for (dimension, size) in [(2, [1.0, 0.1]), (2, [1.0, 1.0]), (2, [0.1, 1.0]), (2, [7e-6, 9e-6]), (3, [2.0, 1.0])]
+        {
+            for count in [1, 2, 5, 10] {
+                let positions = vec![[0.0; 3], [size[0], 0.0, 0.0], [size[0], size[1], 0.0]];
+                let body = BodyPicture { scalar: vec![-123.456, 0.0, 1e5], positions, ..Default::default() };
+                let legend = Legend { label: "strain".into(), unit: "%".into(), range: None, map: Default::default() };
+                let picture = Picture {
+                    dimension,
+                    title: "a title".into(),
+                    bodies: vec![body],
+                    legend: Some(legend),
+                    ..Default::default()
+                };
+                let view = View::fit([&picture]).expect("a view");
+                let image = strip(&vec![&picture; count], &view, &StripStyle::default()).expect("a strip");
+                let (width, height) = (image.width(), image.height());
+                let mut border = (0..width)
+                    .flat_map(|x| (0..4).map(move |y| [x, y]).chain((1..7).map(move |y| [x, height - y])))
+                    .chain((0..height).flat_map(|y| (0..4).map(move |x| [x, y]).chain([[width - 1, y]])));
+                let cut = border.find(|[x, y]| image.pixel(*x, *y) != [255; 3]);
+                assert_eq!(cut, None, "{dimension} {size:?} {count} {width} {height}");
+            }
+        }
+    }
 
     #[test]
     fn frames_are_spread_evenly_with_both_ends() {

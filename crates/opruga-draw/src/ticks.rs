@@ -64,7 +64,9 @@ pub fn format_tick(value: f64, step: f64) -> String {
         return "0".to_string();
     }
     let magnitude = value.abs();
-    if !(1e-3..1e6).contains(&magnitude) {
+    // Three digits of a power of ten must be enough to tell neighbours apart.
+    let fine = step.abs() < 0.0099 * magnitude && magnitude < 1e12;
+    if magnitude < 1e-3 || magnitude >= 1e6 && !fine {
         return scientific(value);
     }
     let mut digits = 0;
@@ -169,6 +171,8 @@ mod tests {
         assert_eq!(format_tick(0.25, 0.05), "0.25");
         assert_eq!(format_tick(-2.0, 1.0), "−2");
         assert_eq!(format_tick(27778.0, 1.0), "27\u{a0}778");
+        assert_eq!(format_tick(7_960_500.0, 500.0), "7\u{a0}960\u{a0}500");
+        assert_eq!(format_tick(2.5e6, 5e5), "2.5×10⁶");
         assert_eq!(format_value(0.5), "0.5");
         assert_eq!(format_value(1234.0), "1234");
         assert_eq!(scientific(2.5e-7), "2.5×10⁻⁷");

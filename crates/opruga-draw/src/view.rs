@@ -14,8 +14,12 @@ pub struct View {
     pub low: [f64; 3],
     /// The highest corner of the box which must be seen [m].
     pub high: [f64; 3],
-    /// The smallest and the largest scalar, where there is any.
+    /// The scalars at the ends of the colours, where there is any: the smallest and the largest, but for a few strays.
     pub scalars: Option<[f64; 2]>,
+    /// Whether there are strays below and above these.
+    pub strays: [bool; 2],
+    /// Whether y counts downwards, as on a screen; only in two dimensions.
+    pub y_down: bool,
     /// The length of the longest vector of each kind of arrow.
     pub longest: BTreeMap<ArrowKind, f64>,
     /// The angle of the camera around the y axis, from z towards x [degrees]; only in three dimensions.
@@ -71,15 +75,11 @@ impl View {
     pub fn fit<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> Result<View, DrawError> {
         let pictures: Vec<&Picture> = pictures.into_iter().collect();
         let mut bounds = Bounds::empty();
-        let mut scalars = [f64::INFINITY, f64::NEG_INFINITY];
         let mut longest = BTreeMap::new();
         let mut planes: Vec<([f64; 3], [f64; 3])> = Vec::new();
         for picture in &pictures {
             for body in &picture.bodies {
                 body.positions.iter().for_each(|&position| bounds.add(position, 0.0));
-                for &scalar in body.scalar.iter().filter(|scalar| scalar.is_finite()) {
-                    scalars = [scalars[0].min(scalar), scalars[1].max(scalar)];
-                }
             }
             for pull in &picture.pulls {
                 bounds.add(pull.pointer, 0.0);
@@ -110,7 +110,10 @@ impl View {
                 take_plane(&mut bounds, point, normal.map(|value| value / length), diagonal);
             }
         }
-        let view = View::of(&bounds, scalars, longest);
+        let scalars = pictures.iter().flat_map(|picture| &picture.bodies).flat_map(|body| &body.scalar).copied();
+        let (scalars, strays) = range_of(scalars);
+        let y_down = pictures.iter().any(|picture| picture.y_down);
+        let view = View { strays, y_down, ..View::of(&bounds, scalars, longest) };
         for arrow in pictures.iter().flat_map(|picture| &picture.arrows) {
             let scale = view.arrow_scale(arrow.kind);
             bounds.add(std::array::from_fn(|axis| arrow.from[axis] + scale * arrow.vector[axis]), 0.0);
@@ -119,11 +122,13 @@ impl View {
     }
 
     /// The view of a box, from a little above and aside.
-    fn of(bounds: &Bounds, scalars: [f64; 2], longest: BTreeMap<ArrowKind, f64>) -> View {
+    fn of(bounds: &Bounds, scalars: Option<[f64; 2]>, longest: BTreeMap<ArrowKind, f64>) -> View {
         View {
             low: bounds.low,
             high: bounds.high,
-            scalars: (scalars[0] <= scalars[1]).then_some(scalars),
+            scalars,
+            strays: [false; 2],
+            y_down: false,
             longest,
             azimuth: 32.0,
             elevation: 20.0,
@@ -148,6 +153,11 @@ impl View {
         }
     }
 
+    /// The side of the squares of floors and walls [m].
+    pub(crate) fn square(&self) -> f64 {
+        crate::ticks::nice_length(0.3 * self.extent())
+    }
+
     /// The place of a scalar from 0 to 1 between the ends of a range.
     pub(crate) fn place(range: [f64; 2], scalar: f64) -> f64 {
         if range[1] > range[0] { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
@@ -158,6 +168,36 @@ impl View {
         let own = picture.legend.as_ref().and_then(|legend| legend.range);
         own.or(self.scalars).unwrap_or([0.0, 1.0])
     }
+}
+
+/// The smallest and the largest of some scalars, and whether some of them are left out below and above.
+///
+/// One scalar in two hundred may be left out at each end, where this makes the range smaller by a sixth.
+fn range_of(scalars: impl Iterator<Item = f64> + Clone) -> (Option<[f64; 2]>, [bool; 2]) {
+    const BINS: usize = 4096;
+    let scalars = scalars.filter(|scalar| scalar.is_finite());
+    let ends = scalars.clone().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| [low.min(s), high.max(s)]);
+    let [low, high] = ends;
+    let width = high - low;
+    if low > high || width <= 0.0 || !width.is_finite() {
+        return ((low <= high).then_some(ends), [false; 2]);
+    }
+    let mut counts = [0_u64; BINS];
+    for scalar in scalars {
+        counts[(((scalar - low) / width * BINS as f64) as usize).min(BINS - 1)] += 1;
+    }
+    let spare = counts.iter().sum::<u64>() / 200;
+    let few = |bins: &mut dyn Iterator<Item = &u64>| {
+        let mut left = spare;
+        let bins = bins.take_while(|count| left.checked_sub(**count).map(|rest| left = rest).is_some()).count();
+        if bins > BINS / 6 { bins } else { 0 }
+    };
+    let (below, above) = (few(&mut counts.iter()), few(&mut counts.iter().rev()));
+    if below + above >= BINS {
+        return (Some(ends), [false; 2]);
+    }
+    let bin = width / BINS as f64;
+    (Some([low + below as f64 * bin, high - above as f64 * bin]), [below > 0, above > 0])
 }
 
 /// Takes an obstacle with an end into the box.
@@ -198,6 +238,17 @@ fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: 
 mod tests {
     use super::*;
     use crate::picture::BodyPicture;
+
+    #[test]
+    fn a_few_strays_do_not_spread_the_colours() {
+        let even = || (0..1000).map(f64::from);
+        assert_eq!(range_of(even()), (Some([0.0, 999.0]), [false; 2]));
+        let (range, strays) = range_of(even().chain([5000.0, 5001.0]));
+        let [low, high] = range.expect("a range");
+        assert!(low == 0.0 && (990.0..1010.0).contains(&high) && strays == [false, true], "{low} {high} {strays:?}");
+        assert_eq!(range_of([3.0, f64::NAN].into_iter()), (Some([3.0, 3.0]), [false; 2]));
+        assert_eq!(range_of(std::iter::empty()), (None, [false; 2]));
+    }
 
     #[test]
     fn a_view_reaches_the_floor_and_skips_broken_nodes() {

@@ -115,10 +115,49 @@ impl Lane for f64 {
     }
 }
 
+/// As many numbers as the processor computes at once: a piece of a [`Pack`].
+///
+/// A formula that needs more values at a time than there are registers is faster register by register than pack by pack.
+pub trait Register: Lane {
+    /// How many numbers.
+    const NUMBERS: usize;
+    /// Reads the numbers.
+    ///
+    /// # Safety
+    /// So many numbers must lie there.
+    #[allow(unsafe_code)]
+    unsafe fn read(from: *const f64) -> Self;
+    /// Writes the numbers.
+    ///
+    /// # Safety
+    /// There must be room for so many numbers.
+    #[allow(unsafe_code)]
+    unsafe fn write(self, to: *mut f64);
+    /// Reads the numbers from so many places of a slice.
+    fn gather(from: &[f64], places: &[u32]) -> Self;
+    /// The numbers moved up by one place, the last number of the register before them first.
+    fn after(self, before: Self) -> Self;
+    /// The numbers moved down by one place, the first number of the register behind them last.
+    fn ahead_of(self, behind: Self) -> Self;
+    /// Where the place in the register is less than `count`.
+    fn first(count: usize) -> Self::Mask;
+}
+
 /// Eight numbers computed side by side: a [`Lane`] that can be read from and written to columns of memory.
 ///
 /// The types behind it belong to one set of vector instructions each and are made by [`crate::Simd::run`] alone.
 pub trait Pack: Lane {
+    /// What the processor computes at once.
+    type Part: Register;
+    /// How many of them make eight numbers.
+    const PARTS: usize;
+    /// Whether a pack is one register. Then reading it from the middle of a cache line costs twice, and the neighbours of
+    /// the numbers are better had by moving them than by reading again.
+    const WHOLE: bool = Self::PARTS == 1;
+    /// One of the parts.
+    fn part(self, number: usize) -> Self::Part;
+    /// Replaces one of the parts.
+    fn set_part(&mut self, number: usize, part: Self::Part);
     /// Reads eight numbers from the start of a slice.
     fn load(from: &[f64]) -> Self;
     /// Writes the eight numbers to the start of a slice.
@@ -143,6 +182,8 @@ pub trait Pack: Lane {
     fn from_array(numbers: [f64; WIDTH]) -> Self;
     /// The numbers moved up by one place, the last number of `previous` first.
     fn after(self, previous: Self) -> Self;
+    /// The numbers moved down by one place, the first number of `next` last.
+    fn ahead_of(self, next: Self) -> Self;
     /// Where the place is less than `count`.
     fn first(count: usize) -> Self::Mask;
     /// The sum of the eight numbers in one fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).

@@ -4,6 +4,7 @@
 //! AVX2 or AVX-512. Rust never contracts `a * b + c` into a fused operation, so the three give the same bits.
 
 use crate::lane::Pack;
+use crate::registers::Registers;
 
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,10 +73,10 @@ impl Simd {
                 Simd::Avx2 if Simd::best() >= Simd::Avx2 => return unsafe { run_avx2(work) },
                 _ => {}
             }
-            work.run::<crate::x86_64::Sse2>()
+            work.run::<Registers<crate::x86_64::Sse2, 4>>()
         }
         #[cfg(not(target_arch = "x86_64"))]
-        work.run::<crate::portable::Portable>()
+        work.run::<Registers<f64, 8>>()
     }
 }
 
@@ -90,20 +91,19 @@ pub trait Work {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 fn run_avx512<W: Work>(work: W) -> W::Output {
-    work.run::<crate::x86_64::Avx512>()
+    work.run::<Registers<crate::x86_64::Avx512, 1>>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2")]
 fn run_avx2<W: Work>(work: W) -> W::Output {
-    work.run::<crate::x86_64::Avx2>()
+    work.run::<Registers<crate::x86_64::Avx2, 2>>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::lane::WIDTH;
-    use crate::portable::Portable;
 
     /// Every operation on awkward numbers, written one after the other.
     struct Everything;
@@ -129,6 +129,7 @@ mod tests {
                 P::select(less, a, b),
                 P::select(P::both(less, a.less_or_equal(P::zero())), a, b),
                 a.after(b),
+                a.ahead_of(b),
                 P::select(P::first(3), a, b),
                 P::gather(&numbers, &[7, 0, 6, 1, 5, 2, 4, 3]),
                 positive.ln(),
@@ -145,8 +146,8 @@ mod tests {
 
     #[test]
     fn all_sets_of_instructions_give_the_bits_of_plain_rust() {
-        let plain = Everything.run::<Portable>();
-        assert_eq!(plain.len(), 2 + 17 * WIDTH);
+        let plain = Everything.run::<Registers<f64, 8>>();
+        assert_eq!(plain.len(), 2 + 18 * WIDTH);
         for simd in Simd::available() {
             assert_eq!(simd.run(Everything), plain, "{simd:?}");
         }

@@ -8,7 +8,7 @@
 //! asserts that it stays below the common length.
 #![allow(unsafe_code)]
 
-use crate::lane::{Pack, WIDTH};
+use crate::lane::{Pack, Register, WIDTH};
 use core::marker::PhantomData;
 
 /// The same piece of `N` columns, to be read.
@@ -44,6 +44,13 @@ impl<'a, const N: usize> Strip<'a, N> {
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
     }
+    /// One part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
+    }
 }
 
 impl<'a, const N: usize> StripMut<'a, N> {
@@ -62,6 +69,13 @@ impl<'a, const N: usize> StripMut<'a, N> {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
+    }
+    /// One part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
     }
     /// Writes eight numbers of a column from place `k` on.
     #[inline(always)]
@@ -82,12 +96,15 @@ pub struct RepeatStrip<'a> {
 }
 
 impl<'a> RepeatStrip<'a> {
-    /// The numbers from `start` on; if `step` is zero, the first eight of the column all along.
+    /// The numbers of a column from `start` on.
     #[inline(always)]
-    pub fn new(column: &'a [f64], step: usize, start: usize, length: usize) -> Self {
-        assert!(step <= 1 && column.len() >= WIDTH);
-        let piece = if step == 0 { &column[..WIDTH] } else { &column[start..start + length] };
-        RepeatStrip { start: piece.as_ptr(), step, length, borrow: PhantomData }
+    pub fn new(column: &'a [f64], start: usize, length: usize) -> Self {
+        RepeatStrip { start: column[start..start + length].as_ptr(), step: 1, length, borrow: PhantomData }
+    }
+    /// The same eight numbers all along.
+    #[inline(always)]
+    pub fn repeated(numbers: &'a [f64; WIDTH], length: usize) -> Self {
+        RepeatStrip { start: numbers.as_ptr(), step: 0, length, borrow: PhantomData }
     }
     /// Eight numbers from place `k` on.
     #[inline(always)]
@@ -95,5 +112,12 @@ impl<'a> RepeatStrip<'a> {
         assert!(k + WIDTH <= self.length);
         // SAFETY: see the head of the file; with step zero the first eight numbers are read.
         unsafe { P::read(self.start.add(k * self.step)) }
+    }
+    /// One part of the eight numbers from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file; with step zero the first eight numbers are read.
+        unsafe { P::Part::read(self.start.add(k * self.step + part * P::Part::NUMBERS)) }
     }
 }

@@ -206,7 +206,7 @@ impl<const D: usize> Island<D> {
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        let kept = 2 * D * self.last.as_ref().map_or(0, |s| s.x.0[0].capacity()) * 8;
+        let kept = 2 * D * self.last.as_ref().map_or(0, |s| s.x.0[0].heap_bytes());
         self.system.heap_bytes() + kept
     }
 }

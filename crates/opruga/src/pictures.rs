@@ -14,6 +14,7 @@ use crate::{World, mesh::EdgeSet};
 pub struct Scenery {
     dimension: u8,
     title: String,
+    y_down: bool,
     bodies: Vec<Fixed>,
 }
 
@@ -96,6 +97,7 @@ impl Scenery {
             dimension: D as u8,
             title: world.blueprint().title.clone(),
             bodies: present.iter().chain(coming).map(fixed).collect(),
+            y_down: y_down(world),
         }
     }
 
@@ -154,9 +156,24 @@ impl Scenery {
             colliders: moment.colliders.clone(),
             arrows: moment.arrows.clone(),
             pulls: moment.pulls.clone(),
+            y_down: self.y_down,
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
         }
     }
+}
+
+/// Whether y counts downwards in a plane: gravity says so, or where there is none, the floor.
+fn y_down<const D: usize>(world: &World<D>) -> bool {
+    let gravity = world.blueprint().surroundings.gravity[1];
+    if D != 2 || gravity != 0.0 {
+        return D == 2 && gravity > 0.0;
+    }
+    let pictures = world.colliders().map_or_else(Vec::new, |colliders| colliders.pictures(world.time()));
+    let mut floors = pictures.iter().filter_map(|placed| match placed {
+        Placed::HalfSpace { normal, .. } if normal[1] != 0.0 => Some(normal[1] < 0.0),
+        _ => None,
+    });
+    floors.next() == Some(true) && floors.all(|down| down)
 }
 
 /// An obstacle as the renderer knows it. A box that is turned is drawn by its outline or faces.

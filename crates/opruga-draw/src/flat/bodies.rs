@@ -108,7 +108,7 @@ impl Drawing<'_> {
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
         } else if let Some(outline) = &outline {
-            let pale = coloured && self.size > 12.0 && !self.is_uniform();
+            let pale = coloured && self.size > 12.0;
             canvas.fill(outline, &paint(if pale { mix(fill, [255; 3], 0.6) } else { fill }, 1.0));
         } else if !cells.is_empty() {
             cells.iter().for_each(|cell| canvas.polygon(&cell.map(|node| self.pixels[node as usize]), fill, 1.0));
@@ -117,20 +117,13 @@ impl Drawing<'_> {
         self.segments(canvas, outline.is_some());
         if let (Some(path), true) = (&outline, self.size > 7.0) {
             let width = (0.03 * self.size).clamp(0.5, 1.7 * self.unit);
-            if coloured && cells.is_empty() && !self.is_uniform() {
+            if coloured && cells.is_empty() && self.size > 12.0 {
                 self.coloured_outline(canvas, &loops, path);
             } else {
                 canvas.stroke(path, width, &paint(darker(fill), 0.95));
             }
         }
         self.nodes(canvas);
-    }
-
-    /// Whether all scalars of the body have nearly the same colour.
-    fn is_uniform(&self) -> bool {
-        let places = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar));
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        high - low < 0.01
     }
 
     /// The path of the loops, without points which fall on the same pixel.
@@ -166,7 +159,7 @@ impl Drawing<'_> {
         };
         let places: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar)).collect();
         // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
-        let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
+        let passes: &[f32] = if outline.is_some() && self.size < 48.0 { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
                 let corners = cell.map(|node| {
@@ -179,7 +172,8 @@ impl Drawing<'_> {
         let shift = Transform::from_translate(low[0], low[1]);
         let shader = Pattern::new(scratch.as_ref(), SpreadMode::Pad, FilterQuality::Nearest, 1.0, shift);
         let paint = Paint { shader, anti_alias: true, ..Paint::default() };
-        match outline {
+        // A line as thick as on large bodies hides the hard edge of cells; there, folds are not taken for holes.
+        match outline.filter(|_| self.size < 48.0) {
             Some(outline) => canvas.fill(outline, &paint),
             None => {
                 let all = tiny_skia::Rect::from_ltrb(low[0], low[1], high[0], high[1]).map(PathBuilder::from_rect);
@@ -241,20 +235,44 @@ impl Drawing<'_> {
         if self.size > 30.0 {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
+        // Neighbours of nearly the same colour are one line; on small bodies fewer colours can be told apart.
+        let shades = if self.size > 60.0 { 64.0 } else { 24.0 };
+        let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {
             let count = if chain.closed { chain.nodes.len() } else { chain.nodes.len() - 1 };
+            let mut last = None;
             for place in 0..count {
                 let ends = [chain.nodes[place], chain.nodes[(place + 1) % chain.nodes.len()]];
-                let colour = self.scalars.colour(Scalars::mean(self.body, ends.into_iter()));
-                canvas.line(&ends.map(|node| self.pixels[node as usize]), width, colour, 1.0);
+                let mean = self.scalars.place(Scalars::mean(self.body, ends.into_iter()));
+                let shade = (mean.clamp(0.0, 1.0) * shades).round() / shades;
+                let [from, to] = ends.map(|node| self.pixels[node as usize]);
+                if last != Some(shade) {
+                    self.coloured_line(canvas, &mut points, width, last);
+                    points.push(from);
+                    last = Some(shade);
+                }
+                let before = points[points.len() - 1];
+                if (to[0] - before[0]).abs() + (to[1] - before[1]).abs() > 0.4 {
+                    points.push(to);
+                }
             }
+            self.coloured_line(canvas, &mut points, width, last);
         }
+    }
+
+    /// Draws a part of an outline, and forgets it.
+    fn coloured_line(&self, canvas: &mut Canvas, points: &mut Vec<[f32; 2]>, width: f32, shade: Option<f64>) {
+        if let Some(shade) = shade {
+            canvas.line(points, width, self.scalars.map.colour(shade), 1.0);
+        }
+        points.clear();
     }
 
     /// Draws the nodes, where they are wanted and far enough apart.
     fn nodes(&self, canvas: &mut Canvas) {
         let count = self.pixels.len();
-        let crowded = self.size * 12.0 < count as f32 * 2.0 * self.unit;
+        // The distance of neighbours, if they lie around the body.
+        let crowded = 3.0 * self.size < count as f32 * 9.0 * self.unit;
         if !self.body.nodes_drawn || crowded || self.size < 24.0 {
             return;
         }

@@ -13,7 +13,8 @@ pub(crate) fn draw(canvas: &mut Canvas, collider: &ColliderPicture, projection: 
         ColliderPicture::HalfSpace { point, normal } => half_space(canvas, *point, *normal, projection, unit),
         ColliderPicture::Box { min, max, inside } => {
             let (a, b) = (projection.pixel(*min), projection.pixel(*max));
-            let corners = [[a[0], b[1]], [b[0], b[1]], [b[0], a[1]], [a[0], a[1]]];
+            let (top, bottom) = (a[1].min(b[1]), a[1].max(b[1]));
+            let corners = [[a[0], top], [b[0], top], [b[0], bottom], [a[0], bottom]];
             if *inside { room(canvas, corners, projection, unit) } else { block(canvas, &corners, edge) }
         }
         ColliderPicture::Ball { center, radius } => {
@@ -79,8 +80,7 @@ fn half_space(canvas: &mut Canvas, point: [f64; 3], normal: [f64; 3], projection
         return;
     }
     let base = projection.pixel(point);
-    // Pixels count downwards.
-    let up = [(normal[0] / length) as f32, (-normal[1] / length) as f32];
+    let up = [(normal[0] / length) as f32, (projection.down * normal[1] / length) as f32];
     let [width, height] = projection.size;
     let screen = [[-2.0, -2.0], [width + 2.0, -2.0], [width + 2.0, height + 2.0], [-2.0, height + 2.0]];
     let height_of = |corner: [f32; 2]| (corner[0] - base[0]) * up[0] + (corner[1] - base[1]) * up[1];

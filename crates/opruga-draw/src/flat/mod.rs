@@ -20,6 +20,8 @@ const BORDER: f64 = 0.04;
 pub(crate) struct Projection {
     /// The number of pixels in a metre.
     pub(crate) scale: f64,
+    /// 1 where y counts downwards as pixels do, otherwise -1.
+    pub(crate) down: f64,
     /// The point which is drawn in the middle [m].
     center: [f64; 2],
     /// The size of the scene in pixels.
@@ -35,6 +37,7 @@ impl Projection {
         let center = view.center();
         Projection {
             scale: (f64::from(width) / wide).min(f64::from(height) / tall),
+            down: if view.y_down { 1.0 } else { -1.0 },
             center: [center[0], center[1]],
             size: [width as f32, height as f32],
         }
@@ -44,7 +47,7 @@ impl Projection {
     pub(crate) fn pixel(&self, point: [f64; 3]) -> [f32; 2] {
         let far = 1e6;
         let x = 0.5 * f64::from(self.size[0]) + self.scale * (point[0] - self.center[0]);
-        let y = 0.5 * f64::from(self.size[1]) - self.scale * (point[1] - self.center[1]);
+        let y = 0.5 * f64::from(self.size[1]) + self.down * self.scale * (point[1] - self.center[1]);
         [x.clamp(-far, far) as f32, y.clamp(-far, far) as f32]
     }
 }
@@ -68,4 +71,30 @@ pub(crate) fn scene(
         point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point))
     });
     Ok((scene, projection.scale))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::{BodyPicture, ColliderPicture, Facets};
+
+    #[test]
+    fn a_scene_whose_y_counts_downwards_is_drawn_with_its_floor_below() {
+        for y_down in [false, true] {
+            let sign = if y_down { -1.0 } else { 1.0 };
+            let body = BodyPicture {
+                positions: [[-1.0, 1.0], [1.0, 1.0], [0.0, 3.0]].map(|[x, y]| [x, sign * y, 0.0]).to_vec(),
+                facets: Facets::Edges(vec![[0, 1], [1, 2], [2, 0]]),
+                ..Default::default()
+            };
+            let floor = ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, sign, 0.0] };
+            let picture = Picture { bodies: vec![body], colliders: vec![floor], y_down, ..Default::default() };
+            let view = View::fit([&picture]).expect("a view");
+            let (image, _) = scene(&picture, &view, [255; 3], [60, 60], 1.0).expect("an image");
+            assert_eq!(image.pixel(58, 1), [255; 3], "the sky");
+            assert!((56..60).all(|row| image.pixel(58, row) != [255; 3]), "the ground");
+            let widest = |row: u32| (0..60).filter(|column| image.pixel(*column, row) != [255; 3]).count();
+            assert!(widest(35) > widest(15) && widest(15) > 0, "the triangle stands on its side");
+        }
+    }
 }

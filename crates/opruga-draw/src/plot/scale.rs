@@ -37,8 +37,8 @@ impl Scale {
             let factor = (high / low).powf(margin).max(1.15);
             return Scale { low: low / factor, high: high * factor, logarithmic };
         }
-        // A line which is constant but for rounding is drawn flat.
-        let width = if high - low > 1e-12 * low.abs().max(high.abs()) { high - low } else { 0.0 };
+        // A line which is constant to a millionth is drawn flat: its ticks could not be told apart.
+        let width = if high - low > 1e-6 * low.abs().max(high.abs()) { high - low } else { 0.0 };
         let pad = if width > 0.0 {
             margin * width
         } else if margin > 0.0 {

@@ -121,11 +121,6 @@ impl Shadow {
             }
         }
     }
-
-    /// How much a sample is in the shadow.
-    fn at(&self, place: usize) -> f64 {
-        f64::from(self.shade[place]) / 255.0
-    }
 }
 
 /// Replaces each value by the mean of its neighbours up to a radius.
@@ -145,6 +140,26 @@ fn slide(values: &mut [u8], radius: usize, sums: &mut Vec<u32>) {
     }
 }
 
+/// The last of the steps in which squares fade.
+const LAST_TONE: f64 = 255.0;
+
+/// The colours of both kinds of squares as they fade into the background.
+fn tones(background: [u8; 3], strength: f64) -> [[[u8; 3]; 256]; 2] {
+    SQUARES.map(|square| {
+        std::array::from_fn(|step| {
+            let fade = 1.0 - step as f64 / LAST_TONE;
+            mix(background, square, fade * fade * (3.0 - 2.0 * fade) * strength)
+        })
+    })
+}
+
+/// The whole number below a number; `floor` is a call of a function on machines without an instruction for it.
+#[inline(always)]
+fn below(number: f64) -> i64 {
+    let whole = number as i64;
+    whole - i64::from(number < whole as f64)
+}
+
 /// Draws a plane with squares which fade with the distance.
 pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Plane, shadow: Option<&Shadow>) {
     let height = plane.height(camera.place);
@@ -152,7 +167,7 @@ pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Pla
         return;
     }
     let extent = view.extent();
-    let square = crate::ticks::nice_length(0.3 * extent);
+    let square = view.square();
     let first = unit(if plane.normal[0].abs() < 0.9 {
         along([1.0, 0.0, 0.0], plane.normal, -plane.normal[0])
     } else {
@@ -165,10 +180,14 @@ pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Pla
     let start = [dot(first, start), dot(second, start)];
     let background = *screen.colours.first().unwrap_or(&[255; 3]);
     let step = along([0.0; 3], camera.axes[0], 1.0 / camera.focus);
+    let above = 1.0 / height;
     let sink = -dot(plane.normal, step);
     let (fade_from, fade_over) = (0.9 * extent, 2.4 * extent);
     let strength = if plane.is_floor() { 1.0 } else { 0.45 };
-    let seen = |place: usize| shadow.filter(|_| plane.is_floor()).map_or(0.0, |shadow| shadow.at(place));
+    let shadow = shadow.filter(|_| plane.is_floor());
+    let tones = tones(background, strength);
+    let (inner, outer) = (fade_from * fade_from, (fade_from + fade_over) * (fade_from + fade_over));
+    let per_metre = 1.0 / square;
     for row in 0..screen.height {
         let up = (camera.middle[1] - row as f64 - 0.5) / camera.focus;
         let ray =
@@ -185,17 +204,18 @@ pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Pla
             let distance = height / fall;
             let u = start[0] + distance * (ray_first + x * step_first);
             let v = start[1] + distance * (ray_second + x * step_second);
-            let away = ((u - middle[0]).powi(2) + (v - middle[1]).powi(2)).sqrt();
-            let fade = 1.0 - ((away - fade_from) / fade_over).clamp(0.0, 1.0);
+            let away = (u - middle[0]) * (u - middle[0]) + (v - middle[1]) * (v - middle[1]);
             let place = row * screen.width + column;
-            let near = (fall / height) as f32;
-            if fade <= 0.0 || near <= screen.near[place] {
+            let near = (fall * above) as f32;
+            if away >= outer || near <= screen.near[place] {
                 continue;
             }
-            let odd = ((u / square).floor() + (v / square).floor()) as i64 & 1;
-            let tone = mix(background, SQUARES[odd as usize], fade * fade * (3.0 - 2.0 * fade) * strength);
-            let dark = SHADOW * seen(place);
-            screen.colours[place] = if dark > 0.0 { mix(tone, [40, 46, 62], dark) } else { tone };
+            let fade = if away <= inner { 0.0 } else { (away.sqrt() - fade_from) / fade_over };
+            let odd = below(u * per_metre).wrapping_add(below(v * per_metre)) & 1;
+            let tone = tones[odd as usize][(fade * LAST_TONE) as usize & LAST_TONE as usize];
+            let dark = shadow.map_or(0, |shadow| shadow.shade[place]);
+            screen.colours[place] =
+                if dark > 0 { mix(tone, [40, 46, 62], SHADOW * f64::from(dark) / 255.0) } else { tone };
             screen.near[place] = near * 0.9995;
         }
     }

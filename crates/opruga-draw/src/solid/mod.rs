@@ -1,7 +1,4 @@
 //! Pictures in three dimensions, drawn by a rasteriser of its own.
-// Note for the session that wrote camera, ground, raster, shade and shapes: two helpers were started for this crate,
-// and at 07:27:46 the other one overwrote your mod.rs and examples/gallery/solid.rs by accident. Both were written anew
-// from your modules and from the pictures in /tmp/gallery; put your own versions back, and remove this note.
 
 mod camera;
 mod ground;
@@ -131,7 +128,7 @@ impl Painter<'_> {
 
     /// Draws the walls of a room which are seen from inside: their edges, and lines at round distances.
     fn room(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
-        let square = crate::ticks::nice_length(0.3 * self.view.extent());
+        let square = self.view.square();
         for (corners, axis, high) in FACES {
             let corners = corners.map(|bits| corner(min, max, bits));
             let towards = between(corners[0], self.camera.place)[axis];

@@ -69,13 +69,17 @@ impl Cover {
             let y = row as f32 + 0.5;
             let row_a = (y - b[1]) * step_a[1];
             let row_b = (y - c[1]) * step_b[1];
+            let mut inside = false;
             for column in left..right {
                 let x = column as f32 + 0.5;
                 let share_a = row_a + (x - b[0]) * step_a[0];
                 let share_b = row_b + (x - c[0]) * step_b[0];
                 let share_c = 1.0 - share_a - share_b;
                 if share_a >= 0.0 && share_b >= 0.0 && share_c >= 0.0 {
+                    inside = true;
                     call(row * width + column, [share_a, share_b, share_c]);
+                } else if inside {
+                    break;
                 }
             }
         }
@@ -100,7 +104,8 @@ impl Screen {
             let depth = weights[0] + weights[1] + weights[2];
             if depth > depths[place] {
                 depths[place] = depth;
-                colours[place] = colour(weights.map(|weight| weight / depth));
+                let whole = 1.0 / depth;
+                colours[place] = colour(weights.map(|weight| weight * whole));
             }
         });
     }

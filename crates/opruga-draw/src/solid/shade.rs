@@ -4,6 +4,9 @@ use super::camera::{Camera, Seen, between, cross, dot, unit};
 use super::raster::Screen;
 use crate::colour::ColourMap;
 
+/// The side in samples below which the light is found at the corners of a triangle alone.
+const SMALL: f32 = 40.0;
+
 /// The cosine of the angle between faces beyond which an edge is sharp.
 const SHARP: f64 = 0.55;
 
@@ -15,6 +18,8 @@ pub(crate) struct Light {
     towards: [f32; 3],
     /// The upward direction, as the camera sees it.
     up: [f32; 3],
+    /// The direction half way between the light and the camera: a mirror that looks there shows the light.
+    half: [f32; 3],
 }
 
 impl Light {
@@ -24,7 +29,9 @@ impl Light {
         let world =
             unit(std::array::from_fn(|axis| [0.0, 1.0, 0.0][axis] - 0.42 * camera.axes[0][axis] - 0.38 * flat[axis]));
         let turned = |direction: [f64; 3]| camera.turn(direction).map(|value| value as f32);
-        Light { world, towards: turned(world), up: turned([0.0, 1.0, 0.0]) }
+        let towards = camera.turn(world);
+        let half = unit([towards[0], towards[1], towards[2] - 1.0]).map(|value| value as f32);
+        Light { world, towards: turned(world), up: turned([0.0, 1.0, 0.0]), half }
     }
 }
 
@@ -89,21 +96,51 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
             let chosen = if smooth && dot(normal, face) > SHARP { normal } else { face };
             camera.turn(chosen).map(|value| (sign * value) as f32)
         });
-        let shine = |weights: [f32; 3]| {
-            let normal: [f32; 3] =
-                std::array::from_fn(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum());
-            light.on(normal)
-        };
-        match colouring {
-            Colouring::Plain(colour) => screen.triangle([a, b, c], |weights| lit(*colour, shine(weights))),
-            Colouring::Mapped { colours, places } => {
-                let places = triangle.map(|node| places[node as usize]);
-                screen.triangle([a, b, c], |weights| {
-                    let place: f32 = (0..3).map(|corner| weights[corner] * places[corner]).sum();
-                    let step = (place.clamp(0.0, 1.0) * 255.0 + 0.5) as usize;
-                    lit(colours[step.min(255)], shine(weights))
-                });
-            }
+        let seen = [a, b, c];
+        if size([a, b, c]) < SMALL {
+            let shines = corners.map(|normal| light.on(normal));
+            let shine = |weights: [f32; 3]| [0, 1].map(|part| total(weights, shines.map(|shine| shine[part])));
+            paint(screen, seen, triangle, colouring, shine);
+        } else {
+            let shine =
+                |weights: [f32; 3]| light.on([0, 1, 2].map(|axis| total(weights, corners.map(|normal| normal[axis]))));
+            paint(screen, seen, triangle, colouring, shine);
+        }
+    }
+}
+
+/// The sum of the values of corners by their weights.
+#[inline(always)]
+fn total(weights: [f32; 3], values: [f32; 3]) -> f32 {
+    weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
+}
+
+/// The larger side of a triangle along the axes of the screen.
+fn size(corners: [Seen; 3]) -> f32 {
+    let side = |axis: usize| {
+        let [a, b, c] = corners.map(|corner| corner.pixel[axis]);
+        a.max(b).max(c) - a.min(b).min(c)
+    };
+    side(0).max(side(1))
+}
+
+/// Fills one triangle in the light that falls on each of its samples.
+#[inline(always)]
+fn paint(
+    screen: &mut Screen,
+    seen: [Seen; 3],
+    triangle: &[u32; 3],
+    colouring: &Colouring,
+    shine: impl Fn([f32; 3]) -> [f32; 2],
+) {
+    match colouring {
+        Colouring::Plain(colour) => screen.triangle(seen, |weights| lit(*colour, shine(weights))),
+        Colouring::Mapped { colours, places } => {
+            let places = triangle.map(|node| places[node as usize]);
+            screen.triangle(seen, |weights| {
+                let step = (total(weights, places).clamp(0.0, 1.0) * 255.0 + 0.5) as usize;
+                lit(colours[step.min(255)], shine(weights))
+            });
         }
     }
 }
@@ -116,9 +153,7 @@ impl Light {
         let scale = 1.0 / product(normal, normal).sqrt().max(1e-12);
         let sun = (product(normal, self.towards) * scale).max(0.0);
         let sky = 0.5 + 0.5 * product(normal, self.up) * scale;
-        // The mirror direction lies half way between the light and the camera.
-        let half = [self.towards[0], self.towards[1], self.towards[2] - 1.0];
-        let mirror = (product(normal, half) * scale / product(half, half).sqrt()).max(0.0);
+        let mirror = (product(normal, self.half) * scale).max(0.0);
         let mut gloss = mirror * mirror;
         gloss *= gloss;
         gloss *= gloss;

@@ -4,6 +4,9 @@ use super::camera::{along, cross, unit};
 use crate::picture::ColliderPicture;
 use std::f64::consts::{PI, TAU};
 
+/// How large round obstacles are drawn: cloth lies on them with its nodes, and between these it lies deeper.
+const ROUND: f64 = 0.985;
+
 /// A surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shape {
@@ -42,8 +45,8 @@ pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
             }
             Some(shape)
         }
-        ColliderPicture::Ball { center, radius } => Some(capsule(*center, *center, *radius)),
-        ColliderPicture::Capsule { a, b, radius } => Some(capsule(*a, *b, *radius)),
+        ColliderPicture::Ball { center, radius } => Some(capsule(*center, *center, ROUND * radius)),
+        ColliderPicture::Capsule { a, b, radius } => Some(capsule(*a, *b, ROUND * radius)),
         ColliderPicture::Polygon(points) => {
             let triangles = (2..points.len() as u32).map(|last| [0, last - 1, last]).collect();
             Some(Shape { positions: points.clone(), triangles })
@@ -92,11 +95,11 @@ mod tests {
     use crate::solid::camera::{between, dot};
 
     #[test]
-    fn a_ball_has_its_radius_everywhere() {
+    fn a_ball_has_one_radius_everywhere() {
         let ball = shape(&ColliderPicture::Ball { center: [1.0, 2.0, 3.0], radius: 0.5 }).unwrap();
         for position in &ball.positions {
             let arm = between([1.0, 2.0, 3.0], *position);
-            assert!((dot(arm, arm).sqrt() - 0.5).abs() < 1e-12);
+            assert!((dot(arm, arm).sqrt() - 0.5 * ROUND).abs() < 1e-12);
         }
     }
 

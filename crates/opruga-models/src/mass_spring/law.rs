@@ -35,7 +35,7 @@ pub(super) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {
     sum
 }
 
-impl<P: Pack, const DAMPED: bool, const D: usize> PairLaw<P, D> for SpringLaw<'_, DAMPED> {
+impl<const DAMPED: bool, const D: usize> PairLaw<D> for SpringLaw<'_, DAMPED> {
     const DAMPED: bool = DAMPED;
     const SECOND: f64 = -1.0;
 
@@ -44,20 +44,20 @@ impl<P: Pack, const DAMPED: bool, const D: usize> PairLaw<P, D> for SpringLaw<'_
         [self.rest_length, self.stiffness, self.damping]
     }
     #[inline(always)]
-    fn force(&self, [rest_length, stiffness, damping]: [P; 3], d: [P; D], rate: [P; D]) -> ([P; D], P) {
+    fn force<S: Lane>(&self, [rest_length, stiffness, damping]: [S; 3], d: [S; D], rate: [S; D]) -> ([S; D], S) {
         let (length, inverse) = length(&d);
-        let stretch = length - rest_length;
-        let mut tension = stiffness * stretch;
-        let mut power = P::zero();
+        // Positive where the spring pushes its ends apart.
+        let mut thrust = stiffness * (rest_length - length);
+        let mut power = S::zero();
         if DAMPED {
             // Rate of the length; zero under any rigid motion.
             let speed = dot(&rate, &d) * inverse;
             let drag = damping * speed;
-            tension += drag;
+            thrust -= drag;
             power = drag * speed;
         }
-        let factor = -(tension * inverse);
-        (lanes!(P, i => d[i] * factor), power)
+        let factor = thrust * inverse;
+        (lanes!(S, i => d[i] * factor), power)
     }
 }
 
@@ -68,10 +68,10 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for SpringLaw<'_, false> {
         [self.rest_length, self.stiffness, self.damping]
     }
     #[inline(always)]
-    fn of(&self, [rest_length, stiffness, _]: [P; 3], a: [P; D], b: [P; D]) -> P {
-        let d = lanes!(P, i => a[i] - b[i]);
+    fn of(&self, _part: usize, [rest_length, stiffness, _]: [P::Part; 3], a: [P::Part; D], b: [P::Part; D]) -> P::Part {
+        let d = lanes!(P::Part, i => a[i] - b[i]);
         let (length, _) = length(&d);
         let stretch = length - rest_length;
-        P::splat(0.5) * stiffness * stretch * stretch
+        P::Part::splat(0.5) * stiffness * stretch * stretch
     }
 }

@@ -4,7 +4,7 @@ use opruga_core::pair::{PairLaw, PairTable, PairTerm};
 use opruga_core::potential::Sink;
 use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
 use opruga_core::tile::Tile;
-use opruga_math::{Pack, WIDTH, lanes};
+use opruga_math::{Lane, Pack, WIDTH, lanes};
 use opruga_mesh::Adjacency;
 
 /// A closed boundary.
@@ -27,44 +27,44 @@ pub(super) struct NodeRings {
 
 /// Edges of the plane: each end gets half of the outward normal times the gauge pressure.
 #[derive(Clone, Copy)]
-struct EdgePush<'a, P> {
-    half: P,
-    none: &'a Parameter,
+struct EdgePush<'a> {
+    /// Half of the gauge pressure of each body, and minus that.
+    half: &'a Parameter,
+    minus_half: &'a Parameter,
 }
 
-impl<P: Pack, const D: usize> PairLaw<P, D> for EdgePush<'_, P> {
+impl<const D: usize> PairLaw<D> for EdgePush<'_> {
     const DAMPED: bool = false;
+    const LINEAR: bool = true;
     const SECOND: f64 = 1.0;
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
-        [self.none; 3]
+        [&Parameter::NONE, self.half, self.minus_half]
     }
     #[inline(always)]
-    fn force(&self, _none: [P; 3], d: [P; D], _rate: [P; D]) -> ([P; D], P) {
-        let mut force = [P::zero(); D];
-        force[0] = -(d[1] * self.half);
-        force[1] = d[0] * self.half;
-        (force, P::zero())
+    fn force<S: Lane>(&self, [_, half, minus_half]: [S; 3], d: [S; D], _rate: [S; D]) -> ([S; D], S) {
+        let mut force = [S::zero(); D];
+        force[0] = d[1] * minus_half;
+        force[1] = d[0] * half;
+        (force, S::zero())
     }
 }
 
-/// Twice the area of the triangle between an edge and the origin.
+/// Twice the area between an edge and the line x = origin, positive where the edge goes up: twice ∮ x dy.
 #[derive(Clone, Copy)]
-struct TwiceArea<'a, P, const D: usize> {
-    origin: [P; D],
+struct TwiceArea<'a, P> {
+    twice_origin: P,
     none: &'a Parameter,
 }
 
-impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
+impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P> {
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
         [self.none; 3]
     }
     #[inline(always)]
-    fn of(&self, _none: [P; 3], a: [P; D], b: [P; D]) -> P {
-        let (xa, ya) = (a[0] - self.origin[0], a[1] - self.origin[1]);
-        let (xb, yb) = (b[0] - self.origin[0], b[1] - self.origin[1]);
-        xa * yb - xb * ya
+    fn of(&self, part: usize, _none: [P::Part; 3], a: [P::Part; D], b: [P::Part; D]) -> P::Part {
+        ((a[0] + b[0]) - self.twice_origin.part(part)) * (b[1] - a[1])
     }
 }
 
@@ -84,7 +84,8 @@ impl Boundary {
         let origin = origin::<P, D>(view);
         match self {
             Boundary::Plane(edges) => {
-                let twice = edges.sum::<P, _, D>(view, TwiceArea { origin, none: &Parameter::NONE });
+                let twice = edges
+                    .sum::<P, _, D>(view, TwiceArea { twice_origin: origin[0] + origin[0], none: &Parameter::NONE });
                 twice * P::splat(0.5)
             }
             Boundary::Space(rings) => rings.volume::<P, D>(view, &origin, area),
@@ -102,7 +103,9 @@ impl Boundary {
     ) {
         match self {
             Boundary::Plane(edges) => {
-                edges.add_force::<P, _, D>(EdgePush { half: gauge * P::splat(0.5), none: &Parameter::NONE }, view, tile)
+                let half = gauge * P::splat(0.5);
+                let (half, minus_half) = (Parameter::by_body(half.to_array()), Parameter::by_body((-half).to_array()));
+                edges.add_force::<P, _, D>(EdgePush { half: &half, minus_half: &minus_half }, view, tile)
             }
             Boundary::Space(_) => {
                 let places = area.len() / D;

@@ -9,29 +9,35 @@
 //!             b   1 2 3 4 5                          pairs    17, 31, 40
 //! ```
 
+mod chain;
+
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
-use crate::tile::{Tile, Weight};
+use crate::tile::Tile;
+use chain::Chain;
 use core::ops::Range;
-use opruga_math::{Pack, Strip, StripMut, WIDTH, lanes};
+use opruga_math::{Lane, Pack, Strip, StripMut, WIDTH, lanes};
 
 /// The law of a pair: the force on its first node as a function of the differences of its ends.
-pub trait PairLaw<P: Pack, const D: usize>: Copy {
+pub trait PairLaw<const D: usize>: Copy {
     /// Whether the law reads velocities.
     const DAMPED: bool;
+    /// Whether the force is linear in d, reads no velocities and has the same parameters for all pairs: then two pairs that
+    /// follow each other act on the node between them like one from the node before it to the node behind it.
+    const LINEAR: bool = false;
     /// The force on the second node is this times the force on the first: −1 or +1.
     const SECOND: f64;
-    /// Three numbers per pair that the law reads.
+    /// Three numbers per pair that the law reads. The last two are mostly the same for all pairs; then they are read once.
     fn parameters(&self) -> [&Parameter; 3];
-    /// Force on the first node [N] and dissipated power [W] of eight pairs, from d = xₐ − x_b and its rate.
-    fn force(&self, parameters: [P; 3], d: [P; D], rate: [P; D]) -> ([P; D], P);
+    /// Force on the first node [N] and dissipated power [W] of pairs, from d = xₐ − x_b and its rate.
+    fn force<S: Lane>(&self, parameters: [S; 3], d: [S; D], rate: [S; D]) -> ([S; D], S);
 }
 
 /// A function of a pair that is added up over all pairs.
 pub trait PairTerm<P: Pack, const D: usize>: Copy {
     /// Three numbers per pair that the function reads.
     fn parameters(&self) -> [&Parameter; 3];
-    /// The value for eight pairs with these ends.
-    fn of(&self, parameters: [P; 3], a: [P; D], b: [P; D]) -> P;
+    /// The value for the pairs of one part of a pack with these ends.
+    fn of(&self, part: usize, parameters: [P::Part; 3], a: [P::Part; D], b: [P::Part; D]) -> P::Part;
 }
 
 /// A stretch of pairs (a + k, b + k); `first` is the number of its first pair.
@@ -146,7 +152,7 @@ impl PairTable {
 
     /// Adds the forces of all pairs on the nodes of a tile.
     #[inline(always)]
-    pub fn add_force<P: Pack, L: PairLaw<P, D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) {
+    pub fn add_force<P: Pack, L: PairLaw<D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) {
         let stride = self.layout.stride();
         let (start, end) = (tile.range.start, tile.range.end);
         let mut power = P::zero();
@@ -161,31 +167,13 @@ impl PairTable {
             }
             if run.b == run.a + 1 && length > WIDTH {
                 let whole = a <= start && end <= a + length + stride;
-                let weight = if whole { tile.weight.take() } else { None };
+                let weight = if whole && !L::LINEAR { tile.weight.take() } else { None };
                 tile.settle::<P>();
-                match (self.layout, weight) {
-                    (Layout::Single, Some(w)) => {
-                        self.chain::<P, L, false, true, D>(law, view, [a, first, length], w, tile, &mut power)
-                    }
-                    (Layout::Batch, Some(w)) => {
-                        self.chain::<P, L, true, true, D>(law, view, [a, first, length], w, tile, &mut power)
-                    }
-                    (Layout::Single, None) => self.chain::<P, L, false, false, D>(
-                        law,
-                        view,
-                        [a, first, length],
-                        Weight { mass: &Parameter::NONE, gravity: [0.0; D] },
-                        tile,
-                        &mut power,
-                    ),
-                    (Layout::Batch, None) => self.chain::<P, L, true, false, D>(
-                        law,
-                        view,
-                        [a, first, length],
-                        Weight { mass: &Parameter::NONE, gravity: [0.0; D] },
-                        tile,
-                        &mut power,
-                    ),
+                let chain = Chain { law, view, a, first, length };
+                match self.layout {
+                    _ if L::LINEAR => chain.add_linear::<P>(stride, tile),
+                    Layout::Single => chain.add::<P, false>(weight, tile, &mut power),
+                    Layout::Batch => chain.add::<P, true>(weight, tile, &mut power),
                 }
                 continue;
             }
@@ -211,88 +199,10 @@ impl PairTable {
         }
     }
 
-    /// Evaluates a run whose second nodes are the next ones: an outline, a row. Node p receives the force of its own pair
-    /// and that of the pair before it, which is the pack of forces moved up by one node.
-    #[inline(always)]
-    fn chain<P: Pack, L: PairLaw<P, D>, const BATCH: bool, const FRESH: bool, const D: usize>(
-        &self,
-        law: L,
-        view: &View<D>,
-        [a, first, length]: [usize; 3],
-        weight: Weight<D>,
-        tile: &mut Tile<D>,
-        power: &mut P,
-    ) {
-        let next = if BATCH { WIDTH } else { 1 };
-        let (start, end) = (tile.range.start.max(a), tile.range.end.min(a + length + next));
-        // The pack before the first node supplies the force of the pair that ends there.
-        let lead = if start > a { if BATCH || start >= a + WIDTH { WIDTH } else { start - a } } else { 0 };
-        let packed = (end - start).next_multiple_of(WIDTH);
-        let x = Strip::<D>::new(&view.x, start - lead, lead + packed + next);
-        let v = Strip::<D>::new(&view.v, start - lead, lead + packed + next);
-        let [p0, p1, p2] = law.parameters();
-        let from = first + start - lead - a;
-        let until = lead + packed;
-        let (p0, p1, p2) = (p0.strip(from, until), p1.strip(from, until), p2.strip(from, until));
-        let mut force = StripMut::<D>::new(tile.force.each_mut().map(|f| &mut **f), start - tile.range.start, packed);
-        let mass = weight.mass.strip(start, packed);
-        let mut previous = [P::zero(); D];
-        if lead > 0 {
-            let d = lanes!(P, i => x.load::<P>(i, 0) - x.load::<P>(i, next));
-            let rate =
-                if L::DAMPED { lanes!(P, i => v.load::<P>(i, 0) - v.load::<P>(i, next)) } else { [P::zero(); D] };
-            let (f, _) = law.force([p0.load(0), p1.load(0), p2.load(0)], d, rate);
-            previous = f;
-            if lead < WIDTH {
-                // The pair before the first node is not the last of the pack.
-                for i in 0..D {
-                    let last = f[i].to_array()[lead - 1];
-                    previous[i] = P::splat(last);
-                }
-            }
-        }
-        // Pairs end before the last node; nodes end with the run or with the tile.
-        let (pairs, nodes) = (a + length - start, end - start);
-        for k in (0..packed).step_by(WIDTH) {
-            let at = lead + k;
-            let d = lanes!(P, i => x.load::<P>(i, at) - x.load::<P>(i, at + next));
-            let rate =
-                if L::DAMPED { lanes!(P, i => v.load::<P>(i, at) - v.load::<P>(i, at + next)) } else { [P::zero(); D] };
-            let (mut f, mut dissipated) = law.force([p0.load(at), p1.load(at), p2.load(at)], d, rate);
-            if k + WIDTH > pairs {
-                let real = P::first(pairs.saturating_sub(k));
-                for i in 0..D {
-                    f[i] = P::select(real, f[i], P::zero());
-                }
-                dissipated = P::select(real, dissipated, P::zero());
-            }
-            // Nodes behind the tile belong to another one, whose forces may wait next door.
-            let beyond = k + WIDTH > nodes;
-            if L::DAMPED && beyond {
-                dissipated = P::select(P::first(nodes - k), dissipated, P::zero());
-            }
-            let heavy: P = if FRESH { mass.load(k) } else { P::zero() };
-            for i in 0..D {
-                let arriving = if BATCH { previous[i] } else { f[i].after(previous[i]) };
-                let old = if FRESH { heavy * P::splat(weight.gravity[i]) } else { force.load::<P>(i, k) };
-                let sum = old + f[i];
-                let mut sum = if L::SECOND < 0.0 { sum - arriving } else { sum + arriving };
-                if beyond {
-                    sum = P::select(P::first(nodes - k), sum, old);
-                }
-                force.store(i, k, sum);
-                previous[i] = f[i];
-            }
-            if L::DAMPED {
-                *power += dissipated;
-            }
-        }
-    }
-
     /// Evaluates a run of at most one pack.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
-    fn short<P: Pack, L: PairLaw<P, D>, const D: usize>(
+    fn short<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,
         law: L,
         view: &View<D>,
@@ -337,7 +247,7 @@ impl PairTable {
     /// Evaluates the places `all` of a run once and adds them to the nodes of the tile.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
-    fn run<P: Pack, L: PairLaw<P, D>, const D: usize>(
+    fn run<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,
         law: L,
         view: &View<D>,
@@ -353,9 +263,7 @@ impl PairTable {
         }
         let packed = all.len().next_multiple_of(WIDTH);
         let room = packed + 2 * WIDTH;
-        if tile.slots.len() < D * room {
-            tile.slots.resize(D * room, 0.0);
-        }
+        tile.slots.grow(D * room);
         // One strip from the lower end on serves both ends: few pointers stay in registers.
         let base = a.min(b);
         let (to_a, to_b) = (a - base, b - base);
@@ -369,7 +277,7 @@ impl PairTable {
             p2.strip(first + all.start, packed),
         );
         // Slot columns begin with a spare pack, so that a shifted read stays inside.
-        let mut slots = StripMut::<1>::new([tile.slots.as_mut_slice()], 0, D * room);
+        let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * room);
         // Places of the run, counted from `all.start`, whose first node belongs to the tile.
         let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
         for k in (0..packed).step_by(WIDTH) {
@@ -428,7 +336,7 @@ impl PairTable {
 
     /// Evaluates the pulled pairs of the nodes of a tile.
     #[inline(always)]
-    fn pull<P: Pack, L: PairLaw<P, D>, const D: usize>(
+    fn pull<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,
         pull: &Pull,
         law: L,
@@ -497,12 +405,29 @@ impl PairTable {
             let packed = length.next_multiple_of(WIDTH);
             let base = a.min(b);
             let (to_a, to_b) = (a - base, b - base);
-            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b));
+            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b).max(WIDTH));
+            let follows = P::WHOLE && b == a + stride;
+            let mut here = lanes!(P, i => x.load::<P>(i, to_a));
             let [p0, p1, p2] = term.parameters();
             let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
             for k in (0..packed).step_by(WIDTH) {
-                let (from, to) = (lanes!(P, i => x.load::<P>(i, k + to_a)), lanes!(P, i => x.load::<P>(i, k + to_b)));
-                sum.add(k, length, term.of([p0.load(k), p1.load(k), p2.load(k)], from, to));
+                let mut values = P::zero();
+                if follows {
+                    let next = lanes!(P, i => x.load::<P>(i, k + WIDTH));
+                    let to = lanes!(P, i => if stride == 1 { here[i].ahead_of(next[i]) } else { next[i] });
+                    values = of_all_parts(term, [p0.load(k), p1.load(k), p2.load(k)], here, to);
+                    here = next;
+                    sum.add(k, length, values);
+                    continue;
+                }
+                for part in 0..P::PARTS {
+                    let from = lanes!(P::Part, i => x.load_part::<P>(i, k + to_a, part));
+                    let to = lanes!(P::Part, i => x.load_part::<P>(i, k + to_b, part));
+                    let parameters =
+                        [p0.load_part::<P>(k, part), p1.load_part::<P>(k, part), p2.load_part::<P>(k, part)];
+                    values.set_part(part, term.of(part, parameters, from, to));
+                }
+                sum.add(k, length, values);
             }
         }
         if let Some(pull) = &self.pull {
@@ -512,24 +437,33 @@ impl PairTable {
                         let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
                         let xa = lanes!(P, i => P::gather(view.x[i], a));
                         let xb = lanes!(P, i => P::gather(view.x[i], b));
-                        sum.add(
-                            k,
-                            pull.loose.len(),
-                            term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb),
-                        );
+                        let parameters = load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH]));
+                        sum.add(k, pull.loose.len(), of_all_parts(term, parameters, xa, xb));
                     }
                 }
                 Layout::Batch => {
                     for (k, &pair) in pull.loose.iter().enumerate() {
                         let (a, b) = (pull.ends[0][k] as usize * WIDTH, pull.ends[1][k] as usize * WIDTH);
                         let at = load_parameters(&term.parameters(), At::Run(pair as usize * WIDTH));
-                        sum.add(k * WIDTH, usize::MAX, term.of(at, load(&view.x, a), load(&view.x, b)));
+                        sum.add(k * WIDTH, usize::MAX, of_all_parts(term, at, load(&view.x, a), load(&view.x, b)));
                     }
                 }
             }
         }
         sum.total()
     }
+}
+
+/// A function of eight pairs.
+#[inline(always)]
+fn of_all_parts<P: Pack, T: PairTerm<P, D>, const D: usize>(term: T, p: [P; 3], a: [P; D], b: [P; D]) -> P {
+    let mut values = P::zero();
+    for part in 0..P::PARTS {
+        let parameters = [p[0].part(part), p[1].part(part), p[2].part(part)];
+        let (from, to) = (lanes!(P::Part, i => a[i].part(part)), lanes!(P::Part, i => b[i].part(part)));
+        values.set_part(part, term.of(part, parameters, from, to));
+    }
+    values
 }
 
 #[inline(always)]

@@ -1,0 +1,333 @@
+//! From images to the pictures of a stream: what a decoder draws is drawn here too, so that errors do not grow.
+
+use super::bits::{Bits, Unit, pack, se_bits};
+use super::frame::{BLOCK, Frame};
+use super::parameters::NUMBER_BITS;
+use super::predict::{Direction, Motion, Neighbour, Pixels, difference, expected_motion, from_before, from_neighbours};
+use super::residual::{Counts, Quantisers, Residual};
+use super::tables::PATTERNS;
+use crate::image::Image;
+
+/// The furthest motion that is looked for, in pixels; every level allows it.
+const FURTHEST: i32 = 56;
+
+/// The most steps of a search.
+const STEPS: usize = 24;
+
+/// A picture of the stream.
+#[derive(Clone, Debug)]
+pub(crate) struct Coded {
+    /// Its unit, without a start code.
+    pub(crate) unit: Vec<u8>,
+    /// Whether it needs no other.
+    pub(crate) refresh: bool,
+}
+
+/// Codes image after image.
+#[derive(Clone, Debug)]
+pub(crate) struct Encoder {
+    /// Macroblocks in a row, and rows.
+    blocks: [usize; 2],
+    /// The pixels of the last image.
+    last: Vec<u8>,
+    source: Frame,
+    /// What a decoder has drawn of the frame before, and what it draws of this one.
+    before: Frame,
+    drawn: Frame,
+    quantisers: Quantisers,
+    counts: Counts,
+    /// The motion of each macroblock; none where it was not taken from the frame before.
+    motion: Vec<Option<Motion>>,
+    /// What a bit costs, in sums of differences.
+    bit_cost: u32,
+    /// Pictures from one that needs no other to the next.
+    period: u32,
+    /// The number of the next picture since then.
+    number: u32,
+    /// How many there have been that need no other.
+    refreshes: u32,
+}
+
+/// A macroblock taken from its neighbours.
+struct Alone {
+    luma: Direction,
+    colour: Direction,
+    expected: [Pixels; 3],
+    cost: u32,
+}
+
+impl Encoder {
+    /// An encoder for images of one size.
+    pub(crate) fn new([width, height]: [u32; 2], quantiser: u8, period: u32) -> Encoder {
+        let blocks = [width, height].map(|side| (side as usize).div_ceil(BLOCK));
+        let frame = Frame::new(blocks[0], blocks[1]);
+        Encoder {
+            blocks,
+            last: Vec::new(),
+            source: frame.clone(),
+            before: frame.clone(),
+            drawn: frame,
+            quantisers: Quantisers::new(quantiser),
+            counts: Counts::new(blocks[0], blocks[1]),
+            motion: vec![None; blocks[0] * blocks[1]],
+            bit_cost: 1 << (quantiser.saturating_sub(10) / 6),
+            period,
+            number: 0,
+            refreshes: 0,
+        }
+    }
+
+    /// What a decoder shows of the latest picture.
+    #[cfg(test)]
+    pub(crate) fn shown(&self) -> &Frame {
+        &self.before
+    }
+
+    /// Codes an image.
+    pub(crate) fn code(&mut self, image: &Image) -> Coded {
+        let changed = self.take(image);
+        let refresh = self.number.is_multiple_of(self.period);
+        if refresh {
+            self.number = 0;
+        }
+        let mut bits = Bits::default();
+        self.head(&mut bits, refresh);
+        let mut skipped = 0;
+        for y in 0..self.blocks[1] {
+            for x in 0..self.blocks[0] {
+                if refresh {
+                    let alone = self.alone([x, y]);
+                    self.write_alone(&mut bits, [x, y], &alone, 0);
+                } else if !changed[y * self.blocks[0] + x] {
+                    self.repeat(&mut bits, [x, y], &mut skipped);
+                } else {
+                    self.renew(&mut bits, [x, y], &mut skipped);
+                }
+            }
+        }
+        if skipped > 0 {
+            bits.ue(skipped);
+        }
+        if refresh {
+            self.refreshes += 1;
+        }
+        self.number += 1;
+        std::mem::swap(&mut self.before, &mut self.drawn);
+        Coded { unit: pack(if refresh { Unit::Refresh } else { Unit::Slice }, &bits.finish()), refresh }
+    }
+
+    /// Takes the changed macroblocks of an image over, and says which they are.
+    fn take(&mut self, image: &Image) -> Vec<bool> {
+        let pixels = image.pixels();
+        let row_bytes = 4 * image.width() as usize;
+        let mut changed = vec![self.last.len() != pixels.len(); self.blocks[0] * self.blocks[1]];
+        if self.last.len() == pixels.len() {
+            for (row, (line, last)) in pixels.chunks_exact(row_bytes).zip(self.last.chunks_exact(row_bytes)).enumerate()
+            {
+                if line == last {
+                    continue;
+                }
+                let flags = &mut changed[row / BLOCK * self.blocks[0]..][..self.blocks[0]];
+                for (x, (part, last)) in line.chunks(4 * BLOCK).zip(last.chunks(4 * BLOCK)).enumerate() {
+                    if part != last {
+                        flags[x] = true;
+                        // A colour at the left edge of a macroblock takes in the pixel before it.
+                        if let Some(next) = flags.get_mut(x + 1) {
+                            *next = true;
+                        }
+                    }
+                }
+            }
+        }
+        for (place, _) in changed.iter().enumerate().filter(|(_, changed)| **changed) {
+            self.source.take(image, [place % self.blocks[0], place / self.blocks[0]]);
+        }
+        self.last.clear();
+        self.last.extend_from_slice(pixels);
+        changed
+    }
+
+    /// Writes the head of a picture, which is one slice.
+    fn head(&self, bits: &mut Bits, refresh: bool) {
+        bits.ue(0);
+        bits.ue(if refresh { 7 } else { 5 });
+        bits.ue(0);
+        bits.put(self.number, NUMBER_BITS);
+        if refresh {
+            bits.ue(self.refreshes % 2);
+            // Nothing before is kept.
+            bits.flag(false);
+            bits.flag(false);
+        } else {
+            // One picture before, in its place, and the oldest one is dropped.
+            bits.flag(false);
+            bits.flag(false);
+            bits.flag(false);
+        }
+        bits.se(0);
+        // No deblocking: lines and letters stay sharp.
+        bits.ue(1);
+    }
+
+    /// The motion that a macroblock is expected to have, the one it has if it is left out, and those of neighbours.
+    fn neighbours(&self, [x, y]: [usize; 2]) -> ([Motion; 2], [Neighbour; 3]) {
+        let wide = self.blocks[0];
+        let at = |x: usize, y: usize| self.motion[y * wide + x];
+        let left = (x > 0).then(|| at(x - 1, y));
+        let above = (y > 0).then(|| at(x, y - 1));
+        let corner = match y {
+            0 => None,
+            _ if x + 1 < wide => Some(at(x + 1, y - 1)),
+            _ => (x > 0).then(|| at(x - 1, y - 1)),
+        };
+        (expected_motion(left, above, corner), [left, above, corner])
+    }
+
+    /// What the frame before lets expect.
+    fn moved(&self, place: [usize; 2], motion: Motion) -> [Pixels; 3] {
+        std::array::from_fn(|plane| from_before(&self.before, plane, place, motion))
+    }
+
+    /// Codes a macroblock that shows what it showed before.
+    fn repeat(&mut self, bits: &mut Bits, place: [usize; 2], skipped: &mut u32) {
+        let ([expected, left_out], _) = self.neighbours(place);
+        self.drawn.copy_block(&self.before, place);
+        self.counts.clear(place);
+        let here = || -> [Pixels; 3] { self.moved(place, [0, 0]) };
+        if left_out == [0, 0] || self.moved(place, left_out) == here() {
+            self.motion[place[1] * self.blocks[0] + place[0]] = Some(left_out);
+            *skipped += 1;
+            return;
+        }
+        self.motion[place[1] * self.blocks[0] + place[0]] = Some([0, 0]);
+        bits.ue(std::mem::take(skipped));
+        bits.ue(0);
+        (0..2).for_each(|axis| bits.se(-expected[axis]));
+        bits.ue(u32::from(PATTERNS[0]));
+    }
+
+    /// Codes a macroblock that has changed.
+    fn renew(&mut self, bits: &mut Bits, place: [usize; 2], skipped: &mut u32) {
+        let ([expected, left_out], neighbours) = self.neighbours(place);
+        let (motion, pixels, cost) = self.search(place, expected, left_out, neighbours);
+        // What a body leaves behind is drawn anew where it is empty, so that no traces stay.
+        let empty = cost > 0 && self.source.is_empty(place);
+        if cost > 256 || empty {
+            let alone = self.alone(place);
+            if alone.cost < cost || empty {
+                bits.ue(std::mem::take(skipped));
+                self.write_alone(bits, place, &alone, 5);
+                return;
+            }
+        }
+        let mut pixels = [pixels, [0; 256], [0; 256]];
+        for plane in 1..3 {
+            pixels[plane] = from_before(&self.before, plane, place, motion);
+        }
+        let residual = Residual::new(&self.source, &mut self.drawn, place, &pixels, false, &self.quantisers);
+        self.motion[place[1] * self.blocks[0] + place[0]] = Some(motion);
+        if residual.is_empty() && motion == left_out {
+            self.counts.clear(place);
+            *skipped += 1;
+            return;
+        }
+        bits.ue(std::mem::take(skipped));
+        bits.ue(0);
+        (0..2).for_each(|axis| bits.se(motion[axis] - expected[axis]));
+        let pattern = 16 * residual.colour_coded + residual.luma_coded;
+        bits.ue(u32::from(PATTERNS[pattern as usize]));
+        if pattern != 0 {
+            bits.se(0);
+        }
+        residual.write(bits, &mut self.counts, place);
+    }
+
+    /// Looks for a macroblock in the frame before, beginning with what the neighbours say.
+    fn search(
+        &self,
+        place: [usize; 2],
+        expected: Motion,
+        left_out: Motion,
+        neighbours: [Neighbour; 3],
+    ) -> (Motion, Pixels, u32) {
+        let mut best = ([0, 0], [0; 256], u32::MAX);
+        let mut tried = [[i32::MAX; 2]; 8];
+        let mut count = 0;
+        let mut attempt = |motion: Motion, best: &mut (Motion, Pixels, u32)| {
+            let motion = motion.map(|part| (part >> 2).clamp(-FURTHEST, FURTHEST) << 2);
+            if tried.contains(&motion) {
+                return false;
+            }
+            tried[count % 8] = motion;
+            count += 1;
+            let bits = (0..2).map(|axis| se_bits(motion[axis] - expected[axis])).sum::<u32>();
+            let price = if motion == left_out { 0 } else { self.bit_cost * (bits + 2) };
+            if price >= best.2 {
+                return false;
+            }
+            let pixels = from_before(&self.before, 0, place, motion);
+            let cost = price + difference(&self.source, 0, place, &pixels, best.2 - price);
+            let better = cost < best.2;
+            if better {
+                *best = (motion, pixels, cost);
+            }
+            better
+        };
+        for motion in
+            [Some([0, 0]), Some(left_out), Some(expected)].into_iter().chain(neighbours.map(Option::flatten)).flatten()
+        {
+            attempt(motion, &mut best);
+        }
+        for reach in [16, 4] {
+            for _ in 0..STEPS {
+                if best.2 < 128 {
+                    break;
+                }
+                let [x, y] = best.0;
+                let around = [[x - reach, y], [x + reach, y], [x, y - reach], [x, y + reach]];
+                let mut moved = false;
+                for motion in around {
+                    moved |= attempt(motion, &mut best);
+                }
+                if !moved {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// The best expectation from the neighbours.
+    fn alone(&self, place: [usize; 2]) -> Alone {
+        let best = |plane: usize| {
+            let directions: &[Direction] = match self.source.is_empty(place) {
+                true => &[Direction::Mean],
+                false => &[Direction::Mean, Direction::Right, Direction::Down],
+            };
+            let mut best = (Direction::Mean, [0; 256], u32::MAX);
+            for direction in directions.iter().copied().filter(|direction| direction.is_possible(place)) {
+                let pixels = from_neighbours(&self.drawn, plane, place, direction);
+                let cost = difference(&self.source, plane, place, &pixels, best.2);
+                if cost < best.2 {
+                    best = (direction, pixels, cost);
+                }
+            }
+            best
+        };
+        let (luma, brightness, cost) = best(0);
+        let (colour, blue, _) = best(1);
+        let red = from_neighbours(&self.drawn, 2, place, colour);
+        Alone { luma, colour, expected: [brightness, blue, red], cost: cost + 12 * self.bit_cost }
+    }
+
+    /// Codes a macroblock from its neighbours; `offset` is how many other kinds come first in this kind of picture.
+    fn write_alone(&mut self, bits: &mut Bits, place: [usize; 2], alone: &Alone, offset: u32) {
+        let residual = Residual::new(&self.source, &mut self.drawn, place, &alone.expected, true, &self.quantisers);
+        self.motion[place[1] * self.blocks[0] + place[0]] = None;
+        let luma = if residual.luma_coded == 0 { 0 } else { 12 };
+        bits.ue(offset + 1 + alone.luma.luma() + 4 * residual.colour_coded + luma);
+        bits.ue(alone.colour.chroma());
+        bits.se(0);
+        residual.write(bits, &mut self.counts, place);
+    }
+}

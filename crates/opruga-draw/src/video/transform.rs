@@ -1,0 +1,211 @@
+//! The transform of four by four numbers, its quantiser, and both backwards (H.264, clause 8.5).
+
+/// Four by four numbers, row by row.
+pub(crate) type Block = [i32; 16];
+
+/// The order in which the numbers of a block are coded.
+pub(crate) const ZIGZAG: [usize; 16] = [0, 1, 4, 8, 5, 2, 3, 6, 9, 12, 13, 10, 7, 11, 14, 15];
+
+/// The largest level: larger ones have no code in this profile.
+const LARGEST: i32 = 2063;
+
+/// Multipliers of the quantiser: at even rows and columns, at odd ones, and where one is even and the other odd.
+const SCALES: [[i32; 3]; 6] = [
+    [13107, 5243, 8066],
+    [11916, 4660, 7490],
+    [10082, 4194, 6554],
+    [9362, 3647, 5825],
+    [8192, 3355, 5243],
+    [7282, 2893, 4559],
+];
+
+/// Multipliers of the way back, in the same order.
+const STEPS: [[i32; 3]; 6] = [[10, 16, 13], [11, 18, 14], [13, 20, 16], [14, 23, 18], [16, 25, 20], [18, 29, 23]];
+
+/// The quantiser of the differences of colour that belongs to one of the brightness.
+pub(crate) fn chroma_quantiser(quantiser: u8) -> u8 {
+    const ABOVE_29: [u8; 22] = [29, 30, 31, 32, 32, 33, 34, 34, 35, 35, 36, 36, 37, 37, 37, 38, 38, 38, 39, 39, 39, 39];
+    if quantiser < 30 { quantiser } else { ABOVE_29[usize::from(quantiser) - 30] }
+}
+
+/// One quantiser, from 0 (fine) to 51 (coarse).
+#[derive(Clone, Debug)]
+pub(crate) struct Quantiser {
+    scales: Block,
+    steps: Block,
+    /// What is added before rounding down, for a block.
+    round: i32,
+    shift: u32,
+}
+
+impl Quantiser {
+    /// A quantiser; `share` of a step, one third or one sixth, is what a number needs less to reach the next level.
+    pub(crate) fn new(quantiser: u8, share: i32) -> Quantiser {
+        let class = |place: usize| match (place / 4 % 2, place % 4 % 2) {
+            (0, 0) => 0,
+            (1, 1) => 1,
+            _ => 2,
+        };
+        let (rest, sixth) = (usize::from(quantiser % 6), u32::from(quantiser / 6));
+        let shift = 15 + sixth;
+        Quantiser {
+            scales: std::array::from_fn(|place| SCALES[rest][class(place)]),
+            steps: std::array::from_fn(|place| STEPS[rest][class(place)] << sixth),
+            round: (1 << shift) / share,
+            shift,
+        }
+    }
+
+    /// Replaces numbers by levels, from the place `first` on; says whether any is left.
+    pub(crate) fn quantise(&self, block: &mut Block, first: usize) -> bool {
+        let mut any = 0;
+        for place in first..16 {
+            let level = (block[place].abs() * self.scales[place] + self.round) >> self.shift;
+            let level = level.min(LARGEST);
+            any |= level;
+            block[place] = if block[place] < 0 { -level } else { level };
+        }
+        any != 0
+    }
+
+    /// Replaces the sums of blocks by levels; says whether any is left.
+    pub(crate) fn quantise_sums(&self, sums: &mut [i32]) -> bool {
+        let mut any = 0;
+        for sum in sums {
+            let level = (sum.abs() * self.scales[0] + 2 * self.round) >> (self.shift + 1);
+            let level = level.min(LARGEST);
+            any |= level;
+            *sum = if *sum < 0 { -level } else { level };
+        }
+        any != 0
+    }
+
+    /// Replaces levels by numbers, from the place `first` on.
+    pub(crate) fn restore(&self, block: &mut Block, first: usize) {
+        for place in first..16 {
+            block[place] *= self.steps[place];
+        }
+    }
+
+    /// Replaces the levels of sixteen sums by the first numbers of the blocks.
+    pub(crate) fn restore_sixteen(&self, sums: &mut Block) {
+        hadamard(sums);
+        for sum in sums.iter_mut() {
+            // The steps hold the shift by a sixth of the quantiser already.
+            *sum = (*sum * self.steps[0] + 2) >> 2;
+        }
+    }
+
+    /// Replaces the levels of four sums by the first numbers of the blocks.
+    pub(crate) fn restore_four(&self, sums: &mut [i32; 4]) {
+        hadamard_four(sums);
+        for sum in sums.iter_mut() {
+            *sum = (*sum * self.steps[0]) >> 1;
+        }
+    }
+}
+
+/// Turns differences into frequencies.
+pub(crate) fn forward(block: &mut Block) {
+    for (start, step) in [(4, 1), (1, 4)] {
+        for line in 0..4 {
+            let at = |place: usize| line * start + place * step;
+            let [a, b, c, d] = [block[at(0)], block[at(1)], block[at(2)], block[at(3)]];
+            let (outer, inner) = (a + d, b + c);
+            let (far, near) = (a - d, b - c);
+            block[at(0)] = outer + inner;
+            block[at(1)] = 2 * far + near;
+            block[at(2)] = outer - inner;
+            block[at(3)] = far - 2 * near;
+        }
+    }
+}
+
+/// Turns restored frequencies into differences and adds them to pixels.
+pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
+    let mut work = *block;
+    for (start, step) in [(4, 1), (1, 4)] {
+        for line in 0..4 {
+            let at = |place: usize| line * start + place * step;
+            let [a, b, c, d] = [work[at(0)], work[at(1)], work[at(2)], work[at(3)]];
+            let (even, odd) = (a + c, a - c);
+            let (low, high) = ((b >> 1) - d, b + (d >> 1));
+            work[at(0)] = even + high;
+            work[at(1)] = odd + low;
+            work[at(2)] = odd - low;
+            work[at(3)] = even - high;
+        }
+    }
+    for row in 0..4 {
+        for (pixel, value) in pixels[row * stride..row * stride + 4].iter_mut().zip(&work[4 * row..]) {
+            *pixel = (i32::from(*pixel) + ((value + 32) >> 6)).clamp(0, 255) as u8;
+        }
+    }
+}
+
+/// Sums and differences of sixteen numbers.
+pub(crate) fn hadamard(block: &mut Block) {
+    for (start, step) in [(4, 1), (1, 4)] {
+        for line in 0..4 {
+            let at = |place: usize| line * start + place * step;
+            let [a, b, c, d] = [block[at(0)], block[at(1)], block[at(2)], block[at(3)]];
+            block[at(0)] = a + b + c + d;
+            block[at(1)] = a + b - c - d;
+            block[at(2)] = a - b - c + d;
+            block[at(3)] = a - b + c - d;
+        }
+    }
+}
+
+/// Sums and differences of four numbers.
+pub(crate) fn hadamard_four([a, b, c, d]: &mut [i32; 4]) {
+    [*a, *b, *c, *d] = [*a + *b + *c + *d, *a - *b + *c - *d, *a + *b - *c - *d, *a - *b - *c + *d];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_transformed_comes_back_within_half_a_step() {
+        let mut state = 1_u32;
+        for quantiser in [0, 12, 22, 30] {
+            let rule = Quantiser::new(quantiser, 2);
+            for _ in 0..200 {
+                let mut block: Block = std::array::from_fn(|_| {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    (state >> 24) as i32 - 128
+                });
+                let wanted = block;
+                forward(&mut block);
+                rule.quantise(&mut block, 0);
+                rule.restore(&mut block, 0);
+                let mut pixels = [128; 16];
+                add_inverse(&block, &mut pixels, 4);
+                // A step of the quantiser is 0.625 at 0 and doubles every six.
+                let step = 0.625 * (f64::from(quantiser) / 6.0).exp2();
+                let square: f64 = (0..16).map(|p| f64::from(i32::from(pixels[p]) - 128 - wanted[p]).powi(2)).sum();
+                assert!((square / 16.0).sqrt() < 0.5 * step + 0.5, "{quantiser}: {square}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_come_back() {
+        let rule = Quantiser::new(12, 3);
+        let wanted: Block = std::array::from_fn(|place| 64 * (place as i32 * 37 % 101 - 50));
+        let mut sums = wanted;
+        hadamard(&mut sums);
+        sums.iter_mut().for_each(|sum| *sum = (*sum + 1) >> 1);
+        rule.quantise_sums(&mut sums);
+        rule.restore_sixteen(&mut sums);
+        // The way back expects sums four times as large as the way there gives: 16 pixels, each divided by 64.
+        assert!(sums.iter().zip(&wanted).all(|(a, b)| (a - 4 * b).abs() < 100), "{sums:?} {wanted:?}");
+        let wanted = [640, -320, 64, 0];
+        let mut sums = wanted;
+        hadamard_four(&mut sums);
+        rule.quantise_sums(&mut sums);
+        rule.restore_four(&mut sums);
+        assert!(sums.iter().zip(&wanted).all(|(a, b)| (a - 4 * b).abs() < 100), "{sums:?} {wanted:?}");
+    }
+}
