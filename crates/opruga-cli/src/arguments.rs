@@ -50,7 +50,7 @@ pub(crate) enum Bench {
 #[derive(Args, Debug)]
 pub(crate) struct BenchVertices {
     /// Threads
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
     /// Count the drawing of every frame too
     #[arg(long)]
@@ -65,7 +65,7 @@ pub(crate) struct BenchVertices {
     #[arg(long)]
     pub(crate) only: Option<usize>,
     /// Processor time spent on each row [s]
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,
     /// Write the log–log plot to this SVG file
     #[arg(long)]
@@ -96,10 +96,10 @@ pub(crate) struct Run {
     #[arg(default_value = "ball")]
     pub(crate) scene: String,
     /// How long to run, instead of what the scene says; 0 writes the state at the start [s]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     /// Frames of the animation for each second
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
     pub(crate) fps: f64,
     /// The folder for the output [default: out/SCENE]
     #[arg(long)]
@@ -108,7 +108,7 @@ pub(crate) struct Run {
     #[arg(long)]
     pub(crate) force: bool,
     /// Threads
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
     /// Override a parameter: PATH=VALUE, such as time.substeps=64
     #[arg(long = "set", value_name = "PATH=VALUE")]

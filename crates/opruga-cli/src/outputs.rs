@@ -22,6 +22,8 @@ const MOST_BODY_COLUMNS: usize = 64;
 /// What is kept of every frame.
 pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
+    /// Bodies with columns of their own, and how many.
+    bodies: Vec<(usize, usize)>,
     /// The first column of the table that belongs to a probe.
     first_probe: usize,
     scenery: Option<Scenery>,
@@ -86,9 +88,13 @@ impl Recorder {
             .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
         columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
+        // Bodies that commands add later have none: the head of the table is written for the whole run.
+        let mut bodies = Vec::new();
         for body in 0..world.blueprint().bodies.len().min(MOST_BODY_COLUMNS) {
             let name = world.blueprint().bodies[body].name.clone();
-            columns.extend(world.readings(body).iter().map(|(what, _)| format!("{name}.{what}")));
+            let readings = world.readings(body);
+            columns.extend(readings.iter().map(|(what, _)| format!("{name}.{what}")));
+            bodies.push((body, readings.len()));
         }
         let first_probe = columns.len();
         for probe in 0..world.blueprint().probes.len() {
@@ -108,6 +114,7 @@ impl Recorder {
         }
         Recorder {
             table: NumberTable::new(columns),
+            bodies,
             first_probe,
             scenery: (!call.no_pictures).then(|| Scenery::new(world)),
             moments: Vec::new(),
@@ -138,15 +145,15 @@ impl Recorder {
         ];
         row.extend(m.linear.0);
         row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
-        let there: Vec<bool> = (0..world.blueprint().bodies.len()).map(|b| world.handle(b).is_some()).collect();
-        for body in 0..there.len().min(MOST_BODY_COLUMNS) {
-            let readings = world.readings(body);
-            row.extend(readings.iter().map(|(_, x)| if there[body] { *x } else { f64::NAN }));
+        for &(body, columns) in &self.bodies {
+            let mut readings: Vec<f64> = world.readings(body).iter().map(|(_, x)| *x).collect();
+            // A body that is gone leaves its columns empty.
+            readings.resize(columns, f64::NAN);
+            row.extend(readings);
         }
         for probe in 0..world.blueprint().probes.len() {
             row.extend(world.probe(probe).into_iter().map(|(_, x)| x));
         }
-        row.resize(self.table.columns().len(), f64::NAN);
         self.table.push(&row);
         if let Some(scenery) = &self.scenery
             && world.frames().is_multiple_of(self.every)
@@ -267,7 +274,14 @@ impl Outputs<'_> {
             return Ok(());
         }
         let pictures: Vec<draw::Picture> = draw::spread(moments, 60).into_iter().map(|m| scenery.picture(m)).collect();
-        let view = draw::View::fit(&pictures).map_err(draw_failed)?;
+        let view = match draw::View::fit(&pictures) {
+            Ok(view) => view,
+            Err(nothing @ draw::DrawError::Empty(_)) => {
+                eprintln!("note: no strip and no video: {nothing}");
+                return Ok(());
+            }
+            Err(error) => return Err(draw_failed(error)),
+        };
         let panels = draw::spread(&pictures, 10);
         let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(draw_failed)?;
         let png = strip.to_png().map_err(draw_failed)?;

@@ -7,6 +7,9 @@ fn said(text: &str) -> String {
     errors(text).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
+/// A command that adds a body at 2 s, in four lines.
+const LATE: &str = "[[command]]\ndo = \"add\"\nat = 2\nbody = { name = \"late\", shape = { kind = \"ring\", radius = 1, vertices = 4 }, mass = 1 }\n";
+
 /// A scene and what is said about it.
 fn cases() -> Vec<(String, &'static str)> {
     let model = |fields: &str| format!("{HEAD}{}", BALL.replace("stiffness = 10", fields));
@@ -159,13 +162,34 @@ fn cases() -> Vec<(String, &'static str)> {
         ),
         (
             with(
-                "copies = { count = [2], spacing = [3, 0] }\n[[load]]\nkind = \"force\"\nbody = \"ball\"\nvalue = [0, 1]\n",
+                "copies = { count = [2], spacing = [3, 0] }\n[[probe]]\nname = \"p\"\nbody = \"ball\"\nrecord = [\"position\"]\n",
             ),
             r#"scene.toml:15:8: error[scene.unknown_name]: there is no body `ball`
  15 | body = "ball"
     |        ^^^^^^
   = allowed: ball[0], ball[1]
   = hint: `ball` has 2 copies: `ball[0]` … `ball[1]`"#,
+        ),
+        (
+            with(&format!("{LATE}[[command]]\ndo = \"pin\"\nat = 1\nuntil = 3\nbody = \"late\"\n")),
+            r#"scene.toml:18:6: error[scene.range]: the command begins at 1 s, before `late` is added at 2 s
+ 18 | at = 1
+    |      ^
+  = allowed: a time from 2"#,
+        ),
+        (
+            with(&format!("{LATE}[[load]]\nkind = \"force\"\nbody = \"lat\"\nvalue = [0, 1]\n")),
+            r#"scene.toml:18:8: error[scene.unknown_name]: there is no body `lat`
+ 18 | body = "lat"
+    |        ^^^^^
+  = allowed: ball, late
+  = hint: did you mean `late`?"#,
+        ),
+        (
+            with(&format!("{LATE}{LATE}")),
+            r#"scene.toml:19:17: error[scene.duplicate_name]: two bodies are called `late`
+ 19 | body = { name = "late", shape = { kind = "ring", radius = 1, vertices = 4 }, mass = 1 }
+    |                 ^^^^^^"#,
         ),
         (
             HEAD.replace("symplectic_euler", "symplectic_eler"),

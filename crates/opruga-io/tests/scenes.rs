@@ -251,3 +251,57 @@ fn lenient_and_strict() {
     assert_eq!(read_text(&text).expect("turned").1[0].about.code, "shape.flipped");
     assert!(read_with(&text, &Options { strict: true, ..Options::default() }).is_err());
 }
+
+/// Bodies that commands add are numbered behind the others, in the order of time, whatever the order in the file; loads,
+/// commands, probes and parameters may name them.
+#[test]
+fn bodies_that_come_later_can_be_named() {
+    let add = |name: &str, at: f64| {
+        format!(
+            "[[command]]\ndo = \"add\"\nat = {at:?}\nbody = {{ name = \"{name}\", shape = {{ kind = \"ring\", radius = 1, vertices = 4 }}, mass = 1, \
+             models = [{{ kind = \"mass_spring\", stiffness = 1 }}] }}\n"
+        )
+    };
+    let scene = plane(&format!(
+        "{HEAD}{BALL}{}{}[[command]]\ndo = \"drag\"\nat = 3\nbody = \"first\"\nnode = 3\npath = [[3, 0, 0], [4, 1, 1]]\n\
+         [[command]]\ndo = \"set\"\nat = 3\npath = \"body.second.models.mass_spring.stiffness\"\nvalue = 5\n\
+         [[load]]\nkind = \"force\"\nbody = \"second\"\nselect = {{ side = \"top\" }}\nvalue = [0, 1]\n\
+         [[probe]]\nname = \"p\"\nbody = \"first\"\nrecord = [\"position\"]\n",
+        add("second", 2.0),
+        add("first", 1.0)
+    ));
+    assert_eq!(scene.bodies.len(), 1);
+    assert!(matches!(&scene.commands[0].action, Action::Add(body) if body.name == "first"));
+    assert!(matches!(scene.commands[2].action, Action::Drag { body: 1, node: Some(3), .. }));
+    assert_eq!((scene.loads[0].body, scene.probes[0].body), (2, 1));
+    let misspelt = format!(
+        "{HEAD}{}[[command]]\ndo = \"set\"\nat = 3\npath = \"body.late.models.mass_spring.stifness\"\nvalue = 5\n",
+        add("late", 2.0)
+    );
+    assert_eq!(errors(&misspelt)[0].code, "scene.unknown_parameter");
+}
+
+/// A load, push or pin on a body with copies acts on all of them, its places moved along; on `name[i]` on one.
+#[test]
+fn loads_and_commands_on_all_copies() {
+    let on = |body: &str| {
+        plane(&format!(
+            "{HEAD}{BALL}copies = {{ count = [2, 3], spacing = [5, 7] }}\n\
+             [[load]]\nkind = \"force\"\nbody = \"{body}\"\nselect = {{ ball = {{ center = [1, 0], radius = 0.1 }} }}\nvalue = [0, 1]\n\
+             [[command]]\ndo = \"push\"\nat = 1\nuntil = 2\nbody = \"{body}\"\nselect = {{ box = [[0.9, -0.1], [1.1, 0.1]] }}\nforce = [1, 0]\n\
+             [[command]]\ndo = \"pin\"\nat = 2\nuntil = 3\nbody = \"{body}\"\n"
+        ))
+    };
+    let all = on("ball");
+    assert_eq!((all.loads.len(), all.commands.len()), (6, 12));
+    for (k, load) in all.loads.iter().enumerate() {
+        let body = &all.bodies[load.body];
+        assert_eq!((load.body, body.name.as_str()), (k, format!("ball[{k}]").as_str()));
+        assert_eq!(load.select.resolve(&body.mesh, &body.translation), [0]);
+        let Action::Push { body: pushed, select, .. } = &all.commands[k].action else { panic!("a push") };
+        assert_eq!((*pushed, select.resolve(&body.mesh, &body.translation)), (k, vec![0]));
+    }
+    let one = on("ball[0]");
+    assert_eq!((one.loads.len(), one.commands.len(), one.loads[0].body), (1, 2, 0));
+    assert_eq!(one.loads[0], all.loads[0]);
+}

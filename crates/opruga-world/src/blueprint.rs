@@ -193,7 +193,7 @@ pub struct CommandBlueprint<const D: usize> {
 pub enum Action<const D: usize> {
     /// Pull a node toward a moving pointer by a critically damped spring.
     Drag {
-        /// The body, by its place in the list.
+        /// The body, by its place in the list; bodies that commands add are numbered on behind it, in the order of time.
         body: usize,
         /// The node; none: the one nearest to the pointer at the beginning.
         node: Option<u32>,

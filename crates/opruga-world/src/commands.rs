@@ -1,10 +1,10 @@
 //! What is done to bodies while they move: drag, push, pin, set, add, remove.
 
 use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
+use crate::changes::{Change, Source};
 use crate::error::WorldError;
 use crate::loads::{NodeForces, Pull};
-use crate::world::World;
-use opruga_core::spec::{Value, nearest};
+use crate::world::{Warning, World};
 use opruga_core::state::View;
 use opruga_core::system::Pin;
 use std::sync::Arc;
@@ -53,14 +53,20 @@ impl<const D: usize> World<D> {
         // A frame begins at a multiple of its length; times given in decimals may differ from it by rounding.
         let soon = now + 1e-9 * self.blueprint.time.frame;
         let mut rebuild = false;
+        let mut failed = Ok(());
         for number in 0..self.running.len() {
             let running = &self.running[number];
             let over = soon >= running.command.until && running.command.until > running.command.at;
             match running.progress {
                 Progress::Waiting if over => self.running[number].progress = Progress::Done,
-                Progress::Waiting if soon >= running.command.at => {
-                    rebuild |= self.begin(number)?;
-                }
+                Progress::Waiting if soon >= running.command.at => match self.begin(number) {
+                    Ok(acts) => rebuild |= acts,
+                    // It is told once; what else begins now begins all the same.
+                    Err(error) => {
+                        self.running[number].progress = Progress::Done;
+                        failed = failed.and(Err(error));
+                    }
+                },
                 Progress::Acting { .. } if over => {
                     self.running[number].progress = Progress::Done;
                     rebuild = true;
@@ -68,12 +74,22 @@ impl<const D: usize> World<D> {
                 _ => {}
             }
         }
-        if rebuild { self.rebuild() } else { Ok(()) }
+        if rebuild {
+            self.rebuild()?;
+        }
+        failed
     }
 
     /// Begins a command; whether islands must be built anew.
     fn begin(&mut self, number: usize) -> Result<bool, WorldError> {
         let command = self.running[number].command.clone();
+        if let Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } = &command.action
+            && self.handle(*body).is_none()
+        {
+            let path = self.blueprint.bodies.get(*body).map_or(format!("body {body}"), |b| b.name.clone());
+            let message = format!("there is no such body at t = {} s, when a command begins", self.time());
+            return Err(WorldError::Path { path, message });
+        }
         let acting = match &command.action {
             Action::Drag { body, node, facet, path, .. } => {
                 let pointer = opruga_core::system::along_path::<D>(path, self.time()).0;
@@ -99,7 +115,7 @@ impl<const D: usize> World<D> {
             }
             Action::Add(body) => {
                 self.running[number].progress = Progress::Done;
-                self.add_body((**body).clone())?;
+                self.include((**body).clone(), Source::Command(number))?;
                 return Ok(false);
             }
             Action::Remove { name } => {
@@ -245,67 +261,18 @@ impl<const D: usize> World<D> {
         out
     }
 
-    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `integrator.FIELD`, `world.gravity`, `time.substeps`.
-    ///
-    /// # Errors
-    /// [`WorldError`] says what is wrong; the world stays as it was. The stable step is estimated anew.
-    pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
-        let refuse = |message: String| WorldError::Path { path: path.to_string(), message };
-        let parts: Vec<&str> = path.split('.').collect();
-        let before = self.blueprint.clone();
-        match parts.as_slice() {
-            ["body", name, "models", kind, field] => {
-                let known = self.blueprint.bodies.iter().map(|b| b.name.as_str());
-                let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
-                let body = self.body(name).ok_or_else(|| refuse(format!("there is no body `{name}`{hint}")))?;
-                let spec = self.registry.model(kind).map(|m| m.spec());
-                let kinds: Vec<String> =
-                    self.blueprint.bodies[body].models.iter().map(|m| m.kind().to_string()).collect();
-                let values = self.blueprint.bodies[body].models.iter_mut().find(|m| m.kind() == *kind);
-                let (Some(spec), Some(values)) = (spec, values) else {
-                    return Err(refuse(format!("body `{name}` has no model `{kind}`; it has {}", kinds.join(", "))));
-                };
-                values.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
-            }
-            ["integrator", field] => {
-                let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
-                let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
-                self.blueprint.integrator.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
-            }
-            ["world", "gravity"] => match &value {
-                Value::Numbers(g) if g.len() == D && g.iter().all(|x| x.is_finite()) => {
-                    self.blueprint.surroundings.gravity = core::array::from_fn(|d| g[d]);
-                }
-                other => return Err(refuse(format!("is {other}; allowed: {D} finite numbers"))),
-            },
-            ["world", "drag"] => match &value {
-                Value::Number(rate) if rate.is_finite() && *rate >= 0.0 => self.blueprint.surroundings.drag = *rate,
-                other => return Err(refuse(format!("is {other}; allowed: a number >= 0"))),
-            },
-            ["time", "substeps"] => match value {
-                Value::Integer(n) if (1..=1_000_000).contains(&n) => self.blueprint.time.substeps = n as u32,
-                other => return Err(refuse(format!("is {other}; allowed: a whole number from 1 to 1000000"))),
-            },
-            _ => {
-                return Err(refuse(
-                    "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD, world.gravity, world.drag, time.substeps"
-                        .into(),
-                ));
-            }
-        }
-        if let Err(error) = self.rebuild().and_then(|()| self.check_stability()) {
-            self.blueprint = before;
-            self.rebuild()?;
-            return Err(error);
-        }
-        Ok(())
-    }
-
     /// Adds a body; returns its number.
     ///
     /// # Errors
     /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
     pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
+        let kept = body.clone();
+        let number = self.include(body, Source::Program(self.added.len()))?;
+        self.added.push(kept);
+        Ok(number)
+    }
+
+    fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
         if self.body(&body.name).is_some() {
             return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
         }
@@ -322,8 +289,10 @@ impl<const D: usize> World<D> {
             self.generation.pop();
             self.states.pop();
             self.rebuild_from_states()?;
+            self.check_stability()?;
             return Err(error);
         }
+        self.changes.push(Change::Added(source));
         Ok(number)
     }
 
@@ -338,13 +307,19 @@ impl<const D: usize> World<D> {
         self.save_states();
         self.alive[body] = false;
         self.generation[body] += 1;
+        let mut dropped = 0;
         for running in &mut self.running {
             if let Action::Drag { body: b, .. } | Action::Push { body: b, .. } | Action::Pin { body: b, .. } =
                 &running.command.action
                 && *b == body
             {
+                dropped += u64::from(running.progress != Progress::Done);
                 running.progress = Progress::Done;
             }
+        }
+        if dropped > 0 {
+            let message = format!("commands on body `{name}` ended when it was taken away");
+            self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
         }
         self.rebuild_from_states()
     }

@@ -2,6 +2,7 @@
 
 pub mod blueprint;
 mod build;
+mod changes;
 mod commands;
 pub mod error;
 mod island;

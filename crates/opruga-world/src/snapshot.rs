@@ -1,10 +1,12 @@
 //! The whole state of a world in bytes, and back.
 
 use crate::build::BodyState;
+use crate::changes::{Change, Source, Told};
 use crate::commands::Progress;
 use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::world::World;
+use opruga_core::spec::Value;
 use std::sync::atomic::Ordering;
 
 /// Little-endian numbers, one after the other.
@@ -17,6 +19,48 @@ impl Writer {
     }
     fn number(&mut self, x: f64) {
         self.0.extend(x.to_le_bytes());
+    }
+    fn text(&mut self, text: &str) {
+        self.count(text.len() as u64);
+        self.0.extend(text.as_bytes());
+    }
+    fn numbers(&mut self, numbers: &[f64]) {
+        self.count(numbers.len() as u64);
+        numbers.iter().for_each(|x| self.number(*x));
+    }
+    fn value(&mut self, value: &Value) {
+        match value {
+            Value::Number(x) => {
+                self.count(0);
+                self.number(*x);
+            }
+            Value::Integer(n) => {
+                self.count(1);
+                self.count(*n as u64);
+            }
+            Value::Boolean(b) => {
+                self.count(2);
+                self.count(u64::from(*b));
+            }
+            Value::Text(text) => {
+                self.count(3);
+                self.text(text);
+            }
+            Value::Numbers(numbers) => {
+                self.count(4);
+                self.numbers(numbers);
+            }
+            Value::Integers(numbers) => {
+                self.count(5);
+                self.count(numbers.len() as u64);
+                numbers.iter().for_each(|n| self.count(u64::from(*n)));
+            }
+            Value::Rows(rows) => {
+                self.count(6);
+                self.count(rows.len() as u64);
+                rows.iter().for_each(|row| self.numbers(row));
+            }
+        }
     }
     fn vectors<const D: usize>(&mut self, vectors: &[[f64; D]]) {
         self.count(vectors.len() as u64);
@@ -49,6 +93,44 @@ impl Reader<'_> {
     fn number(&mut self) -> Result<f64, WorldError> {
         Ok(f64::from_le_bytes(self.eight()?))
     }
+    fn text(&mut self) -> Result<String, WorldError> {
+        let n = self.count()?;
+        let promised = || WorldError::Snapshot(format!("it promises a text of {n} bytes, more than it holds"));
+        let n = usize::try_from(n).map_err(|_| promised())?;
+        let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
+        self.0 = tail;
+        String::from_utf8(head.to_vec()).map_err(|_| WorldError::Snapshot("a text is no UTF-8".into()))
+    }
+    fn numbers(&mut self) -> Result<Vec<f64>, WorldError> {
+        let n = self.length()?;
+        (0..n).map(|_| self.number()).collect()
+    }
+    fn value(&mut self) -> Result<Value, WorldError> {
+        Ok(match self.count()? {
+            0 => Value::Number(self.number()?),
+            1 => Value::Integer(self.count()? as i64),
+            2 => Value::Boolean(self.count()? == 1),
+            3 => Value::Text(self.text()?),
+            4 => Value::Numbers(self.numbers()?),
+            5 => {
+                let n = self.length()?;
+                Value::Integers((0..n).map(|_| Ok(self.count()? as u32)).collect::<Result<_, WorldError>>()?)
+            }
+            6 => {
+                let n = self.length()?;
+                Value::Rows((0..n).map(|_| self.numbers()).collect::<Result<_, _>>()?)
+            }
+            _ => return Err(WorldError::Snapshot("a value is of an unknown kind".into())),
+        })
+    }
+    fn change(&mut self) -> Result<Told, WorldError> {
+        Ok(match self.count()? {
+            0 => Told::Set(self.text()?, self.value()?),
+            1 => Told::Added(Source::Command(self.count()? as usize)),
+            2 => Told::Added(Source::Program(self.count()? as usize)),
+            _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
+        })
+    }
     fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
         let n = self.length()?;
         let mut out = Vec::with_capacity(n);
@@ -63,7 +145,7 @@ impl Reader<'_> {
     }
 }
 
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -75,6 +157,24 @@ impl<const D: usize> World<D> {
         out.count(VERSION);
         out.count(D as u64);
         out.count(self.frames);
+        out.count(self.changes.len() as u64);
+        for change in &self.changes {
+            match change {
+                Change::Set { path, value, .. } => {
+                    out.count(0);
+                    out.text(path);
+                    out.value(value);
+                }
+                Change::Added(Source::Command(number)) => {
+                    out.count(1);
+                    out.count(*number as u64);
+                }
+                Change::Added(Source::Program(number)) => {
+                    out.count(2);
+                    out.count(*number as u64);
+                }
+            }
+        }
         out.count(self.states.len() as u64);
         for (state, alive) in self.states.iter().zip(&self.alive) {
             out.count(u64::from(*alive));
@@ -118,16 +218,31 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
+        let bodies = (std::mem::take(&mut self.states), self.alive.clone(), self.generation.clone(), self.frames);
+        let outcome = self.go_to(bytes);
+        if outcome.is_err() {
+            (self.blueprint, self.changes, self.colliders, self.running) = kept;
+            (self.states, self.alive, self.generation, self.frames) = bodies;
+        }
+        outcome
+    }
+
+    fn go_to(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         let mut reader = Reader(bytes);
         if reader.count()? != VERSION {
-            return refuse("its version is not 1");
+            return refuse("its version is not 2");
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
         }
         let frames = reader.count()?;
-        if reader.count()? != self.states.len() as u64 {
+        let changes = reader.length()?;
+        let changes: Vec<Told> = (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?;
+        let changed = !changes.is_empty() || !self.changes.is_empty();
+        self.replay(changes)?;
+        if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
         }
         let mut states = Vec::new();
@@ -179,11 +294,15 @@ impl<const D: usize> World<D> {
         }
         self.states = states;
         self.alive = alive;
+        self.generation.resize(self.alive.len(), 0);
         self.frames = frames;
         for (running, progress) in self.running.iter_mut().zip(progress) {
             running.progress = progress;
         }
         self.rebuild_from_states()?;
+        if changed {
+            self.check_stability()?;
+        }
         let [user, gas, damping, friction, contact, start, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls] = counts;
         self.limited_pulls.store(limited_pulls, Ordering::Relaxed);

@@ -2,6 +2,7 @@
 
 use crate::blueprint::{Blueprint, BodyBlueprint, Recorded};
 use crate::build::{BodyState, Builder, group, initial_state, rest_volume};
+use crate::changes::Change;
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
@@ -9,7 +10,7 @@ use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
-use opruga_core::error::StepError;
+use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::{Stability, estimate};
 use opruga_core::state::View;
@@ -18,10 +19,13 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// The largest number of threads.
+const MOST_THREADS: usize = 256;
+
 /// How a world is run; none of it changes results.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Threads; 1 runs everything on the calling one.
+    /// Threads, 1 to 256; 1 runs everything on the calling one.
     pub threads: usize,
     /// Vector instructions; none: the best that the processor has.
     pub simd: Option<Simd>,
@@ -81,6 +85,10 @@ pub struct World<const D: usize> {
     pub(crate) frames: u64,
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
+    /// What has changed in the blueprint since the start.
+    pub(crate) changes: Vec<Change<D>>,
+    /// Bodies that the program has added, whatever became of them.
+    pub(crate) added: Vec<BodyBlueprint<D>>,
     pool: Option<rayon::ThreadPool>,
 }
 
@@ -108,14 +116,12 @@ impl<const D: usize> World<D> {
         options: Options,
         registry: Arc<Registry<D>>,
     ) -> Result<World<D>, WorldError> {
+        if !(1..=MOST_THREADS).contains(&options.threads) {
+            let message = format!("is {}; allowed: 1 to {MOST_THREADS}", options.threads);
+            return Err(WorldError::Path { path: "threads".into(), message });
+        }
         let integrator = build_integrator(&registry, &blueprint)?;
-        let colliders = if blueprint.colliders.is_empty() {
-            None
-        } else {
-            let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
-            let built = Colliders::<D>::build(&values);
-            Some(Arc::new(built.map_err(|source| WorldError::Build { place: "collider".into(), source })?))
-        };
+        let colliders = build_colliders(&blueprint)?;
         let pool = (options.threads > 1)
             .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build())
             .transpose()
@@ -146,6 +152,8 @@ impl<const D: usize> World<D> {
             frames: 0,
             stability: Vec::new(),
             warnings: Vec::new(),
+            changes: Vec::new(),
+            added: Vec::new(),
             pool,
         };
         world.rebuild_from_states()?;
@@ -243,8 +251,11 @@ impl<const D: usize> World<D> {
             }
             seen.push(key);
             let name = blueprint.name.clone();
-            let stability = estimate(&self.islands[number].system, &*self.integrator)
-                .map_err(|e| WorldError::Step { body: name.clone(), message: e.to_string() })?;
+            let stability =
+                estimate(&self.islands[number].system, &*self.integrator).map_err(|e| WorldError::Build {
+                    place: format!("body `{name}`"),
+                    source: BuildError::new("stability", "step.not_finite", step_message(&e)),
+                })?;
             match stability.largest_stable_step {
                 Some(limit) if h > limit => {
                     let error = WorldError::UnstableStep {
@@ -403,7 +414,23 @@ impl<const D: usize> World<D> {
         system.state.v.at(system.layout.place(node as usize, lane))
     }
     /// Moves a node and gives it a velocity, from outside of the physics.
-    pub fn place_node(&mut self, body: usize, node: u32, position: [f64; D], velocity: [f64; D]) {
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no such node, or a number is not finite; the world stays as it was.
+    pub fn place_node(
+        &mut self,
+        body: usize,
+        node: u32,
+        position: [f64; D],
+        velocity: [f64; D],
+    ) -> Result<(), WorldError> {
+        let refuse = |message: String| Err(WorldError::Path { path: format!("body {body}, node {node}"), message });
+        if self.handle(body).is_none() || node as usize >= self.node_count(body) {
+            return refuse("there is no such node".into());
+        }
+        if let Some(x) = position.iter().chain(&velocity).find(|x| !x.is_finite()) {
+            return refuse(format!("{x} is no place and no velocity; allowed: finite numbers"));
+        }
         let (island, lane) = self.place[body];
         let island = &mut self.islands[island];
         let place = island.system.layout.place(node as usize, lane);
@@ -414,6 +441,7 @@ impl<const D: usize> World<D> {
         let before = self.energy.total();
         self.flows.start += self.stock_energy() - before;
         self.refresh_ledger();
+        Ok(())
     }
     /// The mass of a node [kg].
     pub fn node_mass(&self, body: usize, node: u32) -> f64 {
@@ -430,7 +458,12 @@ impl<const D: usize> World<D> {
         self.rebuild()
     }
     /// What models say of a body: `volume`, `pressure` and others.
+    ///
+    /// A body that is not there says nothing.
     pub fn readings(&mut self, body: usize) -> Vec<(&'static str, f64)> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
         let (island, lane) = self.place[body];
         let time = self.time();
         let system = &mut self.islands[island].system;
@@ -453,23 +486,22 @@ impl<const D: usize> World<D> {
     pub fn rest_volume(&self, body: usize) -> f64 {
         rest_volume(&self.blueprint.bodies[body])
     }
-    /// The values of a probe now: names of columns and numbers.
+    /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there.
     pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
         let probe = self.blueprint.probes[number].clone();
-        if !self.alive[probe.body] {
-            return Vec::new();
-        }
-        let nodes = self.selected(probe.body, &probe.select);
+        let there = self.handle(probe.body).is_some();
+        let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
         let axes = ["x", "y", "z"];
         let mut out = Vec::new();
         for what in &probe.record {
             let (word, vector) = match what {
                 Recorded::Position => ("", self.mean(&nodes, |w, n| w.position(probe.body, n))),
                 Recorded::Velocity => ("v", self.mean(&nodes, |w, n| w.velocity(probe.body, n))),
-                Recorded::Reaction => ("r", self.reaction(probe.body, &nodes)),
+                Recorded::Reaction if there => ("r", self.reaction(probe.body, &nodes)),
+                Recorded::Reaction => ("r", [0.0; D]),
             };
             for d in 0..D {
-                out.push((format!("{}.{}{}", probe.name, word, axes[d]), vector[d]));
+                out.push((format!("{}.{}{}", probe.name, word, axes[d]), if there { vector[d] } else { f64::NAN }));
             }
         }
         out
@@ -554,6 +586,26 @@ impl<const D: usize> World<D> {
     pub fn heap_bytes(&self) -> usize {
         self.islands.iter().map(Island::heap_bytes).sum()
     }
+}
+
+/// What an error of the estimate says, without the name of the estimate.
+fn step_message(error: &StepError) -> String {
+    match error {
+        StepError::Model { message, .. } => message.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The obstacles of a blueprint.
+pub(crate) fn build_colliders<const D: usize>(
+    blueprint: &Blueprint<D>,
+) -> Result<Option<Arc<Colliders<D>>>, WorldError> {
+    if blueprint.colliders.is_empty() {
+        return Ok(None);
+    }
+    let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
+    let built = Colliders::<D>::build(&values);
+    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { place: "collider".into(), source })?)))
 }
 
 fn build_integrator<const D: usize>(

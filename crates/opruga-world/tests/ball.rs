@@ -212,3 +212,170 @@ fn bodies_come_and_go_and_old_handles_are_told() {
     world.frame().expect("a frame");
     assert!(world.position(number, 0)[0] < -4.0);
 }
+
+fn command(at: f64, action: Action<2>) -> CommandBlueprint<2> {
+    CommandBlueprint { at, until: at, action }
+}
+
+/// Two rings whose parameters change, of which one is taken away while a third comes and is pulled.
+fn changing() -> Blueprint<2> {
+    let mut blueprint = rings(2, 36, "symplectic_euler");
+    blueprint.surroundings.largest_velocity = Some(50.0);
+    let mut late = blueprint.bodies[0].clone();
+    late.name = "late".into();
+    late.translation = [-3.0, 1.0];
+    let set = |path: &str, value| Action::Set { path: path.into(), value };
+    let pull = Action::Drag {
+        body: 2,
+        node: None,
+        facet: false,
+        stiffness: None,
+        path: vec![vec![0.4, -3.0, 1.0], vec![0.8, -2.0, 2.0]],
+        largest_force: None,
+    };
+    blueprint.commands = vec![
+        command(0.1, set("body.ball[0].models.pressure.nRT", Value::Number(80.0))),
+        command(0.2, set("collider.0.friction", Value::Number(0.9))),
+        command(0.2, set("world.gravity", Value::Numbers(vec![1.0, -5.0]))),
+        command(0.2, set("world.largest_velocity", Value::Number(4.0))),
+        command(0.3, Action::Add(Box::new(late))),
+        CommandBlueprint { at: 0.4, until: 0.8, action: pull },
+        command(0.5, set("time.substeps", Value::Integer(60))),
+        command(0.5, Action::Remove { name: "ball[1]".into() }),
+    ];
+    blueprint
+}
+
+/// What commands have changed before a snapshot is part of it: in a new world, and in one that has gone on.
+#[test]
+fn a_snapshot_of_a_changed_scene_can_be_restored() {
+    let whole = run(changing(), Options::default(), 60);
+    let mut hashes = Vec::new();
+    for frames in [3, 9, 15, 20, 28, 40] {
+        let mut first = run(changing(), Options::default(), frames);
+        let bytes = first.snapshot();
+        let mut second = World::new(changing(), Options { threads: 2, ..Options::default() }).expect("a world");
+        second.restore(&bytes).unwrap_or_else(|e| panic!("after {frames} frames: {e}"));
+        assert_eq!(second.state_hash(), first.state_hash(), "after {frames} frames");
+        assert_eq!(second.blueprint().bodies.len(), first.blueprint().bodies.len());
+        while second.frames() < 60 {
+            second.frame().expect("a frame");
+        }
+        assert_eq!(second.state_hash(), whole.state_hash(), "interrupted after {frames} frames");
+        assert_eq!(second.energy(), whole.energy());
+        // The same world, back again.
+        second.restore(&bytes).expect("back");
+        assert_eq!(second.state_hash(), first.state_hash());
+        while second.frames() < 60 {
+            second.frame().expect("a frame");
+        }
+        assert_eq!(second.state_hash(), whole.state_hash(), "rewound to {frames} frames");
+        for length in [8, 16, 24, 32, 40, 60, bytes.len() - 8] {
+            assert!(second.restore(&bytes[..length]).is_err(), "cut at {length}");
+            assert_eq!(second.state_hash(), whole.state_hash(), "a refused snapshot changes nothing");
+        }
+        second.frame().expect("goes on");
+        hashes.push(first.state_hash());
+    }
+    hashes.dedup();
+    assert_eq!(hashes.len(), 6);
+}
+
+#[test]
+fn parameters_of_obstacles_limits_and_copies_change_in_flight() {
+    let mut world = run(rings(3, 36, "symplectic_euler"), Options::default(), 2);
+    world.set("world.largest_force", Value::Number(900.0)).expect("a parameter");
+    world.set("world.largest_velocity", Value::Integer(3)).expect("a parameter");
+    world.set("collider.0.restitution", Value::Number(0.9)).expect("a parameter");
+    world.set("body.ball.models.pressure.nRT", Value::Number(70.0)).expect("all copies");
+    world.set("body.ball[1].models.1.nRT", Value::Number(60.0)).expect("one copy, its model by number");
+    let gas: Vec<_> = world.blueprint().bodies.iter().map(|b| b.models[1].number("nRT")).collect();
+    assert_eq!(gas, [Some(70.0), Some(60.0), Some(70.0)]);
+    for _ in 0..60 {
+        world.frame().expect("a frame");
+    }
+    assert!(world.warnings().iter().any(|w| w.code == "limit.velocity" && w.count > 0), "{:?}", world.warnings());
+    let before = world.state_hash();
+    for (path, value, text) in [
+        ("world.largest_force", Value::Number(0.0), "`world.largest_force`: is 0; allowed: a number > 0"),
+        ("world.largest_forc", Value::Number(1.0), "did you mean `largest_force`?"),
+        ("collider.1.friction", Value::Number(0.1), "`collider.1.friction`: there is no collider 1; allowed: 0"),
+        ("collider.0.friction", Value::Number(-0.1), "a number >= 0"),
+        ("collider.0.normal", Value::Numbers(vec![0.0, 0.0]), "normal"),
+        ("body.ball.models.gas.nRT", Value::Number(1.0), "has no model `gas`; it has mass_spring, pressure"),
+        ("body.ball.models.mass_spring.stiffness", Value::Number(1e9), "the largest stable step is"),
+        ("body.9.models.pressure.nRT", Value::Number(1.0), "there is no body `9`"),
+        ("gravity", Value::Number(1.0), "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD"),
+    ] {
+        let error = world.set(path, value).expect_err(path).to_string();
+        assert!(error.contains(text), "{error}");
+    }
+    assert_eq!(world.state_hash(), before);
+    assert_eq!(world.blueprint().surroundings.largest_force, Some(900.0));
+    world.frame().expect("goes on");
+}
+
+/// Bodies may all be gone, and commands may name bodies that are not there: no panic, and it is said.
+#[test]
+fn an_empty_world_goes_on_and_commands_on_lost_bodies_are_told() {
+    let mut blueprint = rings(1, 36, "symplectic_euler");
+    let push = |body: usize| Action::Push { body, select: Selector::All, force: [1.0, 0.0] };
+    blueprint.probes.push(ProbeBlueprint {
+        name: "p".into(),
+        body: 0,
+        select: Selector::All,
+        record: vec![Recorded::Position, Recorded::Reaction],
+    });
+    blueprint.commands = vec![
+        CommandBlueprint { at: 0.5, until: 0.6, action: push(0) },
+        command(0.0, Action::Remove { name: "ball[0]".into() }),
+        CommandBlueprint { at: 0.2, until: 0.6, action: push(7) },
+    ];
+    let mut world = run(blueprint, Options::default(), 5);
+    assert_eq!(world.bodies().count(), 0);
+    assert_eq!((world.energy().kinetic, world.readings(0).len(), world.readings(9).len()), (0.0, 0, 0));
+    assert!(world.probe(0).iter().all(|(_, x)| x.is_nan()) && world.probe(0).len() == 4);
+    assert!(world.warnings().iter().any(|w| w.code == "command.no_body" && w.message.contains("`ball[0]`")));
+    let error = loop {
+        if let Err(error) = world.frame() {
+            break error.to_string();
+        }
+        assert!(world.frames() < 20, "the push on body 7 has begun");
+    };
+    assert!(error.starts_with("`body 7`: there is no such body at t = 0.2"), "{error}");
+    world.frame().expect("goes on: the error is told once");
+    let bytes = world.snapshot();
+    world.restore(&bytes).expect("an empty world too");
+}
+
+/// Torture row 61: what is not finite does not get in, whatever the path.
+#[test]
+fn numbers_that_are_not_finite_stay_outside() {
+    let mut world = run(rings(1, 36, "symplectic_euler"), Options::default(), 2);
+    let hash = world.state_hash();
+    let error = world.place_node(0, 3, [f64::NAN, 0.0], [0.0; 2]).expect_err("no place").to_string();
+    assert_eq!(error, "`body 0, node 3`: NaN is no place and no velocity; allowed: finite numbers");
+    assert!(world.place_node(0, 3, [0.0; 2], [f64::INFINITY, 0.0]).is_err());
+    assert!(world.place_node(0, 36, [0.0; 2], [0.0; 2]).is_err());
+    assert!(world.place_node(1, 0, [0.0; 2], [0.0; 2]).is_err());
+    assert!(world.set("world.gravity", Value::Numbers(vec![0.0, f64::NAN])).is_err());
+    assert!(world.set("body.ball[0].models.pressure.nRT", Value::Number(f64::INFINITY)).is_err());
+    assert_eq!(world.state_hash(), hash);
+    // A force law of the program's own that fails: the frame is refused and undone.
+    world
+        .add_force(
+            0,
+            std::sync::Arc::new(|_, _: [f64; 2], _: [f64; 2], t: f64| [if t > 0.05 { f64::NAN } else { 0.0 }, 0.0]),
+        )
+        .expect("a force");
+    world.frame().expect("still finite");
+    let error = loop {
+        let hash = world.state_hash();
+        if let Err(error) = world.frame() {
+            assert_eq!(world.state_hash(), hash);
+            break error.to_string();
+        }
+        assert!(world.frames() < 20, "it diverges");
+    };
+    assert!(error.starts_with("body `ball[0]` diverged: node 0 in the substep from t = 0.05"), "{error}");
+}

@@ -2,6 +2,7 @@
 // Pictures are no physics: a last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
+use crate::blueprint::{Action, BodyBlueprint};
 use crate::collide::Picture as Placed;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
@@ -50,11 +51,15 @@ fn three<const D: usize>(x: [f64; D]) -> [f64; 3] {
 }
 
 impl Scenery {
-    /// Looks at the bodies of a world.
+    /// Looks at the bodies of a world, and at those that its commands will add.
     pub fn new<const D: usize>(world: &World<D>) -> Scenery {
-        let many = world.blueprint().bodies.len() > 64;
-        let fixed = |body: usize| {
-            let blueprint = &world.blueprint().bodies[body];
+        let present = &world.blueprint().bodies;
+        let coming = world.blueprint().commands.iter().filter_map(|command| match &command.action {
+            Action::Add(body) if present.iter().all(|b| b.name != body.name) => Some(&**body),
+            _ => None,
+        });
+        let many = present.len() > 64;
+        let fixed = |blueprint: &BodyBlueprint<D>| {
             let mesh = &blueprint.mesh;
             let edges = mesh.edges(EdgeSet::All);
             let length = |e: &[u32; 2]| {
@@ -91,8 +96,8 @@ impl Scenery {
         Scenery {
             dimension: D as u8,
             title: world.blueprint().title.clone(),
+            bodies: present.iter().chain(coming).map(fixed).collect(),
             y_down: y_down(world),
-            bodies: (0..world.blueprint().bodies.len()).map(fixed).collect(),
         }
     }
 

@@ -32,15 +32,20 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
     let mut loads = Vec::new();
     for (node, path) in reader.list(root, "", "load") {
         let Some(values) = tagged(reader, node, &path, "kind", "load", schema::LOADS) else { continue };
-        let body = bodies.reference(reader, node, &path);
-        let Some(select) = selectors::of_body(reader, node, &path, bodies, body) else { continue };
-        let Some(body) = body else { continue };
+        let targets = bodies.targets(reader, node, &path);
+        let Some(targets) = selectors::of_bodies(reader, node, &path, bodies, targets) else { continue };
         let kind = match values.kind() {
             "force" => LoadKind::Force(values.vector("value")),
             "traction" => LoadKind::Traction(values.vector("value")),
             _ => LoadKind::Pressure(values.number("value").unwrap_or(0.0)),
         };
-        loads.push(LoadBlueprint { body, select, kind, curve: values.rows("curve").to_vec() });
+        let curve = values.rows("curve").to_vec();
+        loads.extend(targets.into_iter().map(|(body, select)| LoadBlueprint {
+            body,
+            select,
+            kind,
+            curve: curve.clone(),
+        }));
     }
     loads
 }
@@ -48,20 +53,19 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
 /// What is done to the bodies while they move, in the order of time.
 pub(crate) fn commands<const D: usize>(
     reader: &mut Reader<'_>,
-    root: &Node,
+    list: &[(&Node, String)],
     bodies: &Bodies<D>,
     integrator: Option<&Values>,
     colliders: &[ColliderBlueprint],
 ) -> Vec<CommandBlueprint<D>> {
-    let list = reader.list(root, "", "command");
     // Bodies that come later may be taken away or changed too.
     let added: Vec<&str> = list.iter().filter_map(|(node, _)| node.get("body")?.get("name")?.text()).collect();
     let known = parameters::Known { bodies, added: &added, integrator, colliders };
     let mut commands = Vec::new();
-    for (node, path) in &list {
+    for (number, (node, path)) in list.iter().enumerate() {
         let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
         let at = values.number("at").unwrap_or(0.0);
-        let Some(action) = action(reader, node, path, &values, &known) else { continue };
+        let Some(actions) = actions(reader, number, node, path, &values, &known) else { continue };
         let end_of_path = values.rows("path").last().and_then(|row| row.first().copied());
         let until = values.number("until").or(end_of_path).unwrap_or(at);
         if until < at {
@@ -71,69 +75,72 @@ pub(crate) fn commands<const D: usize>(
                     .path(join(path, key));
             reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time from {at}")));
         }
-        commands.push(CommandBlueprint { at, until, action });
+        for action in actions {
+            if let Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } = &action
+                && let Some((_, added)) = bodies.later.values().find(|(k, added)| k == body && *added > at)
+            {
+                let name = bodies.list.get(*body).map_or(String::new(), |b| visible(&b.name));
+                let message = format!("the command begins at {at} s, before `{name}` is added at {added} s");
+                let error = SceneError::new("scene.range", message).path(join(path, "at")).value(at.to_string());
+                reader.report(place_of(node, "at"), error.allowed(format!("a time from {added}")));
+            }
+            commands.push(CommandBlueprint { at, until, action });
+        }
     }
     commands.sort_by(|a, b| a.at.total_cmp(&b.at));
     commands
 }
 
-fn action<const D: usize>(
+/// What a command does: one action, or one for each copy of its body.
+fn actions<const D: usize>(
     reader: &mut Reader<'_>,
+    number: usize,
     node: &Node,
     path: &str,
     values: &Values,
     known: &parameters::Known<'_, D>,
-) -> Option<Action<D>> {
+) -> Option<Vec<Action<D>>> {
     let bodies = known.bodies;
-    match values.kind() {
+    Some(match values.kind() {
         "drag" => {
             let body = bodies.reference(reader, node, path);
-            let (number, facet) = held(reader, node, path)?;
+            let (held, facet) = held(reader, node, path)?;
             let body = body?;
-            if let (Some(k), Some(blueprint)) = (number, bodies.list.get(body)) {
+            if let (Some(k), Some(blueprint)) = (held, bodies.list.get(body)) {
                 let only = opruga_world::blueprint::Selector::Nodes(vec![k]);
                 selectors::check(reader, place_of(node, "node"), &join(path, "node"), &only, blueprint).then_some(())?;
             }
-            Some(Action::Drag {
+            vec![Action::Drag {
                 body,
-                node: number,
+                node: held,
                 facet,
                 stiffness: values.number("stiffness"),
                 path: values.rows("path").to_vec(),
                 largest_force: values.number("largest_force"),
-            })
+            }]
         }
         "push" => {
-            let body = bodies.reference(reader, node, path);
-            let select = selectors::of_body(reader, node, path, bodies, body)?;
-            Some(Action::Push { body: body?, select, force: values.vector("force") })
+            let targets = bodies.targets(reader, node, path);
+            let targets = selectors::of_bodies(reader, node, path, bodies, targets)?;
+            let force = values.vector("force");
+            targets.into_iter().map(|(body, select)| Action::Push { body, select, force }).collect()
         }
         "pin" => {
-            let body = bodies.reference(reader, node, path);
+            let targets = bodies.targets(reader, node, path);
             let axes = bodies::axes(reader, node, path, values);
-            let select = selectors::of_body(reader, node, path, bodies, body)?;
-            Some(Action::Pin { body: body?, select, axes })
+            let targets = selectors::of_bodies(reader, node, path, bodies, targets)?;
+            targets.into_iter().map(|(body, select)| Action::Pin { body, select, axes }).collect()
         }
         "set" => {
             let value_node = node.get("value")?;
             let value = reader.any_value(value_node, &join(path, "value"))?;
             let parameter = values.text("path")?.to_string();
             let value = parameters::check(reader, node, path, &parameter, value, known)?;
-            Some(Action::Set { path: parameter, value })
+            vec![Action::Set { path: parameter, value }]
         }
         "add" => {
-            let body_node = node.get("body")?;
-            let body = bodies::single::<D>(reader, body_node, join(path, "body"))?;
-            let twice = known.added.iter().filter(|n| **n == body.name).count() > 1;
-            if bodies.knows(&body.name) || twice {
-                let error =
-                    SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
-                reader.report(
-                    place_of(body_node, "name"),
-                    error.path(join(path, "body.name")).value(visible(&body.name)),
-                );
-            }
-            Some(Action::Add(Box::new(body)))
+            let (body, _) = bodies.later.get(&number)?;
+            vec![Action::Add(Box::new(bodies.list.get(*body)?.clone()))]
         }
         _ => {
             let name = values.text("body")?;
@@ -141,9 +148,9 @@ fn action<const D: usize>(
                 bodies.unknown(reader, place_of(node, "body"), join(path, "body"), name, known.added);
                 return None;
             }
-            Some(Action::Remove { name: name.to_string() })
+            vec![Action::Remove { name: name.to_string() }]
         }
-    }
+    })
 }
 
 /// What a drag holds: a node or the nearest one, and whether it is a point of a facet.

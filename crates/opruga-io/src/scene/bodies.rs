@@ -11,13 +11,17 @@ use opruga_world::{schema, shapes};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The bodies of a scene, copies written out.
+/// The bodies of a scene, copies written out; behind them those that commands add, in the order of time.
 pub(crate) struct Bodies<const D: usize> {
     pub(crate) list: Vec<BodyBlueprint<D>>,
+    /// How many are there at the start.
+    pub(crate) initial: usize,
+    /// Number of an `add` command → place of its body in the list, and when it is added.
+    pub(crate) later: BTreeMap<usize, (usize, f64)>,
     /// Name → place in the list.
     names: BTreeMap<String, usize>,
-    /// Name of a body with copies → how many.
-    copied: BTreeMap<String, usize>,
+    /// Name of a body with copies → the place of the first, and how far each is from where the body would lie.
+    copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
     /// Names of bodies that have errors of their own: a reference to them is no further error.
     broken: Vec<String>,
 }
@@ -62,7 +66,14 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
         }
     }
     duplicate_names(reader, &drafts);
-    let mut bodies = Bodies { list: Vec::new(), names: BTreeMap::new(), copied: BTreeMap::new(), broken: Vec::new() };
+    let mut bodies = Bodies {
+        list: Vec::new(),
+        initial: 0,
+        later: BTreeMap::new(),
+        names: BTreeMap::new(),
+        copied: BTreeMap::new(),
+        broken: Vec::new(),
+    };
     let affordable = within_limits(reader, &drafts);
     for (number, draft) in drafts.into_iter().enumerate() {
         let Some(body) = (if affordable { build(reader, &draft) } else { None }) else {
@@ -71,11 +82,43 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
         };
         write_out(&mut bodies, &draft, body, seed, number as u64);
     }
+    bodies.initial = bodies.list.len();
     bodies
 }
 
+/// The bodies that `add` commands bring: other commands, loads and probes may name them.
+pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node, String)], bodies: &mut Bodies<D>) {
+    let mut added: Vec<(f64, usize, BodyBlueprint<D>)> = Vec::new();
+    for (number, (node, path)) in commands.iter().enumerate() {
+        let (Some("add"), Some(at)) = (node.get("do").and_then(Node::text), node.get("body")) else { continue };
+        let path = join(path, "body");
+        let Some(body) = single::<D>(reader, at, path.clone()) else {
+            bodies.broken.extend(at.get("name").and_then(Node::text).map(String::from));
+            continue;
+        };
+        if bodies.knows(&body.name) || added.iter().any(|(_, _, other)| other.name == body.name) {
+            let error =
+                SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
+            reader.report(place_of(at, "name"), error.path(join(&path, "name")).value(visible(&body.name)));
+        }
+        let time = match node.get("at").map(|n| &n.data) {
+            Some(Data::Number(x, _)) => *x,
+            Some(Data::Integer(Some(n), _)) => *n as f64,
+            _ => 0.0,
+        };
+        added.push((time, number, body));
+    }
+    // The world numbers them as they come.
+    added.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (time, number, body) in added {
+        bodies.later.insert(number, (bodies.list.len(), time));
+        bodies.names.entry(body.name.clone()).or_insert(bodies.list.len());
+        bodies.list.push(body);
+    }
+}
+
 /// A body of an `add` command.
-pub(crate) fn single<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: String) -> Option<BodyBlueprint<D>> {
+fn single<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: String) -> Option<BodyBlueprint<D>> {
     let drafts = vec![draft::<D>(reader, node, path, false)?];
     if !within_limits(reader, &drafts) {
         return None;
@@ -368,7 +411,8 @@ fn write_out<const D: usize>(
         return;
     };
     let mut random = SplitMix(seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
-    bodies.copied.insert(body.name.clone(), copies.total() as usize);
+    let first = bodies.list.len();
+    let mut offsets = Vec::new();
     for k in 0..copies.total() {
         let mut rest = k;
         let offset: [f64; D] = core::array::from_fn(|a| {
@@ -377,6 +421,7 @@ fn write_out<const D: usize>(
             let jitter = if copies.jitter > 0.0 { copies.jitter * (2.0 * random.unit() - 1.0) } else { 0.0 };
             copies.first[a] + along as f64 * copies.spacing[a] + jitter
         });
+        offsets.push(offset);
         let name = format!("{}[{k}]", body.name);
         bodies.names.entry(name.clone()).or_insert(bodies.list.len());
         bodies.list.push(BodyBlueprint {
@@ -390,6 +435,7 @@ fn write_out<const D: usize>(
             ..body.clone()
         });
     }
+    bodies.copied.insert(body.name, (first, offsets));
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014): a small generator with the same numbers everywhere.
@@ -407,6 +453,14 @@ impl SplitMix {
 }
 
 impl<const D: usize> Bodies<D> {
+    /// The bodies that `body = …` of a table names, and how far selectors move along: all copies by their common name.
+    pub(crate) fn targets(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Vec<(usize, [f64; D])>> {
+        if let Some((first, offsets)) = table.get("body").and_then(Node::text).and_then(|name| self.copied.get(name)) {
+            return Some(offsets.iter().enumerate().map(|(k, offset)| (first + k, *offset)).collect());
+        }
+        self.reference(reader, table, path).map(|body| vec![(body, [0.0; D])])
+    }
+
     /// The place of the body that `body = …` of a table names.
     pub(crate) fn reference(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<usize> {
         let node = table.get("body")?;
@@ -414,7 +468,7 @@ impl<const D: usize> Bodies<D> {
         match &node.data {
             Data::Integer(Some(k), _) => {
                 if let Ok(k) = usize::try_from(*k)
-                    && k < self.list.len()
+                    && k < self.initial
                 {
                     return Some(k);
                 }
@@ -462,7 +516,10 @@ impl<const D: usize> Bodies<D> {
         error.allowed = Some(self.allowed());
         let base = name.split('[').next().unwrap_or(name);
         error = match self.copied.get(base) {
-            Some(count) => error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1)),
+            Some((_, copies)) => {
+                let count = copies.len();
+                error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1))
+            }
             None => error.nearest(nearest(
                 name,
                 self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()),
@@ -475,7 +532,7 @@ impl<const D: usize> Bodies<D> {
         match self.list.len() {
             0 => "the scene has no bodies".into(),
             n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
-            n => format!("{n} bodies, by name or by number from 0 to {}", n - 1),
+            n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),
         }
     }
 }

@@ -162,10 +162,13 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         .filter_map(|(node, path)| reader.kind_table(node, &path, "collider", &colliders))
         .map(|values| ColliderBlueprint { values })
         .collect();
-    let bodies = bodies::all::<D>(reader, root, top.integer("seed").unwrap_or(1) as u64);
+    let mut bodies = bodies::all::<D>(reader, root, top.integer("seed").unwrap_or(1) as u64);
+    let commands = reader.list(root, "", "command");
+    bodies::later(reader, &commands, &mut bodies);
     let loads = actions::loads(reader, root, &bodies);
-    let commands = actions::commands(reader, root, &bodies, integrator.as_ref(), &colliders);
+    let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders);
     let probes = actions::probes(reader, root, &bodies);
+    bodies.list.truncate(bodies.initial);
     Some(Blueprint {
         name: scene_name(reader.source.file),
         title: top.text("title").unwrap_or("").to_string(),

@@ -200,3 +200,24 @@ pub(crate) fn of_body<const D: usize>(
     let place = super::place_of(table, "select");
     check(reader, place, &join(path, "select"), &selector, body).then_some(selector)
 }
+
+/// Reads the selector of a table that names one or more bodies, and checks it on each of them.
+pub(crate) fn of_bodies<const D: usize>(
+    reader: &mut Reader<'_>,
+    table: &Node,
+    path: &str,
+    bodies: &Bodies<D>,
+    targets: Option<Vec<(usize, [f64; D])>>,
+) -> Option<Vec<(usize, Selector<D>)>> {
+    let selector = of(reader, table, path)?;
+    let place = super::place_of(table, "select");
+    let mut out = Vec::new();
+    for (body, offset) in targets? {
+        let selector = selector.moved(offset);
+        if !check(reader, place, &join(path, "select"), &selector, bodies.list.get(body)?) {
+            return None;
+        }
+        out.push((body, selector));
+    }
+    Some(out)
+}

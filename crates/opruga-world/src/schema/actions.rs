@@ -11,8 +11,18 @@ const CURVE: Field = field(
     "A factor over time, linear between its rows; 1 where the scene is silent.",
 );
 const LOAD_CHILDREN: &[Child] = &[
-    child("body", Holds::BodyReference, true, "The body."),
-    child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+    child(
+        "body",
+        Holds::BodyReference,
+        true,
+        "The body, of the scene or added by a command; the name of a body with copies means all of them, `NAME[i]` one.",
+    ),
+    child(
+        "select",
+        Holds::Selector,
+        false,
+        "Which nodes; all where the scene is silent. Places move along with every copy.",
+    ),
 ];
 
 /// `[[load]]`, by `kind`.
@@ -83,7 +93,7 @@ pub const COMMANDS: &[Section] = &[
             ],
         ),
         children: &[
-            child("body", Holds::BodyReference, true, "The body."),
+            child("body", Holds::BodyReference, true, "The body; of copies one, `NAME[i]`."),
             child(
                 "node",
                 Holds::Node,
@@ -132,7 +142,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),
@@ -177,7 +187,7 @@ pub const PROBE: Section = Section {
         )],
     ),
     children: &[
-        child("body", Holds::BodyReference, true, "The body."),
+        child("body", Holds::BodyReference, true, "The body; of copies one, `NAME[i]`."),
         child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
         child("record", Holds::Words(&["position", "velocity", "reaction"]), true, "What is written down."),
     ],

@@ -1,0 +1,263 @@
+//! What changes in a scene while it runs: parameters that are set, bodies that are added. It is written down, so that a
+//! snapshot of a changed scene can be restored in a world of the scene as it was, and an earlier one in a changed world.
+
+use crate::blueprint::{BodyBlueprint, Surroundings, Time};
+use crate::error::WorldError;
+use crate::world::{World, build_colliders};
+use opruga_core::spec::{Allowed, Value, Values, nearest};
+
+/// One change, and what it takes to undo it.
+#[derive(Clone, Debug)]
+pub(crate) enum Change<const D: usize> {
+    /// A parameter was set.
+    Set { path: String, value: Value, before: Before<D> },
+    /// A body was added behind the others.
+    Added(Source),
+}
+
+/// Where an added body came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A command, by its number.
+    Command(usize),
+    /// A call of [`World::add_body`], by its number.
+    Program(usize),
+}
+
+/// The part of the scene that a parameter belongs to, as it was.
+#[derive(Clone, Debug)]
+pub(crate) enum Before<const D: usize> {
+    Models(Vec<(usize, Vec<Values>)>),
+    Integrator(Values),
+    Surroundings(Surroundings<D>),
+    Time(Time),
+    Collider(usize, Values),
+}
+
+const FORMS: &str = "body.NAME.models.KIND.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
+                     world.largest_force, world.largest_velocity, time.substeps";
+
+impl<const D: usize> World<D> {
+    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
+    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `time.substeps`.
+    ///
+    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
+    /// stable step is estimated anew.
+    ///
+    /// # Errors
+    /// [`WorldError`] says what is wrong; the world stays as it was.
+    pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
+        let before = self.change(path, value.clone())?;
+        if let Err(error) = self.rebuild().and_then(|()| self.check_stability()) {
+            self.undo(before);
+            self.rebuild()?;
+            self.check_stability()?;
+            return Err(error);
+        }
+        match self.changes.last_mut() {
+            // A slider sets one parameter many times: what it was at first is enough.
+            Some(Change::Set { path: last, value: kept, .. }) if last == path => *kept = value,
+            _ => self.changes.push(Change::Set { path: path.to_string(), value, before }),
+        }
+        Ok(())
+    }
+
+    /// Changes the scene alone; returns what it was.
+    pub(crate) fn change(&mut self, path: &str, value: Value) -> Result<Before<D>, WorldError> {
+        let refuse = |message: String| WorldError::Path { path: path.to_string(), message };
+        let parts: Vec<&str> = path.split('.').collect();
+        match parts.as_slice() {
+            ["body", name, "models", kind, field] => {
+                let bodies = self.named(name);
+                if bodies.is_empty() {
+                    let known = self.bodies().map(|b| self.blueprint.bodies[b].name.as_str());
+                    let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
+                    return Err(refuse(format!("there is no body `{name}`{hint}")));
+                }
+                let mut changed = Vec::new();
+                for body in bodies {
+                    let mut models = self.blueprint.bodies[body].models.clone();
+                    let number = kind
+                        .parse()
+                        .ok()
+                        .filter(|n| *n < models.len())
+                        .or(models.iter().position(|m| m.kind() == *kind));
+                    let spec = number.and_then(|n| self.registry.model(models[n].kind())).map(|m| m.spec());
+                    let (Some(spec), Some(number)) = (spec, number) else {
+                        let kinds: Vec<&str> = models.iter().map(Values::kind).collect();
+                        return Err(refuse(format!(
+                            "body `{name}` has no model `{kind}`; it has {}",
+                            kinds.join(", ")
+                        )));
+                    };
+                    models[number].set(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    changed.push((body, models));
+                }
+                for (body, models) in &mut changed {
+                    std::mem::swap(models, &mut self.blueprint.bodies[*body].models);
+                }
+                Ok(Before::Models(changed))
+            }
+            ["integrator", field] => {
+                let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
+                let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
+                let before = self.blueprint.integrator.clone();
+                self.blueprint.integrator.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+                Ok(Before::Integrator(before))
+            }
+            ["collider", number, field] => {
+                let count = self.blueprint.colliders.len();
+                let found = number.parse::<usize>().ok().filter(|n| *n < count);
+                let number = found.ok_or_else(|| {
+                    refuse(format!(
+                        "there is no collider {number}; allowed: {}",
+                        match count {
+                            0 => "the scene has none".into(),
+                            1 => "0".into(),
+                            n => format!("0 to {}", n - 1),
+                        }
+                    ))
+                })?;
+                let before = self.blueprint.colliders[number].values.clone();
+                let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == before.kind());
+                let spec = spec.ok_or_else(|| refuse("there is no such kind of collider".into()))?;
+                self.blueprint.colliders[number]
+                    .values
+                    .set(spec, field, value, D)
+                    .map_err(|e| refuse(e.to_string()))?;
+                match build_colliders(&self.blueprint) {
+                    Ok(colliders) => self.colliders = colliders,
+                    Err(error) => {
+                        self.blueprint.colliders[number].values = before;
+                        return Err(error);
+                    }
+                }
+                Ok(Before::Collider(number, before))
+            }
+            ["world", field] => {
+                let before = self.blueprint.surroundings;
+                let accept = |range: Allowed| {
+                    range.accept(value.clone(), D).map_err(|(v, allowed)| refuse(format!("is {v}; allowed: {allowed}")))
+                };
+                let number = |value: Value| match value {
+                    Value::Number(x) => Some(x),
+                    Value::Integer(x) => Some(x as f64),
+                    _ => None,
+                };
+                let now = &mut self.blueprint.surroundings;
+                match *field {
+                    "gravity" => match accept(Allowed::Vector)? {
+                        Value::Numbers(g) if g.len() == D => now.gravity = core::array::from_fn(|d| g[d]),
+                        other => return Err(refuse(format!("is {other}; allowed: {D} finite numbers"))),
+                    },
+                    "drag" => now.drag = number(accept(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
+                    "largest_force" => now.largest_force = number(accept(Allowed::POSITIVE)?),
+                    "largest_velocity" => now.largest_velocity = number(accept(Allowed::POSITIVE)?),
+                    other => {
+                        let known = ["gravity", "drag", "largest_force", "largest_velocity"];
+                        let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
+                        let hint = hint.unwrap_or_default();
+                        return Err(refuse(format!(
+                            "there is no `{other}` in `world`; it has {}{hint}",
+                            known.join(", ")
+                        )));
+                    }
+                }
+                Ok(Before::Surroundings(before))
+            }
+            ["time", "substeps"] => match value {
+                Value::Integer(n) if (1..=1_000_000).contains(&n) => {
+                    let before = self.blueprint.time;
+                    self.blueprint.time.substeps = n as u32;
+                    Ok(Before::Time(before))
+                }
+                other => Err(refuse(format!("is {other}; allowed: a whole number from 1 to 1000000"))),
+            },
+            _ => Err(refuse(format!("allowed: {FORMS}"))),
+        }
+    }
+
+    /// The bodies that a name means: one, all copies, or the one of a number.
+    fn named(&self, name: &str) -> Vec<usize> {
+        if let Some(body) = self.body(name) {
+            return vec![body];
+        }
+        let copy = |full: &str| {
+            let number = full.strip_prefix(name).and_then(|rest| rest.strip_prefix('[')?.strip_suffix(']'));
+            number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+        };
+        let copies: Vec<usize> = self.bodies().filter(|b| copy(&self.blueprint.bodies[*b].name)).collect();
+        if !copies.is_empty() {
+            return copies;
+        }
+        name.parse().ok().filter(|b| self.handle(*b).is_some()).into_iter().collect()
+    }
+
+    /// Puts a part of the scene back.
+    pub(crate) fn undo(&mut self, before: Before<D>) {
+        match before {
+            Before::Models(changed) => {
+                for (body, models) in changed {
+                    self.blueprint.bodies[body].models = models;
+                }
+            }
+            Before::Integrator(values) => self.blueprint.integrator = values,
+            Before::Surroundings(surroundings) => self.blueprint.surroundings = surroundings,
+            Before::Time(time) => self.blueprint.time = time,
+            Before::Collider(number, values) => {
+                self.blueprint.colliders[number].values = values;
+                // They were built from the same values before.
+                if let Ok(colliders) = build_colliders(&self.blueprint) {
+                    self.colliders = colliders;
+                }
+            }
+        }
+    }
+
+    /// Goes from the present changes of the scene to others, in the blueprint alone.
+    pub(crate) fn replay(&mut self, changes: Vec<Told>) -> Result<(), WorldError> {
+        while let Some(change) = self.changes.pop() {
+            match change {
+                Change::Set { before, .. } => self.undo(before),
+                Change::Added(_) => {
+                    self.blueprint.bodies.pop();
+                }
+            }
+        }
+        self.alive = vec![true; self.blueprint.bodies.len()];
+        for change in changes {
+            match change {
+                Told::Set(path, value) => {
+                    let before = self.change(&path, value.clone())?;
+                    self.changes.push(Change::Set { path, value, before });
+                }
+                Told::Added(source) => {
+                    let body = self.body_from(source).ok_or_else(|| {
+                        WorldError::Snapshot("it holds a body that a program added and that is not known here".into())
+                    })?;
+                    self.blueprint.bodies.push(body);
+                    self.alive.push(true);
+                    self.changes.push(Change::Added(source));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn body_from(&self, source: Source) -> Option<BodyBlueprint<D>> {
+        match source {
+            Source::Command(number) => match &self.running.get(number)?.command.action {
+                crate::blueprint::Action::Add(body) => Some((**body).clone()),
+                _ => None,
+            },
+            Source::Program(number) => self.added.get(number).cloned(),
+        }
+    }
+}
+
+/// A change as a snapshot tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Told {
+    Set(String, Value),
+    Added(Source),
+}

@@ -1,0 +1,236 @@
+//! The contract of a frame: after a few frames to warm up, none asks for memory; and what a world keeps per vertex.
+#![allow(unsafe_code)] // an allocator that counts cannot be written without; nothing of it reaches the library
+
+use opruga_core::spec::{Spec, Value, Values};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, Registry, World};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Counts what the calling thread asks for.
+struct Counting;
+
+thread_local! {
+    static REQUESTS: Cell<u64> = const { Cell::new(0) };
+    static LIVE: Cell<i64> = const { Cell::new(0) };
+    /// Whether the next request stops the test where it is made, to show where.
+    static FORBIDDEN: Cell<bool> = const { Cell::new(false) };
+}
+
+fn requested(bytes: i64) {
+    // At the end of a thread its counters are gone; nobody looks at them any more.
+    let _ = REQUESTS.try_with(|n| n.set(n.get() + 1));
+    let _ = LIVE.try_with(|n| n.set(n.get() + bytes));
+    if FORBIDDEN.try_with(|f| f.replace(false)).unwrap_or(false) {
+        eprintln!("a frame asks for memory here:\n{}", std::backtrace::Backtrace::force_capture());
+    }
+}
+
+// SAFETY: every request is passed on to the allocator of the system as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        requested(layout.size() as i64);
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        requested(layout.size() as i64);
+        unsafe { System.alloc_zeroed(layout) }
+    }
+    unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        requested(size as i64 - layout.size() as i64);
+        unsafe { System.realloc(old, layout, size) }
+    }
+    unsafe fn dealloc(&self, old: *mut u8, layout: Layout) {
+        let _ = LIVE.try_with(|n| n.set(n.get() - layout.size() as i64));
+        unsafe { System.dealloc(old, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn live() -> i64 {
+    LIVE.with(Cell::get)
+}
+
+fn values<const D: usize>(spec: &'static Spec, fields: &[(&str, Value)]) -> Values {
+    let mut values = Values::defaults(spec, D);
+    for (name, value) in fields {
+        values.set(spec, name, value.clone(), D).expect("a field of the test's own");
+    }
+    values
+}
+
+fn model<const D: usize>(kind: &str, fields: &[(&str, f64)]) -> Values {
+    let fields: Vec<_> = fields.iter().map(|(n, x)| (*n, Value::Number(*x))).collect();
+    values::<D>(Registry::<D>::default().model(kind).expect("a model").spec(), &fields)
+}
+
+fn floor<const D: usize>() -> ColliderBlueprint {
+    let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == "half_space").expect("a floor");
+    let up: Vec<f64> = (0..D).map(|d| if d == 1 { 1.0 } else { 0.0 }).collect();
+    let fields = [
+        ("point", Value::Numbers(vec![0.0; D])),
+        ("normal", Value::Numbers(up)),
+        ("restitution", Value::Number(0.3)),
+        ("friction", Value::Number(0.4)),
+    ];
+    ColliderBlueprint { values: values::<D>(spec, &fields) }
+}
+
+fn scene<const D: usize>(
+    mesh: Mesh<D>,
+    count: usize,
+    models: &[Values],
+    rule: &str,
+    drag: Option<Vec<Vec<f64>>>,
+) -> Blueprint<D> {
+    let mesh = Arc::new(mesh);
+    let body = |k: usize| BodyBlueprint {
+        name: format!("ball[{k}]"),
+        mesh: Arc::clone(&mesh),
+        translation: core::array::from_fn(|d| if d == 0 { 2.0 * k as f64 } else { 0.0 }),
+        velocity: [0.2; D],
+        angular_velocity: Vec::new(),
+        mass: Mass::Total(1.0),
+        thickness: 1.0,
+        models: models.to_vec(),
+        pins: Vec::new(),
+    };
+    let command = |path: Vec<Vec<f64>>| CommandBlueprint {
+        at: 0.0,
+        until: 1e3,
+        action: Action::Drag { body: 0, node: None, facet: false, stiffness: None, path, largest_force: Some(50.0) },
+    };
+    Blueprint {
+        name: "test".into(),
+        title: String::new(),
+        seed: 0,
+        time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 48 },
+        surroundings: Surroundings {
+            gravity: core::array::from_fn(|d| if d == 1 { -9.81 } else { 0.0 }),
+            drag: 0.1,
+            largest_force: None,
+            largest_velocity: None,
+        },
+        integrator: Values::defaults(Registry::<D>::default().integrator(rule).expect("a rule").spec(), D),
+        bodies: (0..count).map(body).collect(),
+        colliders: vec![floor::<D>()],
+        loads: Vec::new(),
+        commands: drag.map(command).into_iter().collect(),
+        probes: Vec::new(),
+    }
+}
+
+/// Requests of every frame after ten frames.
+fn requests<const D: usize>(name: &str, blueprint: Blueprint<D>) {
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    for _ in 0..10 {
+        world.frame().expect("a frame");
+    }
+    for frame in 10..60 {
+        let before = REQUESTS.with(Cell::get);
+        FORBIDDEN.with(|f| f.set(true));
+        let outcome = world.frame();
+        FORBIDDEN.with(|f| f.set(false));
+        let requests = REQUESTS.with(Cell::get) - before;
+        outcome.expect("a frame");
+        assert_eq!(requests, 0, "{name}, frame {frame}: one thread, no memory after ten frames");
+    }
+    assert!(world.energy().loss_contact > 0.0, "{name} has met the floor");
+}
+
+const RULES: [&str; 5] = ["symplectic_euler", "explicit_euler", "heun", "verlet", "runge_kutta"];
+
+fn pulled_ball(rule: &str, gas: &[(&str, f64)]) {
+    let models = [
+        model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)]),
+        model::<2>("pressure", gas),
+        model::<2>("bending", &[("stiffness", 0.02)]),
+    ];
+    let ring = Mesh::ring(0.5, 36, [0.0, 0.55], 0.0).expect("a ring");
+    let path = vec![vec![0.0, 0.5, 0.6], vec![0.5, 1.0, 1.0], vec![2.0, -1.0, 0.7]];
+    requests(rule, scene(ring, 1, &models, rule, Some(path)));
+}
+
+#[test]
+fn a_ball_with_gas_on_the_floor_under_a_pull_asks_for_no_memory() {
+    for rule in RULES {
+        pulled_ball(rule, &[("nRT", 55.0)]);
+    }
+}
+
+#[test]
+#[ignore = "PressureModel::remember makes a list of volumes in every substep while the amount of gas changes"]
+fn a_ball_with_leaking_gas_asks_for_no_memory() {
+    pulled_ball("symplectic_euler", &[("nRT", 55.0), ("ramp", 0.3), ("leak", 0.1)]);
+}
+
+#[test]
+fn a_hundred_balls_side_by_side_ask_for_no_memory() {
+    let models = [
+        model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)]),
+        model::<2>("pressure", &[("nRT", 55.0)]),
+    ];
+    let ring = Mesh::ring(0.5, 36, [0.0, 0.55], 0.0).expect("a ring");
+    requests("a hundred balls", scene(ring, 100, &models, "symplectic_euler", None));
+}
+
+#[test]
+fn a_balloon_in_space_asks_for_no_memory() {
+    let models =
+        [model::<3>("mass_spring", &[("modulus", 300.0), ("damping", 0.02)]), model::<3>("pressure", &[("nRT", 40.0)])];
+    let mut sphere = Mesh::icosphere(0.5, 3).expect("a sphere");
+    sphere.translate([0.0, 0.55, 0.0]);
+    let path = vec![vec![0.0, 0.5, 0.6, 0.0], vec![0.5, 1.0, 1.0, 0.5]];
+    requests("a balloon", scene(sphere, 1, &models, "symplectic_euler", Some(path)));
+}
+
+/// Bytes on the heap per vertex of a ring of 100,000, its blueprint and rest shape included.
+#[test]
+fn a_large_ring_takes_at_most_two_hundred_bytes_a_vertex() {
+    let before = live();
+    let models = [
+        model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 40.0)]),
+        model::<2>("pressure", &[("nRT", 8e5)]),
+    ];
+    let ring = Mesh::ring(1591.5, 100_000, [0.0, 1592.0], 0.0).expect("a ring");
+    let mut blueprint = scene(ring, 1, &models, "symplectic_euler", None);
+    blueprint.bodies[0].mass = Mass::Node(1.0);
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    let built = (live() - before) as f64 / 1e5;
+    world.frame().expect("a frame");
+    let stepped = (live() - before) as f64 / 1e5;
+    println!(
+        "{built:.1} bytes a vertex after building, {stepped:.1} after a frame, {} told",
+        world.heap_bytes() / 100_000
+    );
+    assert!(built <= 200.0, "{built:.1} bytes a vertex after building");
+    assert!(stepped <= 200.0, "{stepped:.1} bytes a vertex after a frame");
+}
+
+/// Torture row 74: worlds come and go, and memory with them.
+#[test]
+fn worlds_leave_nothing_behind() {
+    let models = [
+        model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)]),
+        model::<2>("pressure", &[("nRT", 55.0)]),
+    ];
+    let ring = Mesh::ring(0.5, 12, [0.0, 0.55], 0.0).expect("a ring");
+    let blueprint = scene(ring, 9, &models, "verlet", Some(vec![vec![0.0, 0.5, 0.6]]));
+    let once = || {
+        let mut world = World::new(blueprint.clone(), Options::default()).expect("a world");
+        world.frame().expect("a frame");
+        world.remove_body("ball[3]").expect("it is there");
+        world.frame().expect("a frame");
+        drop(world);
+    };
+    once();
+    let before = live();
+    for _ in 0..1000 {
+        once();
+    }
+    assert_eq!(live(), before, "bytes left behind by a thousand worlds");
+}

@@ -1,0 +1,109 @@
+//! Every scene that comes with the library ends with the bits of `scenes/golden.txt`, on any number of threads and with
+//! any vector instructions of this processor.
+//!
+//! `cargo xtask goldens` writes the hashes anew (it runs this test with `OPRUGA_GOLDENS=write`); the numbers of frames
+//! are written by hand. A changed hash is a changed result: its reason belongs into the commit.
+
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::io::scene;
+use opruga::{Options, Simd, World, catalogue, scenes};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// One line of the file.
+struct Golden {
+    scene: String,
+    frames: u64,
+    hash: String,
+}
+
+/// Frames of a scene that the file does not name yet.
+const FRAMES: u64 = 20;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
+}
+
+/// The comment at the head of the file, and its lines.
+fn file() -> (String, Vec<Golden>) {
+    let text = std::fs::read_to_string(folder().join("golden.txt")).expect("scenes/golden.txt");
+    let head = text.lines().filter(|l| l.starts_with('#')).map(|l| format!("{l}\n")).collect();
+    let lines = text.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+    let golden = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [scene, frames, hash] = words[..] else { panic!("scenes/golden.txt: `{line}` is no scene, frames, hash") };
+        Golden { scene: scene.into(), frames: frames.parse().expect("frames are a number"), hash: hash.into() }
+    };
+    (head, lines.map(golden).collect())
+}
+
+/// The state after some frames.
+fn hash<const D: usize>(blueprint: &Blueprint<D>, frames: u64, options: Options) -> String {
+    let mut world = World::new(blueprint.clone(), options).expect("a world");
+    for _ in 0..frames {
+        world.frame().expect("a frame");
+    }
+    format!("{:016x}", world.state_hash())
+}
+
+fn hash_of_any(blueprint: &AnyBlueprint, frames: u64, options: Options) -> String {
+    match blueprint {
+        AnyBlueprint::Plane(blueprint) => hash(blueprint, frames, options),
+        AnyBlueprint::Space(blueprint) => hash(blueprint, frames, options),
+    }
+}
+
+#[test]
+fn every_scene_file_comes_with_the_library() {
+    let mut files: Vec<String> = std::fs::read_dir(folder())
+        .expect("the folder of scenes")
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".toml")?.to_string()))
+        .collect();
+    let mut names: Vec<String> = scenes::names().map(String::from).collect();
+    files.sort();
+    names.sort();
+    assert_eq!(files, names, "scenes/*.toml and crates/opruga/src/scenes.rs");
+}
+
+#[test]
+fn every_scene_ends_with_its_golden_hash() {
+    let write = std::env::var("OPRUGA_GOLDENS").is_ok_and(|w| w == "write");
+    let (head, golden) = file();
+    let (mut text, mut wrong) = (head, Vec::new());
+    for name in scenes::names() {
+        let known = golden.iter().find(|g| g.scene == name);
+        let frames = known.map_or(FRAMES, |g| g.frames);
+        let source = scenes::find(name).expect("a scene of the library");
+        let read = scene::read(source.as_bytes(), &format!("{name}.toml"), &catalogue(), &scene::Options::default());
+        let (blueprint, notices) = read.unwrap_or_else(|errors| panic!("{}", errors[0]));
+        assert!(notices.is_empty(), "{name}: {}", notices[0]);
+        let start = std::time::Instant::now();
+        let mut first = String::new();
+        for simd in Simd::available() {
+            for threads in [1, 2, 3, 8] {
+                let options = Options { threads, simd: Some(simd), ..Options::default() };
+                let found = hash_of_any(&blueprint, frames, options);
+                if first.is_empty() {
+                    first.clone_from(&found);
+                }
+                let wanted = if write { first.as_str() } else { known.map_or("no hash", |g| g.hash.as_str()) };
+                if found != wanted {
+                    wrong.push(format!(
+                        "{name} after {frames} frames, {threads} threads, {}: {found}, not {wanted}",
+                        simd.name()
+                    ));
+                }
+            }
+        }
+        println!("{name}: {:.2} s", start.elapsed().as_secs_f64());
+        let _ = writeln!(text, "{name} {frames} {first}");
+    }
+    assert!(wrong.is_empty(), "results have changed (see the head of this file):\n{}", wrong.join("\n"));
+    if write {
+        std::fs::write(folder().join("golden.txt"), text).expect("scenes/golden.txt can be written");
+        return;
+    }
+    for line in &golden {
+        assert!(scenes::find(&line.scene).is_some(), "scenes/golden.txt names `{}`, which is no scene", line.scene);
+    }
+}

@@ -1,0 +1,315 @@
+//! Bad parameters and bad states, from the text of a scene to its frames. The numbers are rows of a list of torments:
+//! 43–58 parameters, 61–78 states and contact. (Rows that need finite elements, shape matching, contact between bodies
+//! or mesh files come with those.)
+
+mod common;
+use common::*;
+use opruga::core::spec::Value;
+use opruga::{Options, World, WorldError};
+
+/// A ring above a floor; `more` follows its fields.
+fn ring(substeps: u32, models: &str, more: &str) -> String {
+    format!(
+        "{}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 24, center = [0, 0.6] }}\n\
+         models = [{models}]\n{more}\n",
+        head(1.0 / 60.0, substeps, -9.81, "symplectic_euler")
+    )
+}
+
+const BALL: &str = "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 30.0 }";
+const FLOOR: &str =
+    "[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = 0.5\nrestitution = 0.2\n";
+
+fn said(text: &str) -> String {
+    match read(text) {
+        Ok(_) => match World::new(plane(text), Options::default()) {
+            Ok(_) => "nothing".into(),
+            Err(error) => format!("{}: {error}", error.code()),
+        },
+        Err(errors) => errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+    }
+}
+
+fn finite(world: &World<2>) -> bool {
+    world.bodies().all(|b| {
+        (0..world.node_count(b) as u32)
+            .all(|n| world.position(b, n).iter().chain(&world.velocity(b, n)).all(|x| x.is_finite()))
+    })
+}
+
+/// Rows 43 to 58: what is said about parameters that make no sense.
+#[test]
+fn parameters_that_make_no_sense() {
+    let chain = |points: &str, models: &str| {
+        format!(
+            "{}[[body]]\nname = \"c\"\nmass = 1\nshape = {{ kind = \"polyline\", points = {points} }}\nmodels = [{models}]\n",
+            head(1.0 / 60.0, 16, 0.0, "symplectic_euler")
+        )
+    };
+    let springs = "{ kind = \"mass_spring\", stiffness = 10.0 }";
+    let cases = [
+        // 43: springs without length
+        (chain("[[0, 0], [0, 0]]", springs), "error[scene.shape]: points 0 and 1 follow each other at the same place"),
+        (
+            chain("[[0, 0], [1, 0], [1, 0]]", springs),
+            "error[scene.shape]: points 1 and 2 follow each other at the same place",
+        ),
+        // 44, 46: masses and constants
+        (ring(16, BALL, "").replace("mass = 1", "mass = 0"), "error[scene.range]: `mass` is 0"),
+        (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
+        (
+            ring(16, "{ kind = \"mass_spring\" }", ""),
+            "model.one_of: body `b`: mass_spring: exactly one of `stiffness` and `modulus` must be given",
+        ),
+        (
+            ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
+            "exactly one of `stiffness` and `modulus` must be given",
+        ),
+        (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
+        (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
+        (ring(16, BALL, &FLOOR.replace("normal = [0, 1]", "normal = [0, 0]")), "normal"),
+        // 48, 50: steps that are too long, told before the run
+        (
+            ring(1, BALL, ""),
+            "step.unstable: the step h = 1.666667e-2 s of `symplectic_euler` is unstable for body `b`: the largest stable step is ",
+        ),
+        (
+            ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
+            "step.not_finite: body `b`: stability: the forces around the state are not finite",
+        ),
+        (ring(16, "{ kind = \"mass_spring\", stiffness = 1, damping = 1e12 }", ""), "step.unstable: the step h = "),
+        // 53: gas
+        (ring(16, "{ kind = \"pressure\", nRT = -1 }", ""), "error[scene.range]: `nRT` is -1"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, gamma = 1 }", ""), "error[scene.range]: `gamma` is 1"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, ramp = -1 }", ""), "error[scene.range]: `ramp` is -1"),
+        (ring(16, "{ kind = \"pressure\" }", ""), "nRT"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, pressure = 1 }", ""), "nRT"),
+        (chain("[[0, 0], [1, 0], [1, 1]]", "{ kind = \"pressure\", nRT = 1 }"), "pressure"),
+        // 56: gravity
+        (ring(16, BALL, "").replace("gravity = [0, -9.81]", "gravity = [0, inf]"), "error[scene.not_finite]"),
+    ];
+    for (text, expected) in cases {
+        let said = said(&text);
+        println!("{said}\n");
+        assert!(said.contains(expected), "expected {expected}, said: {said}\n{text}");
+        assert!(!said.contains("NaN") && said.len() < 2000, "{said}");
+    }
+}
+
+/// Rows 44 to 58: what looks odd and runs.
+#[test]
+fn parameters_that_are_odd_but_fine() {
+    let heavy = |mass: &str, x: f64| {
+        format!(
+            "[[body]]\nname = \"m{mass}\"\nmass = {mass}\nposition = [{x:?}, 0]\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 12 }}\n"
+        )
+    };
+    let cases = [
+        // 43: a rest length of nearly nothing, 45: masses of 1e-9 kg beside 1000 kg
+        ring(64, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0, rest_scale = 1e-6 }", FLOOR),
+        ring(16, BALL, &format!("{}{}", heavy("1e-9", 3.0), heavy("1e3", 6.0))),
+        // 48: nothing is too soft
+        ring(16, "{ kind = \"mass_spring\", stiffness = 1e-300 }", FLOOR),
+        ring(16, "{ kind = \"mass_spring\", stiffness = 0 }", FLOOR),
+        // 53: no ramp, hardly any gas, a vacuum that is pressed flat
+        ring(32, "{ kind = \"mass_spring\", stiffness = 600.0 }, { kind = \"pressure\", nRT = 1e-12 }", FLOOR),
+        ring(
+            64,
+            "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 1, ambient = 200.0 }",
+            FLOOR,
+        ),
+        // 56: no gravity and a great deal
+        ring(32, BALL, FLOOR).replace("-9.81", "0"),
+        ring(32, BALL, FLOOR).replace("-9.81", "-1e6"),
+        // 58: all nodes held; neighbours forced apart; a node led through the floor
+        ring(32, BALL, &format!("pin = [{{ select = {{ all = true }} }}]\n{FLOOR}")),
+        ring(
+            64,
+            BALL,
+            &format!(
+                "pin = [{{ select = {{ node = 0 }}, motion = [[0, 0, 0], [1, 9, 0]] }}, {{ select = {{ node = 1 }}, motion = [[0, 0, 0], [1, -9, 0]] }}]\n{FLOOR}"
+            ),
+        ),
+        ring(64, BALL, &format!("pin = [{{ select = {{ node = 18 }}, motion = [[0, 0, 0], [1, 0, -3]] }}]\n{FLOOR}")),
+        // 70: ice and glue
+        ring(32, BALL, &FLOOR.replace("0.5", "0")),
+        ring(32, BALL, &FLOOR.replace("0.5", "1e6")),
+        // 71: the same node pinned twice, loads that cancel
+        ring(
+            32,
+            BALL,
+            "[[load]]\nkind = \"force\"\nbody = \"b\"\nvalue = [1e3, 0]\n[[load]]\nkind = \"force\"\nbody = \"b\"\nvalue = [-1e3, 0]\n",
+        ),
+    ];
+    for text in cases {
+        let mut world = built(plane(&text));
+        for _ in 0..90 {
+            world.frame().unwrap_or_else(|e| panic!("{e}\n{text}"));
+        }
+        assert!(finite(&world), "{text}");
+    }
+}
+
+/// Row 50: integrators without any stable step say so, and how fast it grows.
+#[test]
+fn integrators_without_a_stable_step_warn() {
+    for rule in ["explicit_euler", "heun"] {
+        let text = ring(64, "{ kind = \"mass_spring\", stiffness = 600.0 }", "").replace("symplectic_euler", rule);
+        let world = built(plane(&text));
+        let warnings = world.warnings();
+        let warning = warnings.iter().find(|w| w.code == "step.no_stable_step").expect("a warning");
+        let expected = format!("`{rule}` has no stable step for body `b` (ω = ");
+        assert!(
+            warning.message.starts_with(&expected) && warning.message.contains("grows as exp("),
+            "{}",
+            warning.message
+        );
+    }
+}
+
+/// Row 43 and 62: nodes in one place, on a line, in a point, mirrored, at random: finite at every frame, and back in shape.
+#[test]
+fn collapsed_bodies_recover() {
+    let mut number = 1u64;
+    let mut random = move || {
+        number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (number >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    type Spoil<'a> = &'a mut dyn FnMut(u32, [f64; 2]) -> [f64; 2];
+    let cases: [(&str, Spoil, bool); 6] = [
+        ("two nodes in one place", &mut |n, x| if n == 1 { [0.5, 0.6] } else { x }, true),
+        ("on a level line", &mut |_, x| [x[0], 0.6], true),
+        ("on an upright line", &mut |_, x| [0.0, x[1]], true),
+        ("squeezed to a hundredth", &mut |_, x| [0.01 * x[0], 0.6 + 0.01 * (x[1] - 0.6)], true),
+        ("random", &mut |_, _| [random(), 0.6 + random()], false),
+        ("in one point", &mut |_, _| [0.0, 0.6], false),
+    ];
+    for (name, spoil, recovers) in cases {
+        let models = "{ kind = \"mass_spring\", stiffness = 600.0, damping = 2.0 }, { kind = \"pressure\", nRT = 30.0, largest_pressure = 500.0 }";
+        let text = ring(256, models, "").replace("gravity = [0, -9.81]", "gravity = [0, 0]\ndrag = 3.0");
+        let mut world = built(plane(&text));
+        frames(&mut world, 300);
+        let volume = world.readings(0)[0].1;
+        let mut world = built(plane(&text));
+        for node in 0..24 {
+            let x = world.position(0, node);
+            world.place_node(0, node, spoil(node, x), [0.0; 2]).expect("a node");
+        }
+        for frame in 0..600 {
+            world.frame().unwrap_or_else(|e| panic!("{name}, frame {frame}: {e}"));
+            assert!(finite(&world), "{name}");
+        }
+        let now = world.readings(0)[0].1;
+        println!("{name}: {:.4} of its area", now / volume);
+        assert!(!recovers || (now / volume - 1.0).abs() < 1e-3, "{name}: {now} of {volume} m²");
+    }
+}
+
+/// Row 63: far away and falling for ever; row 64: no node goes through a floor, however fast.
+#[test]
+fn far_and_fast() {
+    for far in [1e6, 1e12] {
+        let mut world =
+            built(plane(&ring(64, BALL, "").replace("center = [0, 0.6]", &format!("center = [{far:?}, {far:?}]"))));
+        frames(&mut world, 30);
+        assert!(finite(&world));
+    }
+    let mut world = built(plane(&ring(32, BALL, "")));
+    frames(&mut world, 6000);
+    assert!(finite(&world) && (world.momentum().linear.0[1] + 981.0).abs() < 1e-6, "100 s of free fall");
+    for speed in [1e2, 1e3, 1e4] {
+        let velocity = format!("velocity = [0, {:?}]\n{FLOOR}", -speed);
+        let mut blueprint = plane(&ring(64, "{ kind = \"mass_spring\", stiffness = 600.0 }", &velocity));
+        blueprint.surroundings.gravity = [0.0; 2];
+        let mut world = built(blueprint);
+        for _ in 0..30 {
+            if let Err(error) = world.frame() {
+                panic!("{speed} m/s: {error}");
+            }
+            for node in 0..24 {
+                assert!(world.position(0, node)[1] >= -1e-9, "{speed} m/s: node {node} is below the floor");
+            }
+        }
+    }
+}
+
+/// Row 71: 100,000 steps at rest in a corner: no drift, no jitter.
+#[test]
+fn rest_in_a_corner_is_rest() {
+    let corner = format!(
+        "velocity = [2, 0]\n{FLOOR}[[collider]]\nkind = \"half_space\"\npoint = [1, 0]\nnormal = [-1, 0]\nfriction = 0.5\n"
+    );
+    let mut world = built(plane(&ring(40, BALL, &corner)));
+    world.set("world.drag", Value::Number(2.0)).expect("a parameter");
+    frames(&mut world, 1200);
+    let before: Vec<[f64; 2]> = (0..24).map(|n| world.position(0, n)).collect();
+    frames(&mut world, 2500);
+    let moved = largest((0..24).flat_map(|n| {
+        let x = world.position(0, n);
+        [x[0] - before[n as usize][0], x[1] - before[n as usize][1]]
+    }));
+    let speed = largest((0..24).flat_map(|n| world.velocity(0, n)));
+    println!("moves by {moved:.1e} m, at most {speed:.1e} m/s");
+    assert!(moved < 1e-6 && speed < 1e-6, "{moved:e} m, {speed:e} m/s");
+}
+
+/// Row 72: a pointer of 10 km/s, one that stands still far away, one on the node itself.
+#[test]
+fn pointers_pull_within_bounds() {
+    for (path, most) in [
+        ("[[0, 0, 0], [0.5, 5000, 0], [1, -5000, 0]]", "largest_force = 40.0"),
+        ("[[0, 1e9, 1e9], [1, 1e9, 1e9]]", "largest_force = 40.0"),
+        ("[[0, 0.5, 0.6], [1, 0.5, 0.6]]", ""),
+    ] {
+        let command = format!("{FLOOR}[[command]]\ndo = \"drag\"\nat = 0\nbody = \"b\"\npath = {path}\n{most}\n");
+        let mut world = built(plane(&ring(64, BALL, &command)));
+        for _ in 0..90 {
+            world.frame().unwrap_or_else(|e| panic!("{path}: {e}"));
+        }
+        assert!(finite(&world));
+        let counted = world.warnings().iter().any(|w| w.code == "limit.drag" && w.count > 0);
+        assert_eq!(counted, !most.is_empty(), "{path}: {:?}", world.warnings());
+    }
+    let text =
+        format!("{}[[command]]\ndo = \"drag\"\nat = 0\nbody = \"b\"\npath = [[0, nan, 0]]\n", ring(64, BALL, FLOOR));
+    assert!(said(&text).contains("error[scene.not_finite]"), "{}", said(&text));
+}
+
+/// Row 78: numbers of threads.
+#[test]
+fn numbers_of_threads() {
+    let scene = || plane(&ring(32, BALL, FLOOR));
+    for threads in [0, 257, 10_000] {
+        let error = World::new(scene(), Options { threads, ..Options::default() }).expect_err("no such number");
+        assert_eq!(
+            error,
+            WorldError::Path { path: "threads".into(), message: format!("is {threads}; allowed: 1 to 256") }
+        );
+    }
+    let hash = |threads| {
+        let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");
+        frames(&mut world, 30);
+        world.state_hash()
+    };
+    assert_eq!(hash(1), hash(256));
+}
+
+/// Bodies that a command adds are drawn from then on, in a resumed world too.
+#[test]
+fn bodies_that_come_later_are_drawn() {
+    let late = "[[command]]\ndo = \"add\"\nat = 0.05\nbody = { name = \"late\", mass = 1, position = [3, 1], \
+                shape = { kind = \"ring\", radius = 0.5, vertices = 7 } }\n";
+    let scene = || plane(&ring(32, BALL, late));
+    let mut world = built(scene());
+    let scenery = opruga::pictures::Scenery::new(&world);
+    let drawn = |scenery: &opruga::pictures::Scenery, world: &World<2>| {
+        scenery.picture(&scenery.capture(world, false)).bodies.len()
+    };
+    assert_eq!(drawn(&scenery, &world), 1);
+    frames(&mut world, 6);
+    assert_eq!(drawn(&scenery, &world), 2);
+    let bytes = world.snapshot();
+    let mut other = built(scene());
+    other.restore(&bytes).expect("its own snapshot");
+    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &other), 2);
+}
