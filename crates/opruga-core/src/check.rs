@@ -321,7 +321,7 @@ struct Case<'a, const D: usize> {
     x: Columns<D>,
     v: Columns<D>,
     memory: Vec<f64>,
-    scratch: Vec<f64>,
+    scratch: Column,
     time: f64,
 }
 
@@ -342,7 +342,7 @@ impl<'a, const D: usize> Case<'a, D> {
         for place in nodes * layout.stride()..places {
             x.set(place, bodies[0].x[nodes - 1]);
         }
-        let (memory, scratch) = (potential.initial_memory(), vec![0.0; potential.scratch_len()]);
+        let (memory, scratch) = (potential.initial_memory(), Column::zeros(potential.scratch_len()));
         Case { potential, layout, nodes, x, v, memory, scratch, time }
     }
     fn places(&self) -> usize {

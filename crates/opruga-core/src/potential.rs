@@ -91,8 +91,16 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], on every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
-    /// Moves the memory on by one substep; returns the energy put into each body by that [J].
-    fn remember(&self, _simd: Simd, _view: &View<D>, _h: f64, _scratch: &[f64], _memory: &mut [f64]) -> [f64; WIDTH] {
+    /// Moves the memory on by one substep; returns the energy put into each body by that [J]. The scratch is that of the
+    /// last `prepare` and may be overwritten.
+    fn remember(
+        &self,
+        _simd: Simd,
+        _view: &View<D>,
+        _h: f64,
+        _scratch: &mut [f64],
+        _memory: &mut [f64],
+    ) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
     /// The energy U of each body [J], after `prepare` in the same state: eight numbers whose sum is that of one body,

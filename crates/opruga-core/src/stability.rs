@@ -208,7 +208,7 @@ struct Probe<'a, const D: usize> {
     x: Columns<D>,
     v: Columns<D>,
     /// What `prepare` leaves behind there.
-    scratch: Vec<Vec<f64>>,
+    scratch: Vec<Column>,
     slots: Column,
     force: Columns<D>,
     /// Forces of damped models at rest.
@@ -248,7 +248,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         Probe {
             x: system.state.x.clone(),
             v: Columns::zeros(places),
-            scratch: system.members.iter().map(|m| vec![0.0; m.potential.scratch_len()]).collect(),
+            scratch: system.members.iter().map(|m| Column::zeros(m.potential.scratch_len())).collect(),
             slots: Column::default(),
             force: Columns::zeros(places),
             at_rest: Columns::zeros(places),

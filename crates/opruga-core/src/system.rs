@@ -118,7 +118,7 @@ pub struct Member<const D: usize> {
     /// What it remembers from step to step; part of the state.
     pub memory: Vec<f64>,
     /// What `prepare` left behind.
-    pub scratch: Vec<f64>,
+    pub scratch: Column,
 }
 
 /// Bodies that are stepped together: one, or up to eight alike ones side by side.
@@ -200,7 +200,7 @@ impl<const D: usize> System<D> {
     /// Adds a model.
     pub fn add(&mut self, potential: Box<dyn Potential<D>>) {
         let memory = potential.initial_memory();
-        let scratch = vec![0.0; potential.scratch_len()];
+        let scratch = Column::zeros(potential.scratch_len());
         self.members.push(Member { potential, memory, scratch });
     }
     /// Lays out tiles and buffers after the models or the integrator changed.
@@ -388,7 +388,7 @@ impl<const D: usize> System<D> {
         let view = view(&self.state, self.nodes, self.layout, Stage::Current, now);
         for member in &mut self.members {
             if !member.memory.is_empty() {
-                let given = member.potential.remember(self.simd, &view, h, &member.scratch, &mut member.memory);
+                let given = member.potential.remember(self.simd, &view, h, &mut member.scratch, &mut member.memory);
                 for l in 0..WIDTH {
                     self.work.gas[l] += given[l];
                 }
@@ -405,7 +405,7 @@ impl<const D: usize> System<D> {
         let models: usize = self
             .members
             .iter()
-            .map(|m| m.potential.heap_bytes() + (m.memory.capacity() + m.scratch.capacity()) * 8)
+            .map(|m| m.potential.heap_bytes() + m.memory.capacity() * 8 + m.scratch.heap_bytes())
             .sum();
         state + work + models + columns(&self.forces) + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
     }

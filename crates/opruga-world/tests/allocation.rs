@@ -163,7 +163,6 @@ fn a_ball_with_gas_on_the_floor_under_a_pull_asks_for_no_memory() {
 }
 
 #[test]
-#[ignore = "PressureModel::remember makes a list of volumes in every substep while the amount of gas changes"]
 fn a_ball_with_leaking_gas_asks_for_no_memory() {
     pulled_ball("symplectic_euler", &[("nRT", 55.0), ("ramp", 0.3), ("leak", 0.1)]);
 }

@@ -12,7 +12,7 @@
 mod chain;
 
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
-use crate::tile::Tile;
+use crate::tile::{TILE, Tile};
 use chain::Chain;
 use core::ops::Range;
 use opruga_math::{Lane, Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
@@ -119,6 +119,8 @@ struct Pull {
     partner: Vec<u32>,
     /// The number of the pair, or that of a pair without effect.
     pair: Vec<u32>,
+    /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, follow each other: then they are read at once.
+    together: Vec<bool>,
     /// The pulled pairs by number, padded to packs with the pair without effect, and their two ends.
     loose: Vec<u32>,
     ends: [Vec<u32>; 2],
@@ -129,6 +131,9 @@ struct Pull {
 pub struct PairTable {
     layout: Layout,
     runs: Vec<Run>,
+    /// The runs that touch each tile of the plan, one tile after the other, and where those of each tile begin.
+    tile_runs: Vec<u32>,
+    tile_start: Vec<u32>,
     pull: Option<Pull>,
     /// Pairs, and one more without effect if some are pulled.
     count: usize,
@@ -174,6 +179,7 @@ impl PairTable {
                 width,
                 partner: vec![0; packs * width * WIDTH],
                 pair: vec![pairs.len() as u32; packs * width * WIDTH],
+                together: Vec::new(),
                 loose,
                 ends,
             };
@@ -187,9 +193,21 @@ impl PairTable {
                     }
                 }
             }
+            let follow = |list: &[u32]| list.windows(2).all(|two| two[1] == two[0] + 1);
+            let packs = table.partner.chunks(WIDTH).zip(table.pair.chunks(WIDTH));
+            table.together = packs.map(|(partner, pair)| follow(partner) && follow(pair)).collect();
             pull = Some(table);
         }
-        PairTable { layout, runs, count: pairs.len() + usize::from(pulled), pull, pairs: pairs.to_vec() }
+        let (tile_runs, tile_start) = runs_by_tile(layout, nodes, &runs);
+        PairTable {
+            layout,
+            runs,
+            tile_runs,
+            tile_start,
+            count: pairs.len() + usize::from(pulled),
+            pull,
+            pairs: pairs.to_vec(),
+        }
     }
 
     /// How many pairs need parameters: all, and one without effect if some are pulled.
@@ -209,7 +227,14 @@ impl PairTable {
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let pull = self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity()));
-        pull + self.runs.capacity() * size_of::<Run>() + self.pairs.capacity() * 8
+        pull + self.runs.capacity() * size_of::<Run>()
+            + 4 * (self.tile_runs.capacity() + self.tile_start.capacity())
+            + self.pairs.capacity() * 8
+    }
+
+    /// Where the runs of a tile begin.
+    fn runs_from(&self, tile: usize) -> usize {
+        self.tile_start[tile.min(self.tile_start.len() - 1)] as usize
     }
 
     /// Adds the forces of all pairs on the nodes of a tile.
@@ -217,7 +242,15 @@ impl PairTable {
         let stride = self.layout.stride();
         let (start, end) = (tile.range.start, tile.range.end);
         let mut power = [0.0; WIDTH];
-        for run in &self.runs {
+        // A tile of the plan knows its runs; any other range looks at all.
+        let numbered = start % TILE == 0 && end <= start + TILE;
+        let mine = if numbered {
+            &self.tile_runs[self.runs_from(start / TILE)..self.runs_from(start / TILE + 1)]
+        } else {
+            &[]
+        };
+        for k in 0..if numbered { mine.len() } else { self.runs.len() } {
+            let run = self.runs[if numbered { mine[k] as usize } else { k }];
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
             // The places of the run whose first (second) node lies in the tile.
@@ -413,11 +446,25 @@ impl PairTable {
                         let at = (place / WIDTH * pull.width + slot) * WIDTH;
                         let partner = &pull.partner[at..at + WIDTH];
                         let pair = &pull.pair[at..at + WIDTH];
-                        let d = lanes!(P, i => x[i] - P::gather(view.x[i], partner));
-                        let rate = lanes!(P, i => {
-                            if L::DAMPED { v[i] - P::gather(view.v[i], partner) } else { P::zero() }
-                        });
-                        let (f, dissipated) = law.force(load_parameters(&law.parameters(), At::Each(pair)), d, rate);
+                        let (mut d, mut rate) = ([P::zero(); D], [P::zero(); D]);
+                        let parameters;
+                        if pull.together[at / WIDTH] {
+                            let from = partner[0] as usize;
+                            d = lanes!(P, i => x[i] - P::load(&view.x[i][from..]));
+                            if L::DAMPED {
+                                rate = lanes!(P, i => v[i] - P::load(&view.v[i][from..]));
+                            }
+                            parameters = load_parameters(&law.parameters(), At::Run(pair[0] as usize));
+                        } else {
+                            for i in 0..D {
+                                d[i] = x[i] - P::gather(view.x[i], partner);
+                                if L::DAMPED {
+                                    rate[i] = v[i] - P::gather(view.v[i], partner);
+                                }
+                            }
+                            parameters = load_parameters(&law.parameters(), At::Each(pair));
+                        }
+                        let (f, dissipated) = law.force(parameters, d, rate);
                         for i in 0..D {
                             force[i] += f[i];
                         }
@@ -501,6 +548,27 @@ impl PairTable {
 #[inline(always)]
 fn load_parameters<P: Pack>(parameters: &[&Parameter; 3], at: At) -> [P; 3] {
     [parameters[0].load_at(at), parameters[1].load_at(at), parameters[2].load_at(at)]
+}
+
+/// The runs that touch each tile, one tile after the other, and where those of each tile begin.
+fn runs_by_tile(layout: Layout, nodes: usize, runs: &[Run]) -> (Vec<u32>, Vec<u32>) {
+    let stride = layout.stride();
+    let mut lists = vec![Vec::new(); layout.places(nodes).div_ceil(TILE)];
+    for (number, run) in runs.iter().enumerate() {
+        for end in [run.a, run.b] {
+            let (from, until) = (end as usize * stride, (end + run.count) as usize * stride);
+            for list in &mut lists[from / TILE..until.div_ceil(TILE)] {
+                if list.last() != Some(&(number as u32)) {
+                    list.push(number as u32);
+                }
+            }
+        }
+    }
+    let mut starts = vec![0];
+    for list in &lists {
+        starts.push(starts[starts.len() - 1] + list.len() as u32);
+    }
+    (lists.concat(), starts)
 }
 
 /// The part of `0..length` for which `from + k` lies in `start..end`.

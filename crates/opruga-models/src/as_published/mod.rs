@@ -271,7 +271,7 @@ impl<const D: usize> Potential<D> for AsPublished {
             }
         }
     }
-    fn remember(&self, _simd: Simd, _view: &View<D>, _h: f64, scratch: &[f64], memory: &mut [f64]) -> [f64; WIDTH] {
+    fn remember(&self, _simd: Simd, _view: &View<D>, _h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
         let numbers = &scratch[2 * self.layout.places(self.nodes)..];
         for body in 0..self.layout.stride() {
             // 7. The ramp.

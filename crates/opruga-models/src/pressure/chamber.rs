@@ -22,6 +22,8 @@ pub(super) struct NodeRings {
     pub(super) width: usize,
     /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which adds nothing.
     pub(super) neighbour: Vec<u32>,
+    /// `[node / 8][slot]`: whether the eight neighbours follow each other, so that they can be read at once.
+    pub(super) together: Vec<bool>,
     pub(super) facets: Vec<[u32; 3]>,
 }
 
@@ -231,7 +233,9 @@ impl Boundary {
     pub(super) fn heap_bytes(&self) -> usize {
         match self {
             Boundary::Plane(edges) => edges.heap_bytes(),
-            Boundary::Space(rings) => rings.neighbour.capacity() * 4 + rings.facets.capacity() * 12,
+            Boundary::Space(rings) => {
+                rings.neighbour.capacity() * 4 + rings.together.capacity() + rings.facets.capacity() * 12
+            }
         }
     }
 }
@@ -250,7 +254,9 @@ impl NodeRings {
                 neighbour[at] = ring.get(slot).or(ring.first()).copied().unwrap_or(0);
             }
         }
-        NodeRings { width, neighbour, facets }
+        let follow = |places: &[u32]| places.windows(2).all(|pair| pair[1] == pair[0] + 1);
+        let together = neighbour.chunks(WIDTH).map(follow).collect();
+        NodeRings { width, neighbour, together, facets }
     }
 
     /// V = Σ xᵢ·∂V/∂xᵢ / 3 with ∂V/∂xᵢ = ⅙ Σ x_k × x_{k+1} around the ring of node i.
@@ -296,8 +302,14 @@ impl NodeRings {
             Layout::Single => {
                 let at = (place / WIDTH * self.width + slot) * WIDTH;
                 let places = &self.neighbour[at..at + WIDTH];
-                for d in 0..3 {
-                    out[d] = P::gather(view.x[d], places) - origin[d];
+                if self.together[at / WIDTH] {
+                    for d in 0..3 {
+                        out[d] = P::load(&view.x[d][places[0] as usize..]) - origin[d];
+                    }
+                } else {
+                    for d in 0..3 {
+                        out[d] = P::gather(view.x[d], places) - origin[d];
+                    }
                 }
             }
             Layout::Batch => {

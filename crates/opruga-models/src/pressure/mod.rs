@@ -40,6 +40,8 @@ pub struct Pressure {
     depth: f64,
     chambers: Vec<Chamber>,
     scratch_len: usize,
+    /// Whether nRT of any gas depends on time.
+    changes: bool,
 }
 
 #[derive(Debug)]
@@ -109,7 +111,8 @@ impl<const D: usize> Model<D> for PressureModel {
             chambers.push(Chamber { boundary, gases, scratch, area_len });
             scratch += NUMBERS + area_len;
         }
-        Ok(Box::new(Pressure { layout: ingredients.layout, depth, chambers, scratch_len: scratch }))
+        let changes = chambers.iter().any(|c: &Chamber| c.gases.iter().any(|g| g.changes));
+        Ok(Box::new(Pressure { layout: ingredients.layout, depth, chambers, scratch_len: scratch, changes }))
     }
 }
 
@@ -192,26 +195,31 @@ impl<const D: usize> Potential<D> for Pressure {
             chamber.boundary.add_force(simd, view, known.gauge, known.area, tile);
         }
     }
-    fn remember(&self, simd: Simd, view: &View<D>, h: f64, scratch: &[f64], memory: &mut [f64]) -> [f64; WIDTH] {
+    fn remember(&self, simd: Simd, view: &View<D>, h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
         let mut given = [0.0; WIDTH];
-        let changing = self.chambers.iter().any(|c| c.gases.iter().any(|g| g.changes));
-        let mut now = Vec::new();
-        if changing {
-            now.resize(self.scratch_len, 0.0);
-            simd.run(Volumes { model: self, view, scratch: &mut now });
-        }
         for (number, chamber) in self.chambers.iter().enumerate() {
             let known = chamber.known(scratch);
+            for body in 0..self.bodies() {
+                let (gas, volume) = (chamber.gas(body), known.volume[body] * self.depth);
+                // Without a cap only a small volume limits the pressure.
+                let roomy = gas.largest_pressure.is_none() && volume >= gas.smallest_volume * gas.rest_volume;
+                if !roomy && gas.pressure_at(volume, known.amount[body]).1 {
+                    memory[number * MEMORY + WIDTH + body] += 1.0;
+                }
+            }
+        }
+        if !self.changes {
+            return given;
+        }
+        simd.run(Volumes { model: self, view, scratch });
+        for (number, chamber) in self.chambers.iter().enumerate() {
             let memory = &mut memory[number * MEMORY..(number + 1) * MEMORY];
             for body in 0..self.bodies() {
                 let gas = chamber.gas(body);
-                if gas.pressure_at(known.volume[body] * self.depth, known.amount[body]).1 {
-                    memory[WIDTH + body] += 1.0;
-                }
                 if !gas.changes {
                     continue;
                 }
-                let volume = now[chamber.scratch + body] * self.depth;
+                let volume = scratch[chamber.scratch + body] * self.depth;
                 let before = gas.amount_at(view.time - h, memory[body]);
                 if gas.leak > 0.0 && before > 0.0 {
                     // d ln(nRT)/dt = −λ (P − P_a) V / nRT, over one step with its pressure held.
