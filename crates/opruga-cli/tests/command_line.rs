@@ -252,3 +252,16 @@ fn a_full_disk_is_an_error_of_writing() {
         .expect("the program runs");
     assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
 }
+
+/// The pages of the scene format in `docs/` are what the program prints: `opruga reference > docs/scene-file.md` and
+/// `opruga reference --schema > docs/scene.schema.json`.
+#[test]
+fn the_reference_in_the_documents_is_what_the_program_prints() {
+    let documents = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    for (arguments, file) in [(&["reference"][..], "scene-file.md"), (&["reference", "--schema"], "scene.schema.json")] {
+        let printed = opruga(&documents, arguments);
+        assert!(printed.status.success());
+        let kept = std::fs::read(documents.join(file)).expect("a page in docs/");
+        assert!(printed.stdout == kept, "docs/{file} is out of date: write what `opruga {}` prints", arguments.join(" "));
+    }
+}
