@@ -258,10 +258,15 @@ fn a_full_disk_is_an_error_of_writing() {
 #[test]
 fn the_reference_in_the_documents_is_what_the_program_prints() {
     let documents = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    for (arguments, file) in [(&["reference"][..], "scene-file.md"), (&["reference", "--schema"], "scene.schema.json")] {
+    for (arguments, file) in [(&["reference"][..], "scene-file.md"), (&["reference", "--schema"], "scene.schema.json")]
+    {
         let printed = opruga(&documents, arguments);
         assert!(printed.status.success());
         let kept = std::fs::read(documents.join(file)).expect("a page in docs/");
-        assert!(printed.stdout == kept, "docs/{file} is out of date: write what `opruga {}` prints", arguments.join(" "));
+        assert!(
+            printed.stdout == kept,
+            "docs/{file} is out of date: write what `opruga {}` prints",
+            arguments.join(" ")
+        );
     }
 }
