@@ -45,7 +45,9 @@ fn world_error(error: opruga::WorldError, file: &str) -> Failure {
 fn describe<const D: usize>(world: &World<D>) -> String {
     let mut text = String::new();
     let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
-    let _ = writeln!(text, "{} bodies, {nodes} nodes, {D} dimensions", world.bodies().count());
+    let bodies = world.bodies().count();
+    let plural = if bodies == 1 { "body" } else { "bodies" };
+    let _ = writeln!(text, "{bodies} {plural}, {nodes} nodes, {D} dimensions");
     let _ = writeln!(
         text,
         "{}: h = {:.6e} s, {} substeps a frame",
