@@ -112,11 +112,8 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
             parent.join(&source.name)
         }
     };
-    let existing = match (call.force, &call.resume) {
-        (true, _) => Existing::Replace,
-        (false, Some(_)) => Existing::Continue,
-        (false, None) => Existing::Refuse,
-    };
+    // A resumed run writes its own part only: it must not replace the part before it unasked.
+    let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = OutputFolder::open(&folder, existing)?;
     let world_options =
         Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };

@@ -73,8 +73,11 @@ fn kill_9_leaves_old_files_whole() {
         child.wait().expect("it ends");
         assert_eq!(contents(&folder.path().join("o")), before);
     }
+    // A resumed run does not replace what it goes on from, unless it is asked to.
     let resumed = ["run", "--resume", "o/checkpoint", "--seconds", "0.2", "--no-pictures", "--out", "o"];
-    let output = opruga(folder.path(), &resumed);
+    assert_eq!(code(&opruga(folder.path(), &resumed)), 4);
+    assert_eq!(contents(&folder.path().join("o")), before);
+    let output = opruga(folder.path(), &[&resumed[..], &["--force"]].concat());
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
@@ -455,7 +458,8 @@ fn scenes_without_bodies_run() {
             assert_eq!((&summary["bodies"], &summary["energy"]["kinetic"]), (&0.into(), &0.0.into()));
             assert!((summary["time"].as_f64().expect("a time") - 0.2).abs() < 1e-9);
             let resume = format!("{out}/checkpoint");
-            let resumed = opruga(folder.path(), &["run", "--resume", &resume, "--seconds", "0.3", "--out", &out]);
+            let resumed =
+                opruga(folder.path(), &["run", "--resume", &resume, "--seconds", "0.3", "--out", &out, "--force"]);
             assert_eq!(code(&resumed), 0, "{file}: {}", said(&resumed));
         }
     }

@@ -198,8 +198,6 @@ pub enum Existing {
     Refuse,
     /// It is replaced, file by file.
     Replace,
-    /// It is continued.
-    Continue,
 }
 
 /// A folder for the output of one run, locked against other processes as long as this value lives.

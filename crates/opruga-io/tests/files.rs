@@ -51,7 +51,6 @@ fn output_folders() {
     let again = OutputFolder::open(&out, Existing::Replace).expect("replaced");
     again.write("final.csv", false, |w| w.write_all(b"y")).expect("replaced");
     drop(again);
-    OutputFolder::open(&out, Existing::Continue).expect("continued");
 
     assert_eq!(code(&folder.join("missing/out"), Existing::Refuse), "write.folder");
     assert_eq!(code(&out.join("final.csv"), Existing::Refuse), "write.folder");
