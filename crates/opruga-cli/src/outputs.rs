@@ -332,13 +332,15 @@ impl Outputs<'_> {
         let e = world.energy();
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
         eprintln!(
-            "{}: {:.3} s of {} nodes in {:.2} s ({:.2} ns per node and step), energy {:.6} J, unexplained {:.2e} of it",
+            "{}: {:.3} s of {} nodes in {:.2} s ({:.2} ns per node and step), energy {:.6} J; {:.6} J unexplained, \
+             {:.2e} of the most that moved",
             world.blueprint().name,
             world.time(),
             nodes,
             self.wall,
             self.wall * 1e9 / (self.steps.max(1) as f64 * nodes.max(1) as f64),
             e.total(),
+            e.loss_integrator,
             e.closure,
         );
         for warning in world.warnings() {

@@ -72,7 +72,8 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
     /// The loop. Node p receives the force of its own pair and that of the pair before it, which is the pack of forces
     /// moved up by one node.
     ///
-    /// `FRESH`: there is a weight, the same for all nodes, and the forces of the tile are written and not added to. `SAME`: all but the
+    /// `FRESH`: there is a weight, the same for all nodes, and the forces of the tile are written and not added to.
+    /// `SAME`: all but the
     /// first parameter of the law are the same for all pairs, and are read once.
     #[inline(always)]
     fn walk<P: Pack, const BATCH: bool, const FRESH: bool, const SAME: bool>(
