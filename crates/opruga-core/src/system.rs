@@ -110,6 +110,52 @@ pub trait Update<const D: usize> {
     fn tile<P: Pack>(&self, range: Range<usize>, force: &[&[f64]; D], inverse_mass: &Parameter, state: &mut State<D>);
 }
 
+/// Room that is used within a step only: forces, stages of an integrator, positions before obstacles act.
+///
+/// Systems that are stepped one after the other share one, so that it stays in the cache.
+#[derive(Debug)]
+pub struct Workspace<const D: usize> {
+    forces: [Column; D],
+    before: [Column; D],
+    stages: Vec<[Columns<D>; 2]>,
+}
+
+impl<const D: usize> Default for Workspace<D> {
+    fn default() -> Self {
+        Workspace {
+            forces: core::array::from_fn(|_| Column::default()),
+            before: core::array::from_fn(|_| Column::default()),
+            stages: Vec::new(),
+        }
+    }
+}
+
+impl<const D: usize> Workspace<D> {
+    /// Makes room for the steps of a system.
+    pub fn fit(&mut self, system: &System<D>) {
+        self.make_room(system.plan.buffer_places(), system.stages, system.places());
+    }
+    fn make_room(&mut self, buffers: usize, stages: usize, places: usize) {
+        if self.forces[0].len() < buffers + WIDTH || self.before[0].is_empty() {
+            self.forces.iter_mut().for_each(|column| column.grow(buffers + WIDTH));
+            self.before.iter_mut().for_each(|column| column.grow(TILE + WIDTH));
+        }
+        if self.stages.len() < stages {
+            self.stages.resize_with(stages, || [Columns::zeros(0), Columns::zeros(0)]);
+        }
+        for column in self.stages[..stages].iter_mut().flatten().flat_map(|columns| &mut columns.0) {
+            if column.len() < places + WIDTH {
+                column.grow(places + WIDTH);
+            }
+        }
+    }
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let stages = self.stages.iter().flatten().flat_map(|columns| &columns.0);
+        self.forces.iter().chain(&self.before).chain(stages).map(Column::heap_bytes).sum()
+    }
+}
+
 /// One model of a system and what it keeps.
 #[derive(Debug)]
 pub struct Member<const D: usize> {
@@ -153,6 +199,8 @@ pub struct System<const D: usize> {
     /// Energy that went in and out.
     pub work: Work8,
     plan: TilePlan,
+    /// Pairs of columns that the integrator uses within a step.
+    stages: usize,
     forces: [Column; D],
     before: [Column; D],
     slots: Column,
@@ -192,8 +240,9 @@ impl<const D: usize> System<D> {
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             plan: TilePlan::new(places, std::iter::empty()),
+            stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
-            before: core::array::from_fn(|_| Column::zeros(TILE + WIDTH)),
+            before: core::array::from_fn(|_| Column::default()),
             slots: Column::default(),
         }
     }
@@ -221,8 +270,24 @@ impl<const D: usize> System<D> {
             });
         }
         self.plan = TilePlan::new(places, spans.into_iter());
-        self.forces = core::array::from_fn(|_| Column::zeros(self.plan.buffer_places() + WIDTH));
-        self.state.work.resize_with(work_columns, || [Columns::zeros(places), Columns::zeros(places)]);
+        self.stages = work_columns;
+    }
+    /// Takes a workspace for its own, or gives it back.
+    pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
+        std::mem::swap(&mut self.forces, &mut workspace.forces);
+        std::mem::swap(&mut self.before, &mut workspace.before);
+        std::mem::swap(&mut self.state.work, &mut workspace.stages);
+    }
+    /// Makes room for a step where nobody has lent any.
+    fn make_room(&mut self) {
+        let (buffers, stages, places) = (self.plan.buffer_places(), self.stages, self.places());
+        let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= places + WIDTH);
+        if self.forces[0].len() < buffers + WIDTH || self.state.work.len() < stages || !own {
+            let mut workspace = Workspace::default();
+            self.exchange(&mut workspace);
+            workspace.make_room(buffers, stages, places);
+            self.exchange(&mut workspace);
+        }
     }
     /// The number of places.
     pub fn places(&self) -> usize {
@@ -249,6 +314,7 @@ impl<const D: usize> System<D> {
         update: &U,
     ) -> Result<(), StepError> {
         let now = self.time + time;
+        self.make_room();
         self.prepare(evaluate, now)?;
         for tile in 0..self.plan.len() {
             self.add_forces(evaluate, now, weight, tile);
@@ -397,17 +463,16 @@ impl<const D: usize> System<D> {
         self.time = now;
     }
 
-    /// Bytes on the heap.
+    /// Bytes on the heap, without the workspace.
     pub fn heap_bytes(&self) -> usize {
         let columns = |c: &[Column; D]| c.iter().map(Column::heap_bytes).sum::<usize>();
         let state = columns(&self.state.x.0) + columns(&self.state.v.0);
-        let work: usize = self.state.work.iter().flatten().map(|c| columns(&c.0)).sum();
         let models: usize = self
             .members
             .iter()
             .map(|m| m.potential.heap_bytes() + m.memory.capacity() * 8 + m.scratch.heap_bytes())
             .sum();
-        state + work + models + columns(&self.forces) + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
+        state + models + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
     }
 
     /// The force on every node in the current state [N], gravity included, laid out in columns.
@@ -416,6 +481,7 @@ impl<const D: usize> System<D> {
     /// [`StepError`] where a model refuses the state.
     pub fn forces(&mut self, velocities: bool) -> Result<Columns<D>, StepError> {
         let mut out = Columns::zeros(self.places());
+        self.make_room();
         let saved = self.work;
         let rest =
             (!velocities).then(|| std::mem::replace(&mut self.state.v, Columns::zeros(self.layout.places(self.nodes))));

@@ -5,7 +5,7 @@ use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::state::Columns;
-use opruga_core::system::{System, Work8};
+use opruga_core::system::{System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
@@ -63,8 +63,15 @@ impl<const D: usize> Island<D> {
         self.stock = take_stock(&mut self.system);
     }
 
-    /// Steps through a frame; on failure the island is at its last good frame and the reason names substep and node.
-    pub(crate) fn frame(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
+    /// Steps through a frame in a workspace that is lent; on failure the island is at its last good frame and the reason
+    /// names substep and node.
+    pub(crate) fn frame(&mut self, plan: &FramePlan<D>, workspace: &mut Workspace<D>) {
+        self.system.exchange(workspace);
+        self.outcome = self.step_through(plan);
+        self.system.exchange(workspace);
+    }
+
+    fn step_through(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
         self.save(plan.start);
         let swept = self.swept(plan);
         let near = self.reaches(plan, &swept);

@@ -14,10 +14,11 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::{Stability, estimate};
 use opruga_core::state::View;
+use opruga_core::system::Workspace;
 use opruga_math::{Simd, WIDTH};
 use rayon::prelude::*;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The largest number of threads.
 const MOST_THREADS: usize = 256;
@@ -89,7 +90,14 @@ pub struct World<const D: usize> {
     pub(crate) changes: Vec<Change<D>>,
     /// Bodies that the program has added, whatever became of them.
     pub(crate) added: Vec<BodyBlueprint<D>>,
+    /// One for each thread.
+    workspaces: Vec<Mutex<Workspace<D>>>,
     pool: Option<rayon::ThreadPool>,
+}
+
+/// A workspace holds nothing between steps: one that a panic left behind is as good as any.
+fn lock<const D: usize>(workspace: &Mutex<Workspace<D>>) -> MutexGuard<'_, Workspace<D>> {
+    workspace.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl<const D: usize> core::fmt::Debug for World<D> {
@@ -126,6 +134,7 @@ impl<const D: usize> World<D> {
             .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build())
             .transpose()
             .map_err(|e| WorldError::Path { path: "threads".into(), message: e.to_string() })?;
+        let workspaces = (0..options.threads).map(|_| Mutex::default()).collect();
         let bodies = blueprint.bodies.len();
         let mut world = World {
             states: blueprint.bodies.iter().map(|b| Some(initial_state(b))).collect(),
@@ -154,6 +163,7 @@ impl<const D: usize> World<D> {
             warnings: Vec::new(),
             changes: Vec::new(),
             added: Vec::new(),
+            workspaces,
             pool,
         };
         world.rebuild_from_states()?;
@@ -222,6 +232,10 @@ impl<const D: usize> World<D> {
                 place[*body] = (islands.len(), lane);
             }
             islands.push(builder.island(members, &states, self.time())?);
+        }
+        for workspace in &mut self.workspaces {
+            let workspace = workspace.get_mut().unwrap_or_else(PoisonError::into_inner);
+            islands.iter().for_each(|island| workspace.fit(&island.system));
         }
         self.islands = islands;
         self.place = place;
@@ -305,10 +319,15 @@ impl<const D: usize> World<D> {
             h: self.h(),
         };
         let islands = &mut self.islands;
-        let step = |island: &mut Island<D>| island.outcome = island.frame(&plan);
+        let workspaces = &mut self.workspaces;
         match &self.pool {
-            None => islands.iter_mut().for_each(step),
-            Some(pool) => pool.install(|| islands.par_iter_mut().for_each(step)),
+            None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
+            Some(pool) => pool.install(|| {
+                islands.par_iter_mut().for_each(|island| {
+                    let thread = rayon::current_thread_index().unwrap_or(0);
+                    island.frame(&plan, &mut lock(&workspaces[thread]));
+                });
+            }),
         }
         if let Some(first) = self.islands.iter().position(|i| i.outcome.is_err()) {
             // All islands go back to the same frame.
@@ -584,7 +603,8 @@ impl<const D: usize> World<D> {
     }
     /// Bytes on the heap for the state and the models of all bodies.
     pub fn heap_bytes(&self) -> usize {
-        self.islands.iter().map(Island::heap_bytes).sum()
+        let shared: usize = self.workspaces.iter().map(|workspace| lock(workspace).heap_bytes()).sum();
+        shared + self.islands.iter().map(Island::heap_bytes).sum::<usize>()
     }
 }
 

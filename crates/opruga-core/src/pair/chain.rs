@@ -56,7 +56,9 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         }
         // If nobody has written the forces of the tile, and its nodes all belong to the run, the loop begins them.
         let [_, second, third] = self.law.parameters();
-        let whole = self.a <= tile.range.start && tile.range.end <= self.a + self.length + self.layout.stride();
+        // What lies behind the last node is padding.
+        let nodes = tile.range.end.min(self.view.nodes * self.layout.stride());
+        let whole = self.a <= tile.range.start && nodes <= self.a + self.length + self.layout.stride();
         match tile.weight {
             Some(weight) if whole && second.repeats() && third.repeats() && weight.mass.repeats() => {
                 tile.weight = None;
@@ -96,7 +98,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         let (p0, p1, p2) = (p0.strip(from, until), p1.strip(from, until), p2.strip(from, until));
         let mut force = StripMut::<D>::new(tile.force.each_mut().map(|f| &mut **f), start - tile.range.start, packed);
 
-        let same: [P; 2] = [p1.load(0), p2.load(0)];
+        let same: [P; 2] = if L::UNIFORM { law.uniform() } else { [p1.load(0), p2.load(0)] };
         let mass: P = weight.mass.load(0);
         let weight = lanes!(P, i => mass * P::splat(weight.gravity[i]));
 
@@ -105,7 +107,8 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
             let d = lanes!(P, i => x.load::<P>(i, 0) - x.load::<P>(i, next));
             let rate =
                 if L::DAMPED { lanes!(P, i => v.load::<P>(i, 0) - v.load::<P>(i, next)) } else { [P::zero(); D] };
-            let (f, _) = law.force([p0.load(0), p1.load(0), p2.load(0)], d, rate);
+            let [second, third] = if L::UNIFORM { same } else { [p1.load(0), p2.load(0)] };
+            let (f, _) = law.force([p0.load(0), second, third], d, rate, law.ahead(d));
             previous = f;
             if lead < WIDTH {
                 // The pair before the first node is not the last of the pack.
@@ -118,7 +121,13 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         // Pairs end before the last node; nodes end with the run or with the tile, and those behind it belong to another
         // tile, whose forces may wait next door.
         let (pairs, nodes) = (a + length - start, end - start);
-        let mut walker = Walker { law, next, lead, x, v, p0, p1, p2, same, weight, previous };
+        let mut walker =
+            Walker { law, next, lead, packed, x, v, p0, p1, p2, same, weight, previous, ahead: [P::zero(); MOST_LAG] };
+        for n in 0..lag::<P>() {
+            if n * WIDTH < packed {
+                walker.look_ahead(n, n * WIDTH);
+            }
+        }
         let whole = pairs.min(nodes) / WIDTH * WIDTH;
         for k in (0..whole).step_by(WIDTH) {
             *power += walker.step::<BATCH, FRESH, SAME, false>(k, pairs, nodes, &mut force);
@@ -134,6 +143,8 @@ struct Walker<'a, P, L, const D: usize> {
     law: L,
     next: usize,
     lead: usize,
+    /// Places of the nodes, filled up to whole packs.
+    packed: usize,
     x: Strip<'a, D>,
     v: Strip<'a, D>,
     p0: RepeatStrip<'a>,
@@ -144,9 +155,33 @@ struct Walker<'a, P, L, const D: usize> {
     weight: [P; D],
     /// The forces of the pack before.
     previous: [P; D],
+    /// What the law said of the packs to come.
+    ahead: [P; MOST_LAG],
+}
+
+/// The most packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not as far as a root
+/// and a division take; what waits for them fills its queues.
+const MOST_LAG: usize = 2;
+
+/// Packs between [`PairLaw::ahead`] and the force: a pack of many registers is far enough by itself.
+const fn lag<P: Pack>() -> usize {
+    if P::PARTS > 2 { 1 } else { MOST_LAG }
 }
 
 impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
+    /// Asks the law ahead of the pack from `k` on.
+    #[inline(always)]
+    fn look_ahead(&mut self, into: usize, k: usize) {
+        if L::AHEAD {
+            let at = self.lead + k;
+            for part in 0..P::PARTS {
+                let (x, there) = (&self.x, at + self.next);
+                let d = lanes!(P::Part, i => x.load_part::<P>(i, at, part) - x.load_part::<P>(i, there, part));
+                self.ahead[into].set_part(part, self.law.ahead(d));
+            }
+        }
+    }
+
     /// The pack of nodes from `k` on; gives the power of their pairs. `EDGE`: not all eight are there.
     #[inline(always)]
     fn step<const BATCH: bool, const FRESH: bool, const SAME: bool, const EDGE: bool>(
@@ -157,6 +192,14 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         force: &mut StripMut<D>,
     ) -> P {
         let at = self.lead + k;
+        let ahead = self.ahead[0];
+        for n in 1..lag::<P>() {
+            self.ahead[n - 1] = self.ahead[n];
+        }
+        let later = k + lag::<P>() * WIDTH;
+        if later < self.packed {
+            self.look_ahead(lag::<P>() - 1, later);
+        }
         // Part by part: what a law computes with fits the registers of any processor.
         let mut f = [P::zero(); D];
         let mut dissipated = P::zero();
@@ -173,7 +216,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
             } else {
                 (self.p1.load_part::<P>(at, part), self.p2.load_part::<P>(at, part))
             };
-            let (force, loss) = self.law.force([self.p0.load_part::<P>(at, part), p1, p2], d, rate);
+            let (force, loss) = self.law.force([self.p0.load_part::<P>(at, part), p1, p2], d, rate, ahead.part(part));
             for i in 0..D {
                 f[i].set_part(part, force[i]);
             }

@@ -21,14 +21,25 @@ use opruga_math::{Lane, Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
 pub trait PairLaw<const D: usize>: Copy {
     /// Whether the law reads velocities.
     const DAMPED: bool;
-    /// Whether the second and the third parameter are the same for all pairs, whatever the body.
+    /// Whether the law reads two numbers that are the same for all pairs of a body ([`PairLaw::uniform`]), and no others.
     const UNIFORM: bool;
     /// The force on the second node is this times the force on the first: −1 or +1.
     const SECOND: f64;
+    /// Whether [`PairLaw::ahead`] has something to say.
+    const AHEAD: bool;
     /// Three numbers per pair that the law reads.
     fn parameters(&self) -> [&Parameter; 3];
-    /// Force on the first node [N] and dissipated power [W] of pairs, from d = xₐ − x_b and its rate.
-    fn force<S: Lane>(&self, parameters: [S; 3], d: [S; D], rate: [S; D]) -> ([S; D], S);
+    /// In place of the second and third of them, where the law is uniform: two numbers for each body.
+    #[inline(always)]
+    fn uniform<P: Pack>(&self) -> [P; 2] {
+        [P::zero(); 2]
+    }
+    /// What the law needs of d = xₐ − x_b and takes the processor long, such as a division by |d|: loops ask for it some
+    /// packs before they ask for the force, so that nothing waits for it.
+    fn ahead<S: Lane>(&self, d: [S; D]) -> S;
+    /// Force on the first node [N] and dissipated power [W] of pairs, from d = xₐ − x_b, its rate, and what
+    /// [`PairLaw::ahead`] said of d.
+    fn force<S: Lane>(&self, parameters: [S; 3], d: [S; D], rate: [S; D], ahead: S) -> ([S; D], S);
 }
 
 /// A function of a pair that is added up over all pairs.
@@ -37,6 +48,54 @@ pub trait PairTerm<P: Pack, const D: usize>: Copy {
     fn parameters(&self) -> [&Parameter; 3];
     /// The value for eight pairs with these ends.
     fn of(&self, parameters: [P; 3], a: [P; D], b: [P; D]) -> P;
+}
+
+/// A pair by itself, of one body.
+struct Alone<'a, 'v, 't, L, const D: usize> {
+    law: L,
+    view: &'a View<'v, D>,
+    nodes: [usize; 2],
+    number: usize,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Alone<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let Alone { law, view, nodes: [a, b], number, tile, power } = self;
+        let mut d = [0.0; D];
+        let mut rate = [0.0; D];
+        for i in 0..D {
+            d[i] = view.x[i][a] - view.x[i][b];
+            if L::DAMPED {
+                rate[i] = view.v[i][a] - view.v[i][b];
+            }
+        }
+        let [p0, p1, p2] = law.parameters();
+        let parameters = if L::UNIFORM {
+            let [second, third] = law.uniform::<P>();
+            [0.0, second.to_array()[0], third.to_array()[0]]
+        } else {
+            [p0.at(number), p1.at(number), p2.at(number)]
+        };
+        let (force, dissipated) = law.force(parameters, d, rate, law.ahead(d));
+        let range = tile.range.clone();
+        for i in 0..D {
+            for (node, sign) in [(a, 1.0), (b, L::SECOND)] {
+                if range.contains(&node) {
+                    // Whole packs are written, since whole packs are read soon after.
+                    let (first, lane) = ((node - range.start) / WIDTH * WIDTH, node % WIDTH);
+                    let old = P::load(&tile.force[i][first..]);
+                    let new = P::select(P::first(lane + 1), old + P::splat(sign * force[i]), old);
+                    P::select(P::first(lane), old, new).store(&mut tile.force[i][first..]);
+                }
+            }
+        }
+        if L::DAMPED && range.contains(&a) {
+            power[0] += dissipated;
+        }
+    }
 }
 
 /// A run of at most one pack.
@@ -264,6 +323,10 @@ impl PairTable {
                 continue;
             }
             tile.settle(simd);
+            if length == 1 {
+                simd.run(Alone { law, view, nodes: [a, b], number: first, tile, power: &mut power });
+                continue;
+            }
             if length <= WIDTH {
                 let place = [a, b, first, length];
                 simd.run(Short { table: self, law, view, place, own, other, tile, power: &mut power });
@@ -309,7 +372,7 @@ impl PairTable {
         } else {
             [P::zero(); D]
         };
-        let (force, dissipated) = law.force(load_parameters(&law.parameters(), At::Run(first)), d, rate);
+        let (force, dissipated) = law.force(law_parameters(&law, At::Run(first)), d, rate, law.ahead(d));
         let start = tile.range.start;
         for i in 0..D {
             let into = &mut *tile.force[i];
@@ -376,7 +439,8 @@ impl PairTable {
             let d = lanes!(P, i => x.load::<P>(i, at_a) - x.load::<P>(i, at_b));
             let rate =
                 if L::DAMPED { lanes!(P, i => v.load::<P>(i, at_a) - v.load::<P>(i, at_b)) } else { [P::zero(); D] };
-            let (force, dissipated) = law.force([p0.load(k), p1.load(k), p2.load(k)], d, rate);
+            let [second, third] = if L::UNIFORM { law.uniform() } else { [p1.load(k), p2.load(k)] };
+            let (force, dissipated) = law.force([p0.load(k), second, third], d, rate, law.ahead(d));
             for i in 0..D {
                 slots.store(0, i * room + WIDTH + k, force[i]);
             }
@@ -454,7 +518,7 @@ impl PairTable {
                             if L::DAMPED {
                                 rate = lanes!(P, i => v[i] - P::load(&view.v[i][from..]));
                             }
-                            parameters = load_parameters(&law.parameters(), At::Run(pair[0] as usize));
+                            parameters = law_parameters(&law, At::Run(pair[0] as usize));
                         } else {
                             for i in 0..D {
                                 d[i] = x[i] - P::gather(view.x[i], partner);
@@ -462,9 +526,9 @@ impl PairTable {
                                     rate[i] = v[i] - P::gather(view.v[i], partner);
                                 }
                             }
-                            parameters = load_parameters(&law.parameters(), At::Each(pair));
+                            parameters = law_parameters(&law, At::Each(pair));
                         }
-                        let (f, dissipated) = law.force(parameters, d, rate);
+                        let (f, dissipated) = law.force(parameters, d, rate, law.ahead(d));
                         for i in 0..D {
                             force[i] += f[i];
                         }
@@ -483,7 +547,7 @@ impl PairTable {
                         let rate = lanes!(P, i => {
                             if L::DAMPED { v[i] - P::load(&view.v[i][partner..]) } else { P::zero() }
                         });
-                        let (f, dissipated) = law.force(load_parameters(&law.parameters(), At::Run(pair)), d, rate);
+                        let (f, dissipated) = law.force(law_parameters(&law, At::Run(pair)), d, rate, law.ahead(d));
                         for i in 0..D {
                             force[i] += f[i];
                         }
@@ -543,6 +607,16 @@ impl PairTable {
         }
         sum.total()
     }
+}
+
+/// The numbers that a law reads for eight pairs.
+#[inline(always)]
+fn law_parameters<P: Pack, L: PairLaw<D>, const D: usize>(law: &L, at: At) -> [P; 3] {
+    if L::UNIFORM {
+        let [second, third] = law.uniform();
+        return [P::zero(), second, third];
+    }
+    load_parameters(&law.parameters(), at)
 }
 
 #[inline(always)]

@@ -12,17 +12,20 @@ pub(super) struct SpringLaw<'a, const DAMPED: bool> {
     pub(super) damping: &'a Parameter,
 }
 
-/// Length of d and its inverse; both zero for coincident ends, whose force has no direction and is taken as zero.
+/// 1/|d|; zero for coincident ends, whose force has no direction and is taken as zero.
 #[inline(always)]
-pub(super) fn length<S: Lane, const D: usize>(d: &[S; D]) -> (S, S) {
-    let mut square = d[0] * d[0];
-    for i in 1..D {
-        square += d[i] * d[i];
-    }
+fn inverse_length<S: Lane, const D: usize>(d: &[S; D]) -> S {
+    let square = dot(d, d);
     let inverse = S::one() / square.sqrt();
     // Squares below the smallest normal number count as coincident.
-    let inverse = S::select(S::splat(f64::MIN_POSITIVE).less_or_equal(square), inverse, S::zero());
-    (square * inverse, inverse)
+    S::select(S::splat(f64::MIN_POSITIVE).less_or_equal(square), inverse, S::zero())
+}
+
+/// Length of d and its inverse; both zero for coincident ends.
+#[inline(always)]
+pub(super) fn length<S: Lane, const D: usize>(d: &[S; D]) -> (S, S) {
+    let inverse = inverse_length(d);
+    (dot(d, d) * inverse, inverse)
 }
 
 /// Scalar product.
@@ -39,14 +42,25 @@ impl<const DAMPED: bool, const D: usize> PairLaw<D> for SpringLaw<'_, DAMPED> {
     const DAMPED: bool = DAMPED;
     const UNIFORM: bool = false;
     const SECOND: f64 = -1.0;
+    const AHEAD: bool = true;
 
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
         [self.rest_length, self.stiffness, self.damping]
     }
     #[inline(always)]
-    fn force<S: Lane>(&self, [rest_length, stiffness, damping]: [S; 3], d: [S; D], rate: [S; D]) -> ([S; D], S) {
-        let (length, inverse) = length(&d);
+    fn ahead<S: Lane>(&self, d: [S; D]) -> S {
+        inverse_length(&d)
+    }
+    #[inline(always)]
+    fn force<S: Lane>(
+        &self,
+        [rest_length, stiffness, damping]: [S; 3],
+        d: [S; D],
+        rate: [S; D],
+        inverse: S,
+    ) -> ([S; D], S) {
+        let length = dot(&d, &d) * inverse;
         // Positive where the spring pushes its ends apart.
         let mut thrust = stiffness * (rest_length - length);
         let mut power = S::zero();

@@ -30,21 +30,35 @@ pub(super) struct NodeRings {
 /// Edges of the plane: each end gets half of the outward normal times the gauge pressure.
 #[derive(Clone, Copy)]
 struct EdgePush<'a> {
-    /// Half of the gauge pressure of each body, and minus that.
-    half: &'a Parameter,
-    minus_half: &'a Parameter,
+    layout: Layout,
+    /// The gauge pressure of each body, times depth.
+    gauge: &'a [f64],
 }
 
 impl<const D: usize> PairLaw<D> for EdgePush<'_> {
     const DAMPED: bool = false;
     const UNIFORM: bool = true;
     const SECOND: f64 = 1.0;
+    const AHEAD: bool = false;
     #[inline(always)]
     fn parameters(&self) -> [&Parameter; 3] {
-        [&Parameter::NONE, self.half, self.minus_half]
+        [&Parameter::NONE; 3]
     }
     #[inline(always)]
-    fn force<S: Lane>(&self, [_, half, minus_half]: [S; 3], d: [S; D], _rate: [S; D]) -> ([S; D], S) {
+    fn uniform<P: Pack>(&self) -> [P; 2] {
+        // One number is read as one number: eight that were just written one by one would have to be waited for.
+        let gauge = match self.layout {
+            Layout::Single => P::splat(self.gauge[0]),
+            Layout::Batch => P::load(self.gauge),
+        };
+        [gauge * P::splat(0.5), gauge * P::splat(-0.5)]
+    }
+    #[inline(always)]
+    fn ahead<S: Lane>(&self, _d: [S; D]) -> S {
+        S::zero()
+    }
+    #[inline(always)]
+    fn force<S: Lane>(&self, [_, half, minus_half]: [S; 3], d: [S; D], _rate: [S; D], _: S) -> ([S; D], S) {
         let mut force = [S::zero(); D];
         force[0] = d[1] * minus_half;
         force[1] = d[0] * half;
@@ -127,14 +141,7 @@ impl Boundary {
         tile: &mut Tile<D>,
     ) {
         match self {
-            Boundary::Plane(edges) => {
-                let mut halves = [0.0; WIDTH];
-                for l in 0..WIDTH {
-                    halves[l] = 0.5 * gauge[l];
-                }
-                let (half, minus_half) = (Parameter::by_body(halves), Parameter::by_body(halves.map(|p| -p)));
-                edges.add_force(simd, EdgePush { half: &half, minus_half: &minus_half }, view, tile);
-            }
+            Boundary::Plane(edges) => edges.add_force(simd, EdgePush { layout: view.layout, gauge }, view, tile),
             Boundary::Space(_) => simd.run(Push { gauge, area, tile }),
         }
     }
