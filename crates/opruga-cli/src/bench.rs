@@ -71,6 +71,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         angular_velocity: Vec::new(),
         mass: Mass::Node(1.0),
         thickness: 1.0,
+        integrator: None,
         models: models.clone(),
         pins: Vec::new(),
     };

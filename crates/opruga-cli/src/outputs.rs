@@ -81,7 +81,7 @@ impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows.
     pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Recorder {
         let axes = &["x", "y", "z"][..D];
-        let mut columns: Vec<String> = ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas"]
+        let mut columns: Vec<String> = ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
             .into_iter()
             .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
             .map(String::from)
@@ -137,6 +137,7 @@ impl Recorder {
             e.gravity,
             e.work_user,
             e.work_gas,
+            e.work_correction,
             e.loss_damping,
             e.loss_friction,
             e.loss_contact,
@@ -242,6 +243,7 @@ impl Outputs<'_> {
                 gravity: e.gravity,
                 work_user: e.work_user,
                 work_gas: e.work_gas,
+                work_correction: e.work_correction,
                 loss_damping: e.loss_damping,
                 loss_friction: e.loss_friction,
                 loss_contact: e.loss_contact,

@@ -151,6 +151,7 @@ pub struct EnergySummary {
     pub gravity: f64,
     pub work_user: f64,
     pub work_gas: f64,
+    pub work_correction: f64,
     pub loss_damping: f64,
     pub loss_friction: f64,
     pub loss_contact: f64,

@@ -81,6 +81,8 @@ pub struct BodyBlueprint<const D: usize> {
     pub mass: Mass,
     /// Thickness out of the plane in 2D, of a sheet in 3D [m].
     pub thickness: f64,
+    /// Its own integrator and the parameters of that; none: that of the scene.
+    pub integrator: Option<Values>,
     /// Its models and their parameters.
     pub models: Vec<Values>,
     /// Its pins.

@@ -48,7 +48,7 @@ pub enum Holds {
     },
     /// A table whose `kind` names a shape.
     Shape,
-    /// A table whose `kind` names an integrator.
+    /// A table whose `kind` names an integrator, or that word alone.
     Integrator,
     /// A list of tables whose `kind` names a model.
     Models,
@@ -238,6 +238,7 @@ pub const BODY: Section = Section {
             false,
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
+        child("integrator", Holds::Integrator, false, "How it is stepped, where not as the scene says."),
         child("models", Holds::Models, false, "What its material does."),
         child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
         child(

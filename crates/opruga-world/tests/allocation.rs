@@ -96,6 +96,7 @@ fn scene<const D: usize>(
         angular_velocity: Vec::new(),
         mass: Mass::Total(1.0),
         thickness: 1.0,
+        integrator: None,
         models: models.to_vec(),
         pins: Vec::new(),
     };

@@ -54,6 +54,7 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
                 angular_velocity: vec![1.0],
                 mass: Mass::Total(1.0),
                 thickness: 1.0,
+                integrator: None,
                 models: vec![
                     model("mass_spring", &[("stiffness", 1600.0 + k as f64), ("damping", 0.5)]),
                     model("pressure", &[("nRT", 50.0)]),

@@ -36,6 +36,7 @@ struct Draft<'n, const D: usize> {
     rotation: Vec<f64>,
     angular_velocity: Vec<f64>,
     mass: Option<Mass>,
+    integrator: Option<Values>,
     models: Vec<Values>,
     pins: Vec<(PinBlueprint<D>, Place, String)>,
     copies: Option<Copies<D>>,
@@ -147,6 +148,7 @@ fn draft<'n, const D: usize>(
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
+    let integrator = reader.integrator(node, &path);
     let kinds = reader.catalogue.models.clone();
     let mut models = Vec::new();
     for (item, here) in reader.list(node, &path, "models") {
@@ -171,7 +173,7 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
-    Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, models, pins, copies, sound })
+    Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, integrator, models, pins, copies, sound })
 }
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
@@ -388,6 +390,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         angular_velocity: draft.angular_velocity.clone(),
         mass: draft.mass?,
         thickness: draft.values.number("thickness").unwrap_or(1.0),
+        integrator: draft.integrator.clone(),
         models: draft.models.clone(),
         pins: draft.pins.iter().map(|(pin, _, _)| pin.clone()).collect(),
     };

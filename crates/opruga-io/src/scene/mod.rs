@@ -152,9 +152,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let top = reader.fields(root, "", &schema::SCENE, None);
     let time = time(reader, root);
     let surroundings = surroundings(reader, root);
-    let integrators = reader.catalogue.integrators.clone();
-    let integrator =
-        root.get("integrator").and_then(|node| reader.kind_table(node, "integrator", "integrator", &integrators));
+    let integrator = reader.integrator(root, "");
     let colliders = reader.catalogue.colliders.clone();
     let colliders: Vec<ColliderBlueprint> = reader
         .list(root, "", "collider")

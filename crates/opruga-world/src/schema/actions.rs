@@ -142,7 +142,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `body.NAME.integrator.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),
