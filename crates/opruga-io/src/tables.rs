@@ -107,7 +107,7 @@ pub struct Summary {
     pub elements: usize,
     /// The kinds of the models in use.
     pub models: Vec<String>,
-    /// The kind of the integrator.
+    /// The kind of the integrator; where bodies have their own, all kinds, with commas between them.
     pub integrator: String,
     /// The length of a frame [s].
     pub frame: f64,

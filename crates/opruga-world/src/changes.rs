@@ -2,8 +2,8 @@
 //! snapshot of a changed scene can be restored in a world of the scene as it was, and an earlier one in a changed world.
 
 use crate::blueprint::{BodyBlueprint, Surroundings, Time};
-use crate::error::WorldError;
 use crate::build::build_colliders;
+use crate::error::WorldError;
 use crate::rebuild::Touched;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
@@ -39,11 +39,11 @@ pub(crate) enum Before<const D: usize> {
 }
 
 const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
-                     world.largest_force, world.largest_velocity, time.substeps";
+                     world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
 
 impl<const D: usize> World<D> {
     /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `time.substeps`.
+    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
     ///
     /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
     /// stable step is estimated anew.
@@ -178,8 +178,12 @@ impl<const D: usize> World<D> {
                     "drag" => now.drag = number(accept(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
                     "largest_force" => now.largest_force = number(accept(Allowed::POSITIVE)?),
                     "largest_velocity" => now.largest_velocity = number(accept(Allowed::POSITIVE)?),
+                    "largest_distance" => {
+                        now.largest_distance = number(accept(Allowed::POSITIVE)?);
+                        return Ok((Before::Surroundings(before), Touched::Bodies(Vec::new())));
+                    }
                     other => {
-                        let known = ["gravity", "drag", "largest_force", "largest_velocity"];
+                        let known = ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance"];
                         let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
                         let hint = hint.unwrap_or_default();
                         return Err(refuse(format!(

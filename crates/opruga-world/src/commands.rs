@@ -1,14 +1,13 @@
 //! What is done to bodies while they move: drag, push, pin, set, add, remove.
 
-use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
-use crate::changes::{Change, Source};
+use crate::blueprint::{Action, CommandBlueprint, Selector};
+use crate::changes::Source;
 use crate::error::WorldError;
-use crate::rebuild::Touched;
 use crate::loads::{NodeForces, Pull};
-use crate::world::{Warning, World};
+use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::Pin;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -260,63 +259,6 @@ impl<const D: usize> World<D> {
             out.push((x, pointer, force));
         }
         out
-    }
-
-    /// Adds a body; returns its number.
-    ///
-    /// # Errors
-    /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
-    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
-        let kept = body.clone();
-        let number = self.include(body, Source::Program(self.added.len()))?;
-        self.added.push(kept);
-        Ok(number)
-    }
-
-    fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
-        if self.body(&body.name).is_some() {
-            return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
-        }
-        let number = self.blueprint.bodies.len();
-        let fresh = BTreeMap::from([(number, crate::build::initial_state(&body))]);
-        self.blueprint.bodies.push(body);
-        self.alive.push(true);
-        self.generation.push(0);
-        let outcome = self.regroup(&Touched::Bodies(Vec::new()), &fresh).and_then(|()| self.check_stability());
-        if let Err(error) = outcome {
-            self.blueprint.bodies.pop();
-            self.alive.pop();
-            self.generation.pop();
-            self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new())?;
-            self.check_stability()?;
-            return Err(error);
-        }
-        self.changes.push(Change::Added(source));
-        Ok(number)
-    }
-
-    /// Takes a body away.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if there is no body of that name.
-    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
-        let Some(body) = self.body(name) else {
-            return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
-        };
-        self.alive[body] = false;
-        self.generation[body] += 1;
-        let mut dropped = 0;
-        for running in &mut self.running {
-            if running.command.action.body() == Some(body) {
-                dropped += u64::from(running.progress != Progress::Done);
-                running.progress = Progress::Done;
-            }
-        }
-        if dropped > 0 {
-            let message = format!("commands on body `{name}` ended when it was taken away");
-            self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
-        }
-        self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new())
     }
 }
 

@@ -225,6 +225,9 @@ impl<const D: usize> Work for Look<'_, D> {
     }
 }
 
+/// The unexplained part of the energy in motion above which a frame is counted and warned of.
+pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
+
 /// What entered and left, added up over all frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flows {
@@ -241,6 +244,10 @@ pub(crate) struct Flows {
     pub(crate) limited_forces: u64,
     pub(crate) limited_velocities: u64,
     pub(crate) limited_pulls: u64,
+    /// Bodies that went too far and were taken away.
+    pub(crate) lost_bodies: u64,
+    /// Frames that ended with a larger part of the energy unexplained than [`LARGEST_CLOSURE`].
+    pub(crate) open_frames: u64,
 }
 
 impl Flows {

@@ -8,6 +8,7 @@ pub mod error;
 mod island;
 pub mod ledger;
 mod loads;
+mod population;
 mod readings;
 mod rebuild;
 pub mod registry;

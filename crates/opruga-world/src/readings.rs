@@ -12,6 +12,20 @@ impl<const D: usize> World<D> {
     pub fn energy(&self) -> Energy {
         self.energy
     }
+    /// The kinds of integrators in use: that of the scene, then those that bodies have of their own.
+    pub fn integrators(&self) -> Vec<&'static str> {
+        let mut out = Vec::new();
+        let bodies: Vec<_> = self.bodies().map(|b| &self.blueprint.bodies[b].integrator).collect();
+        if bodies.is_empty() || bodies.iter().any(|own| own.is_none()) {
+            out.push(self.blueprint.integrator.kind());
+        }
+        for values in bodies.into_iter().flatten() {
+            if !out.contains(&values.kind()) {
+                out.push(values.kind());
+            }
+        }
+        out
+    }
     /// How many islands there are: bodies that are stepped together.
     pub fn islands(&self) -> usize {
         self.islands.len()
@@ -141,6 +155,17 @@ impl<const D: usize> World<D> {
         count("limit.force", "forces were shortened to `world.largest_force`", self.flows.limited_forces);
         count("limit.velocity", "velocities were shortened to `world.largest_velocity`", self.flows.limited_velocities);
         count("limit.drag", "pulls were shortened to their `largest_force`", self.flows.limited_pulls);
+        count(
+            "limit.distance",
+            "bodies went farther than `world.largest_distance` and were taken away",
+            self.flows.lost_bodies,
+        );
+        count(
+            "ledger.closure",
+            "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
+             integrator; more substeps make it smaller, `verlet` and `runge_kutta` make less of it",
+            self.flows.open_frames,
+        );
         let mut counts: Vec<(&'static str, u64)> = Vec::new();
         for island in &self.islands {
             for member in &island.system.members {

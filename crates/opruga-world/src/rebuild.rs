@@ -1,6 +1,6 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
-use crate::blueprint::BodyBlueprint;
+use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{BodyState, Builder, build_integrator, group};
 use crate::error::WorldError;
 use crate::island::Island;
@@ -116,8 +116,7 @@ impl<const D: usize> World<D> {
     ) -> Result<Island<D>, WorldError> {
         let states: Vec<BodyState<D>> =
             members.iter().map(|b| fresh.get(b).cloned().unwrap_or_else(|| self.state_of(*b))).collect();
-        let builder =
-            Builder { blueprint: &self.blueprint, registry: &self.registry, simd: self.simd, integrator };
+        let builder = Builder { blueprint: &self.blueprint, registry: &self.registry, simd: self.simd, integrator };
         builder.island(members, &states.iter().collect::<Vec<_>>(), self.time())
     }
 
@@ -143,15 +142,21 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError`] where a model refuses the body.
     pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> {
-        let mut blueprint = self.blueprint.clone();
-        blueprint.loads.clear();
-        blueprint.bodies = vec![body.clone()];
-        let builder = Builder {
-            blueprint: &blueprint,
-            registry: &self.registry,
-            simd: self.simd,
-            integrator: &self.integrator,
+        let blueprint = Blueprint {
+            name: String::new(),
+            title: String::new(),
+            seed: self.blueprint.seed,
+            time: self.blueprint.time,
+            surroundings: self.blueprint.surroundings,
+            integrator: self.blueprint.integrator.clone(),
+            bodies: vec![body.clone()],
+            colliders: Vec::new(),
+            loads: Vec::new(),
+            commands: Vec::new(),
+            probes: Vec::new(),
         };
+        let builder =
+            Builder { blueprint: &blueprint, registry: &self.registry, simd: self.simd, integrator: &self.integrator };
         let mut island = builder.island(&[0], &[&crate::build::initial_state(body)], self.time())?;
         Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
     }

@@ -212,7 +212,7 @@ impl<const D: usize> World<D> {
         for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.largest] {
             out.number(x);
         }
-        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls] {
+        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
             out.count(n);
         }
         out.0
@@ -225,7 +225,8 @@ impl<const D: usize> World<D> {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
         let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
-        let islands = (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
+        let islands =
+            (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
         let outcome = self.go_to(bytes);
         if outcome.is_err() {
             (self.blueprint, self.changes, self.colliders, self.running) = kept;
@@ -299,7 +300,10 @@ impl<const D: usize> World<D> {
         for x in &mut numbers {
             *x = reader.number()?;
         }
-        let counts = [reader.count()?, reader.count()?, reader.count()?];
+        let mut counts = [0; 5];
+        for n in &mut counts {
+            *n = reader.count()?;
+        }
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
@@ -314,7 +318,7 @@ impl<const D: usize> World<D> {
             self.check_stability()?;
         }
         let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
-        let [limited_forces, limited_velocities, limited_pulls] = counts;
+        let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
         self.limited_pulls.store(limited_pulls, Ordering::Relaxed);
         self.flows = Flows {
             user,
@@ -328,6 +332,8 @@ impl<const D: usize> World<D> {
             limited_forces,
             limited_velocities,
             limited_pulls,
+            lost_bodies,
+            open_frames,
         };
         self.refresh_ledger();
         Ok(())

@@ -6,7 +6,7 @@ use crate::changes::Change;
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
-use crate::ledger::{Energy, Flows, Momentum};
+use crate::ledger::{Energy, Flows, LARGEST_CLOSURE, Momentum};
 use crate::loads::ForceLaw;
 use crate::rebuild::Touched;
 use crate::registry::Registry;
@@ -223,7 +223,8 @@ impl<const D: usize> World<D> {
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        Ok(())
+        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE);
+        self.take_away_what_is_far()
     }
 
     /// The time [s].
@@ -285,6 +286,17 @@ impl<const D: usize> World<D> {
         Ok(())
     }
     /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).
+    ///
+    /// The law runs while the world is stepped, on any thread, so it cannot change the world; this does not compile:
+    ///
+    /// ```compile_fail,E0502
+    /// # use opruga_world::World; use std::sync::Arc;
+    /// fn removes<'w>(world: &'w mut World<2>) {
+    ///     let mut law = |_: u32, _: [f64; 2], _: [f64; 2], _: f64| { let _ = world.remove_body("ball"); [0.0; 2] };
+    ///     let _ = world.frame();
+    ///     law(0, [0.0; 2], [0.0; 2], 0.0);
+    /// }
+    /// ```
     ///
     /// # Errors
     /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.

@@ -115,6 +115,7 @@ fn scene<const D: usize>(
             drag: 0.1,
             largest_force: None,
             largest_velocity: None,
+            largest_distance: None,
         },
         integrator: Values::defaults(Registry::<D>::default().integrator(rule).expect("a rule").spec(), D),
         bodies: (0..count).map(body).collect(),

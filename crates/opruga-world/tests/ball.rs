@@ -43,7 +43,13 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
         title: String::new(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 40 },
-        surroundings: Surroundings { gravity: [0.0, -9.81], drag: 0.0, largest_force: None, largest_velocity: None },
+        surroundings: Surroundings {
+            gravity: [0.0, -9.81],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
         integrator: integrator(rule),
         bodies: (0..count)
             .map(|k| BodyBlueprint {

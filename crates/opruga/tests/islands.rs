@@ -79,9 +79,7 @@ fn adding_removing_and_setting_leave_other_islands_alone() {
     assert_eq!((built_by(&world), world.islands()), (1, 9), "the last batch was full");
     world.set("body.b[17].models.mass_spring.stiffness", Value::Number(700.0)).expect("a parameter");
     assert_eq!(built_by(&world), 1);
-    for (path, value) in
-        [("collider.0.friction", Value::Number(0.1)), ("time.substeps", Value::Integer(40))]
-    {
+    for (path, value) in [("collider.0.friction", Value::Number(0.1)), ("time.substeps", Value::Integer(40))] {
         world.set(path, value).expect("a parameter");
         assert_eq!(built_by(&world), 0, "{path}");
     }
@@ -107,8 +105,7 @@ fn a_stiff_copy_in_a_later_batch_is_refused() {
 fn a_body_with_its_own_integrator_moves_as_in_a_scene_of_that_integrator() {
     let rules = ["symplectic_euler", "verlet", "{ kind = \"runge_kutta\" }", "heun", "verlet", "symplectic_euler"];
     let quoted = |rule: &str| if rule.starts_with('{') { rule.to_string() } else { format!("\"{rule}\"") };
-    let together: String =
-        rules.iter().enumerate().map(|(k, rule)| ring(&format!("r{k}"), k, &quoted(rule))).collect();
+    let together: String = rules.iter().enumerate().map(|(k, rule)| ring(&format!("r{k}"), k, &quoted(rule))).collect();
     let scene = |rule: &str, bodies: &str| format!("{}{FLOOR}{bodies}", head(1.0 / 60.0, 32, -9.81, rule));
     let mut mixed = built(plane(&scene("explicit_euler", &together)));
     frames(&mut mixed, 40);
@@ -129,7 +126,8 @@ fn bodies_of_different_integrators_share_no_island() {
     let rules: Vec<&str> = (0..16).map(|k| if k % 2 == 0 { "\"verlet\"" } else { "" }).collect();
     let mut scene = plane(&format!("{}{FLOOR}{}", head(1.0 / 60.0, 32, -9.81, "symplectic_euler"), ring("r", 0, "")));
     let first = scene.bodies[0].clone();
-    let verlet = plane(&format!("{}{}", head(1.0, 1, 0.0, "verlet"), ring("r", 0, "\"verlet\""))).bodies[0].integrator.clone();
+    let verlet =
+        plane(&format!("{}{}", head(1.0, 1, 0.0, "verlet"), ring("r", 0, "\"verlet\""))).bodies[0].integrator.clone();
     scene.bodies = rules
         .iter()
         .enumerate()

@@ -231,6 +231,7 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
         drag: values.number("drag").unwrap_or(0.0),
         largest_force: values.number("largest_force"),
         largest_velocity: values.number("largest_velocity"),
+        largest_distance: values.number("largest_distance"),
     }
 }
 
