@@ -312,7 +312,11 @@ fn parameters_of_obstacles_limits_and_copies_change_in_flight() {
         ("body.ball.models.gas.nRT", Value::Number(1.0), "has no model `gas`; it has mass_spring, pressure"),
         ("body.ball.models.mass_spring.stiffness", Value::Number(1e9), "the largest stable step is"),
         ("body.9.models.pressure.nRT", Value::Number(1.0), "there is no body `9`"),
-        ("gravity", Value::Number(1.0), "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD"),
+        (
+            "gravity",
+            Value::Number(1.0),
+            "allowed: body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD",
+        ),
     ] {
         let error = world.set(path, value).expect_err(path).to_string();
         assert!(error.contains(text), "{error}");

@@ -182,11 +182,11 @@ fn the_step_of_a_body_is_checked_with_its_own_integrator() {
 
 #[test]
 fn an_integrator_of_a_body_that_does_not_exist_is_told_with_its_place() {
-    let scene = |rule: &str| format!("{}{}", head(1.0, 1, 0.0, "verlet"), ring("r", 0, rule));
+    let scene = |rule: &str| format!("{}{}", head(1.0 / 60.0, 32, 0.0, "verlet"), ring("r", 0, rule));
     for (rule, expected) in [
         ("\"verlett\"", "error[scene.unknown_kind]"),
         ("{ kind = \"verlet\", order = 2 }", "error[scene.unknown_field]: there is no field `order` in `verlet`"),
-        ("3", "error[scene.type]: `body.0.integrator` is a number"),
+        ("3", "error[scene.type]: `body.0.integrator` is a whole number"),
     ] {
         let errors = read(&scene(rule)).expect_err("no such integrator");
         let said: String = errors.iter().map(ToString::to_string).collect();
