@@ -84,7 +84,7 @@ pub struct Stabilisers {
 /// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work8 {
-    /// Work of forces and pins from outside, and of moving obstacles.
+    /// Work of forces from outside and of moving obstacles.
     pub user: [f64; WIDTH],
     /// Energy given to the gas by ramps, heating and leaks.
     pub gas: [f64; WIDTH],

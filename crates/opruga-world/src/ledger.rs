@@ -29,7 +29,7 @@ pub struct Energy {
     /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
     /// the first order of the depth.
     pub work_correction: f64,
-    /// What the other channels do not explain: error of the integrator, and nodes put back by pins.
+    /// What the other channels do not explain: the error of the integrator, and the work of pins that move.
     pub loss_integrator: f64,
     /// |loss_integrator| relative to the largest energy that was in motion.
     pub closure: f64,

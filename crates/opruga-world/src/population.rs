@@ -55,6 +55,7 @@ impl<const D: usize> World<D> {
     }
 
     fn take_away(&mut self, bodies: &[usize]) -> Result<(), WorldError> {
+        let kept = (self.alive.clone(), self.generation.clone(), self.running.clone(), self.warnings.clone());
         for &body in bodies {
             self.alive[body] = false;
             self.generation[body] += 1;
@@ -69,7 +70,11 @@ impl<const D: usize> World<D> {
                 self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
             }
         }
-        self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new())
+        let outcome = self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new());
+        if outcome.is_err() {
+            (self.alive, self.generation, self.running, self.warnings) = kept;
+        }
+        outcome
     }
 
     /// Takes bodies away that lie wholly beyond `world.largest_distance`.
@@ -92,8 +97,9 @@ impl<const D: usize> World<D> {
         if gone.is_empty() {
             return Ok(());
         }
+        self.take_away(&gone)?;
         self.flows.lost_bodies += gone.len() as u64;
-        self.take_away(&gone)
+        Ok(())
     }
 
     /// Bodies that commands will add, in the order of time.

@@ -163,7 +163,8 @@ impl<const D: usize> World<D> {
         count(
             "ledger.closure",
             "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
-             integrator; more substeps make it smaller, `verlet` and `runge_kutta` make less of it",
+             integrator (more substeps make it smaller, `verlet` and `runge_kutta` make less of it) or the work of pins \
+             that move",
             self.flows.open_frames,
         );
         let mut counts: Vec<(&'static str, u64)> = Vec::new();

@@ -340,6 +340,37 @@ fn pointers_pull_within_bounds() {
     assert!(said(&text).contains("error[scene.not_finite]"), "{}", said(&text));
 }
 
+/// Row 72: several pulls at once, on one node and on neighbours in a batch; a body that is taken away ends its pull.
+#[test]
+fn several_pulls_act_at_once() {
+    let pull = |body: usize, x: f64| {
+        format!(
+            "[[command]]\ndo = \"drag\"\nat = 0\nuntil = 1\nbody = \"b[{body}]\"\nnode = 0\npath = [[0, {x:?}, 0.6], [1, {x:?}, 0.6]]\nstiffness = 20.0\n"
+        )
+    };
+    let scene = |pulls: &str| {
+        let copies = format!("copies = {{ count = [4], spacing = [2, 0] }}\n{pulls}");
+        // Without gas the rest shape is at rest.
+        plane(&ring(32, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }", &copies).replace("-9.81", "0"))
+    };
+    // Node 0 of ball k lies at 2k + 0.5; two equal pulls to both sides leave it there.
+    let mut world = built(scene(&(pull(0, 0.0) + &pull(0, 1.0) + &pull(2, 5.0))));
+    frames(&mut world, 2);
+    assert_eq!((world.islands(), world.pulls().len()), (1, 3));
+    frames(&mut world, 10);
+    let momentum = |world: &World<2>, body: usize| (0..24).map(|n| world.velocity(body, n)[0]).sum::<f64>() / 24.0;
+    assert!(momentum(&world, 0).abs() < 1e-12, "{}", momentum(&world, 0));
+    assert!(momentum(&world, 2) > 0.5, "{}", momentum(&world, 2));
+    for untouched in [1, 3] {
+        assert!(momentum(&world, untouched).abs() < 1e-12);
+    }
+    world.remove_body("b[0]").expect("a body");
+    assert_eq!(world.pulls().len(), 1);
+    assert!(world.warnings().iter().any(|w| w.code == "command.no_body" && w.count == 2), "{:?}", world.warnings());
+    frames(&mut world, 30);
+    assert!(finite(&world));
+}
+
 /// Row 78: numbers of threads.
 #[test]
 fn numbers_of_threads() {

@@ -1,5 +1,6 @@
 //! `[[body]]`: shape, mass, models, pins and copies.
 
+use super::cost::Cost;
 use super::reader::{Reader, join};
 use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
@@ -26,14 +27,6 @@ pub(crate) struct Bodies<const D: usize> {
     cost: Cost,
     /// Names of bodies that have errors of their own: a reference to them is no further error.
     broken: Vec<String>,
-}
-
-/// How much there is of what is limited.
-#[derive(Clone, Copy, Default)]
-struct Cost {
-    bodies: u64,
-    nodes: u64,
-    bytes: u64,
 }
 
 /// A body as it was read, before its mesh is made.
@@ -332,50 +325,14 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
     }
 }
 
-/// What the bodies would cost together with those before them, compared with the limits before any mesh is made.
-///
-/// Bodies that commands take away count too: the world remembers them.
+/// Adds what bodies would cost to that of those before them; whether that is within the limits.
 fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>], cost: &mut Cost) -> bool {
-    let limits = reader.options.limits.clone();
-    let Cost { bodies, nodes, bytes } = cost;
     for draft in drafts {
-        let copies = draft.copies.map_or(1, |c| c.total());
-        let size = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
-        *bodies = bodies.saturating_add(copies);
-        *nodes = nodes.saturating_add(size.saturating_mul(copies));
-        // A mesh once, and state, models and description for every copy.
-        let models: u64 = draft.models.len() as u64;
-        let each = size.saturating_mul(120 + 60 * D as u64 * models).saturating_add(1000 + 600 * models);
-        *bytes = bytes.saturating_add(size.saturating_mul(250 * D as u64)).saturating_add(each.saturating_mul(copies));
-        let over = if *bodies > limits.bodies {
-            Some((
-                "limit.bodies",
-                format!("the scene has {bodies} bodies or more"),
-                *bodies,
-                format!("at most {} bodies", limits.bodies),
-            ))
-        } else if *nodes > limits.nodes || size > u64::from(u32::MAX) {
-            Some((
-                "limit.nodes",
-                format!("the scene has {nodes} nodes or more"),
-                *nodes,
-                format!("at most {} nodes", limits.nodes),
-            ))
-        } else if *bytes > limits.memory_bytes {
-            Some((
-                "limit.memory",
-                format!("the scene would take about {bytes} bytes or more"),
-                *bytes,
-                format!("at most {} bytes", limits.memory_bytes),
-            ))
-        } else {
-            None
-        };
-        if let Some((code, message, value, allowed)) = over {
-            let path = if draft.copies.is_some() { join(&draft.path, "copies") } else { join(&draft.path, "shape") };
-            let place =
-                if draft.copies.is_some() { place_of(draft.node, "copies") } else { place_of(draft.node, "shape") };
-            reader.report(place, SceneError::new(code, message).path(path).value(value.to_string()).allowed(allowed));
+        let nodes = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
+        let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
+        if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
+            let key = if draft.copies.is_some() { "copies" } else { "shape" };
+            reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
             return false;
         }
     }

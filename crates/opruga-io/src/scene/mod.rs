@@ -6,6 +6,7 @@
 
 mod actions;
 mod bodies;
+mod cost;
 mod parameters;
 mod plain;
 mod reader;
