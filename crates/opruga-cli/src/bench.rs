@@ -71,6 +71,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         angular_velocity: Vec::new(),
         mass: Mass::Node(1.0),
         thickness: 1.0,
+        integrator: None,
         models: models.clone(),
         pins: Vec::new(),
     };
@@ -79,7 +80,13 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         title: String::new(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 },
-        surroundings: Surroundings { gravity: [0.0, -9.8], drag: 0.0, largest_force: None, largest_velocity: None },
+        surroundings: Surroundings {
+            gravity: [0.0, -9.8],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
         integrator: Values::defaults(rule, 2),
         bodies: (0..bodies).map(body).collect(),
         colliders: vec![ColliderBlueprint {

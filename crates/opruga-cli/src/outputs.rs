@@ -23,7 +23,7 @@ const MOST_BODY_COLUMNS: usize = 64;
 pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
     /// Bodies with columns of their own, and how many.
-    bodies: Vec<(usize, usize)>,
+    bodies: Vec<(String, usize)>,
     /// The first column of the table that belongs to a probe.
     first_probe: usize,
     scenery: Option<Scenery>,
@@ -81,20 +81,28 @@ impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows.
     pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Recorder {
         let axes = &["x", "y", "z"][..D];
-        let mut columns: Vec<String> = ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas"]
-            .into_iter()
-            .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
-            .map(String::from)
-            .collect();
+        let mut columns: Vec<String> =
+            ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
+                .into_iter()
+                .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
+                .map(String::from)
+                .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
         columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
-        // Bodies that commands add later have none: the head of the table is written for the whole run.
+        // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
         let mut bodies = Vec::new();
-        for body in 0..world.blueprint().bodies.len().min(MOST_BODY_COLUMNS) {
-            let name = world.blueprint().bodies[body].name.clone();
-            let readings = world.readings(body);
-            columns.extend(readings.iter().map(|(what, _)| format!("{name}.{what}")));
-            bodies.push((body, readings.len()));
+        let mut add = |name: &str, readings: Vec<&'static str>| {
+            columns.extend(readings.iter().map(|what| format!("{name}.{what}")));
+            bodies.push((name.to_string(), readings.len()));
+        };
+        let present = world.blueprint().bodies.len();
+        for body in 0..present.min(MOST_BODY_COLUMNS) {
+            let readings = world.readings(body).into_iter().map(|(what, _)| what).collect();
+            add(&world.blueprint().bodies[body].name, readings);
+        }
+        for body in world.coming_bodies().take(MOST_BODY_COLUMNS.saturating_sub(present)) {
+            // A body for which a model cannot be built is told when it comes.
+            add(&body.name, world.reading_names(body).unwrap_or_default());
         }
         let first_probe = columns.len();
         for probe in 0..world.blueprint().probes.len() {
@@ -137,6 +145,7 @@ impl Recorder {
             e.gravity,
             e.work_user,
             e.work_gas,
+            e.work_correction,
             e.loss_damping,
             e.loss_friction,
             e.loss_contact,
@@ -145,10 +154,12 @@ impl Recorder {
         ];
         row.extend(m.linear.0);
         row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
-        for &(body, columns) in &self.bodies {
-            let mut readings: Vec<f64> = world.readings(body).iter().map(|(_, x)| *x).collect();
-            // A body that is gone leaves its columns empty.
-            readings.resize(columns, f64::NAN);
+        for (name, columns) in &self.bodies {
+            let body = world.body(name);
+            let mut readings: Vec<f64> =
+                body.map_or_else(Vec::new, |b| world.readings(b).iter().map(|(_, x)| *x).collect());
+            // A body that is not there yet, or no longer, leaves its columns empty.
+            readings.resize(*columns, f64::NAN);
             row.extend(readings);
         }
         for probe in 0..world.blueprint().probes.len() {
@@ -224,7 +235,7 @@ impl Outputs<'_> {
             nodes,
             elements: world.bodies().map(|b| blueprint.bodies[b].mesh.edges(opruga::mesh::EdgeSet::All).len()).sum(),
             models,
-            integrator: blueprint.integrator.kind().to_string(),
+            integrator: world.integrators().join(", "),
             frame: blueprint.time.frame,
             substeps: blueprint.time.substeps,
             h: world.h(),
@@ -242,6 +253,7 @@ impl Outputs<'_> {
                 gravity: e.gravity,
                 work_user: e.work_user,
                 work_gas: e.work_gas,
+                work_correction: e.work_correction,
                 loss_damping: e.loss_damping,
                 loss_friction: e.loss_friction,
                 loss_contact: e.loss_contact,

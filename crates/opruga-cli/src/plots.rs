@@ -40,7 +40,15 @@ pub(crate) fn of_run(table: &NumberTable, first_probe: usize, name: &str) -> Res
         panel(
             "work and losses",
             "J",
-            named(&["work_user", "work_gas", "loss_damping", "loss_friction", "loss_contact", "loss_integrator"]),
+            named(&[
+                "work_user",
+                "work_gas",
+                "work_correction",
+                "loss_damping",
+                "loss_friction",
+                "loss_contact",
+                "loss_integrator",
+            ]),
         ),
         panel("momentum", "kg m/s", named(&["momentum.x", "momentum.y", "momentum.z"])),
         panel("volume", "m³", ending(".volume")),

@@ -51,7 +51,7 @@ fn describe<const D: usize>(world: &World<D>) -> String {
     let _ = writeln!(
         text,
         "{}: h = {:.6e} s, {} substeps a frame",
-        world.blueprint().integrator.kind(),
+        world.integrators().join(", "),
         world.h(),
         world.blueprint().time.substeps
     );

@@ -270,3 +270,30 @@ fn the_reference_in_the_documents_is_what_the_program_prints() {
         );
     }
 }
+
+#[test]
+fn bodies_that_commands_add_have_columns_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 0.5\n[integrator]\nkind = \"verlet\"\n\
+        [[body]]\nname = \"first\"\nmass = 1\nshape = { kind = \"ring\", radius = 0.5, vertices = 12 }\n\
+        models = [{ kind = \"pressure\", nRT = 1.0 }]\n\
+        [[command]]\ndo = \"add\"\nat = 0.2\nbody = { name = \"late\", mass = 1, position = [3, 0], integrator = \"heun\", \
+        shape = { kind = \"ring\", radius = 1, vertices = 12 }, models = [{ kind = \"pressure\", nRT = 1.0 }] }\n\
+        [[command]]\ndo = \"remove\"\nat = 0.4\nbody = \"late\"\n";
+    std::fs::write(folder.path().join("s.toml"), scene).expect("a scene");
+    let output = opruga(folder.path(), &["run", "s.toml", "--out", "o", "--no-pictures", "--json", "--allow-unstable"]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
+    assert!(summary["energy"]["work_correction"].is_number());
+    let table = std::fs::read_to_string(folder.path().join("o/diagnostics.csv")).expect("a table");
+    let mut lines = table.lines();
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let place = head.iter().position(|c| *c == "late.volume").expect("a column of its own");
+    assert!(head.contains(&"first.volume") && head.contains(&"late.pressure") && head.contains(&"work_correction"));
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|c| c.parse().expect("a number")).collect();
+        let there = (0.2..0.4).contains(&(cells[0] - 1.0 / 60.0 + 1e-9));
+        assert_eq!(cells[place].is_finite(), there, "t = {}: {}", cells[0], cells[place]);
+        assert!(!there || (cells[place] - 3.0).abs() < 1.0, "an area of nearly 3 m²");
+    }
+}

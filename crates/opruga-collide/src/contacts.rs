@@ -278,6 +278,7 @@ struct Tile<'a, const D: usize> {
     x: StripMut<'a, D>,
     v: StripMut<'a, D>,
     before: Strip<'a, D>,
+    force: Strip<'a, D>,
     mass: RepeatStrip<'a>,
 }
 
@@ -286,12 +287,26 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
     #[inline(always)]
     fn run<P: Pack>(self) -> bool {
         let (shape, law, used) = (&self.shape, self.law, self.used);
-        let Moved { range, before, x, v, mass, h, loss_contact, loss_friction, work_colliders, .. } = self.moved;
+        let Moved {
+            range,
+            before,
+            x,
+            v,
+            force,
+            mass,
+            h,
+            loss_contact,
+            loss_friction,
+            work_colliders,
+            work_correction,
+            ..
+        } = self.moved;
         let (start, length) = (range.start, range.len());
         let mut tile = Tile {
             x: x.strip_mut(start, length),
             v: v.strip_mut(start, length),
             before: Strip::new(before, 0, length),
+            force: Strip::new(force, 0, length),
             mass: mass.strip(start, length),
         };
         let thickness = P::splat(law.thickness);
@@ -317,8 +332,12 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             return false;
         }
 
-        let (mut losses, mut frictions, mut works) =
-            (P::load(&**loss_contact), P::load(&**loss_friction), P::load(&**work_colliders));
+        let (mut losses, mut frictions, mut works, mut corrections) = (
+            P::load(&**loss_contact),
+            P::load(&**loss_friction),
+            P::load(&**work_colliders),
+            P::load(&**work_correction),
+        );
         let mut touched = false;
         for k in (0..used).step_by(WIDTH) {
             let x = lanes!(P, d => tile.x.load::<P>(d, k));
@@ -352,6 +371,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             touched = true;
             self.held.note(k, P::select(hit, P::one(), P::zero()));
             let parting = respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting);
+            let against = dot(&lanes!(P, d => tile.force.load::<P>(d, k)), &subtract(&x, &parting.x));
             for d in 0..D {
                 tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
                 tile.v.store(d, k, P::select(hit, parting.v[d], v[d]));
@@ -359,10 +379,12 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             losses += P::select(hit, parting.loss_contact, P::zero());
             frictions += P::select(hit, parting.loss_friction, P::zero());
             works += P::select(hit, parting.work, P::zero());
+            corrections += P::select(hit, against, P::zero());
         }
         losses.store(&mut **loss_contact);
         frictions.store(&mut **loss_friction);
         works.store(&mut **work_colliders);
+        corrections.store(&mut **work_correction);
         touched
     }
 }
@@ -491,12 +513,14 @@ fn hold_back_by_facets<const D: usize>(
         if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
             parting.x = before;
         }
+        let against = dot(&lanes!(f64, d => moved.force[d][k]), &subtract(&x, &parting.x));
         moved.x.set(place, parting.x);
         moved.v.set(place, parting.v);
         let lane = place % WIDTH;
         moved.loss_contact[lane] += parting.loss_contact;
         moved.loss_friction[lane] += parting.loss_friction;
         moved.work_colliders[lane] += parting.work;
+        moved.work_correction[lane] += against;
     }
     touched
 }

@@ -4,16 +4,6 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 const NO: Default = Default::Boolean(false);
 const ZERO: Default = Default::Number(0.0);
 
@@ -28,13 +18,13 @@ macro_rules! collider {
             dimensions: &[$dimension],
             fields: &[
                 $($own,)+
-                field("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact."),
-                field("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
-                field("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider."),
-                field("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),
-                field("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
-                field("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
-                field("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape."),
+                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact."),
+                Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
+                Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider."),
+                Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),
+                Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
+                Field::new("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
+                Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape."),
             ],
         };
     };
@@ -51,67 +41,67 @@ macro_rules! both {
 both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space",
     "everything behind a line (2D) or plane (3D): floor, wall, incline",
     "Solid where (x − point)·normal < 0. The normal may have any length above zero.";
-    field("point", Allowed::Vector, "m", Default::Origin, "A point of the surface."),
-    field("normal", Allowed::Vector, "", Default::Required, "Direction out of the solid."),
+    Field::new("point", Allowed::Vector, "m", Default::Origin, "A point of the surface."),
+    Field::new("normal", Allowed::Vector, "", Default::Required, "Direction out of the solid."),
 }
 
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. Given by two opposite corners, or by \
 centre and size and then possibly turned. A node inside leaves through the nearest face; one that is faster than a quarter of the smallest side \
 per step leaves through the face by which it came in.";
-const MIN: Field = field(
+const MIN: Field = Field::new(
     "min",
     Allowed::Vector,
     "m",
     Default::Absent,
     "Corner with the least coordinates; with `max`, instead of `center` and `size`.",
 );
-const MAX: Field = field("max", Allowed::Vector, "m", Default::Absent, "Corner with the greatest coordinates.");
-const CENTER: Field = field(
+const MAX: Field = Field::new("max", Allowed::Vector, "m", Default::Absent, "Corner with the greatest coordinates.");
+const CENTER: Field = Field::new(
     "center",
     Allowed::Vector,
     "m",
     Default::Absent,
     "Centre of the box; with `size`, instead of `min` and `max`.",
 );
-const SIZE: Field = field("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.");
+const SIZE: Field = Field::new("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.");
 const INSIDE_BOX: Field =
-    field("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
+    Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
 
 collider! {
     /// The parameters of `box` in 2D.
     BOX_2D, "box", 2, Allowed::ANY, "a box, solid or as a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
-    field("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is turned about its centre, counterclockwise."),
+    Field::new("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is turned about its centre, counterclockwise."),
     INSIDE_BOX,
 }
 collider! {
     /// The parameters of `box` in 3D.
     BOX_3D, "box", 3, Allowed::Vector, "a box, solid or as a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
-    field("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is turned about its centre."),
+    Field::new("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is turned about its centre."),
     INSIDE_BOX,
 }
 
 both! { BALL_2D, BALL_3D, "ball",
     "a disc (2D) or ball (3D), solid or as a container",
     "Solid where |x − center| < radius, or outside of it (`inside = true`). A node exactly at the centre leaves along +y.";
-    field("center", Allowed::Vector, "m", Default::Origin, "The centre."),
-    field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
-    field("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside."),
+    Field::new("center", Allowed::Vector, "m", Default::Origin, "The centre."),
+    Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
+    Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside."),
 }
 
 both! { CAPSULE_2D, CAPSULE_3D, "capsule",
     "all points nearer to a segment than a radius",
     "Solid where the distance to the segment a b is below the radius. A node exactly on the segment leaves at a right angle to it.";
-    field("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
-    field("b", Allowed::Vector, "m", Default::Required, "The other end; another point than `a`."),
-    field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
+    Field::new("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
+    Field::new("b", Allowed::Vector, "m", Default::Required, "The other end; another point than `a`."),
+    Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
 }
 
 both! { CONVEX_2D, CONVEX_3D, "convex",
     "the convex hull of points",
     "Solid inside of the hull of the points; points within the hull do not matter. A node inside leaves through the nearest face.";
-    field("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
+    Field::new("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
 }
 
 const THIN: &str = "An infinitely thin surface that holds nodes back on both sides: a node stays on the side on which it was before the step, \
@@ -121,14 +111,14 @@ normal (in 2D left of the direction in which the points run, in 3D by the right-
 collider! {
     /// The parameters of `polyline` (2D).
     POLYLINE, "polyline", 2, Allowed::ANY, "a thin curve of straight segments, open or closed (2D)", THIN;
-    field("points", Allowed::Points, "m", Default::Required, "Two or more points, each another than the one before."),
-    field("closed", Allowed::Boolean, "", NO, "Whether the last point is joined to the first; needs three points."),
+    Field::new("points", Allowed::Points, "m", Default::Required, "Two or more points, each another than the one before."),
+    Field::new("closed", Allowed::Boolean, "", NO, "Whether the last point is joined to the first; needs three points."),
 }
 collider! {
     /// The parameters of `triangle_mesh` (3D).
     TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, "a thin surface of triangles, open or closed (3D)", THIN;
-    field("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
-    field("triangles", Allowed::Integers, "", Default::Required, "Three numbers of points per triangle, counted from 0."),
+    Field::new("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
+    Field::new("triangles", Allowed::Integers, "", Default::Required, "Three numbers of points per triangle, counted from 0."),
 }
 
 /// The specification of every kind of collider that exists in a dimension.

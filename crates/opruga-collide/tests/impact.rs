@@ -37,13 +37,16 @@ fn one_pass<const D: usize>(
     let mass = Parameter::column((0..places).map(|k| 1.0 + 0.25 * k as f64).collect());
     let energy = |v: &Columns<D>| (0..x.len()).map(|k| 0.5 * mass.at(k) * dot(&v.at(k), &v.at(k))).sum::<f64>();
     let start = energy(&cv);
-    let (mut contact, mut friction, mut work) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+    let (mut contact, mut friction, mut work, mut correction) =
+        ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+    let none = vec![0.0; places + WIDTH];
     let mut moved = Moved {
         range: 0..places,
         places_used: x.len(),
         before: core::array::from_fn(|d| before[d].as_slice()),
         x: &mut cx,
         v: &mut cv,
+        force: core::array::from_fn(|_| none.as_slice()),
         mass: &mass,
         layout: Layout::Single,
         time,
@@ -51,6 +54,7 @@ fn one_pass<const D: usize>(
         loss_contact: &mut contact,
         loss_friction: &mut friction,
         work_colliders: &mut work,
+        work_correction: &mut correction,
     };
     colliders::<D>(list).resolve(Simd::best(), &mut moved);
     let change = energy(&cv) - start;

@@ -18,6 +18,8 @@ pub struct Moved<'a, const D: usize> {
     pub x: &'a mut Columns<D>,
     /// Velocities after it [m/s]; indexed by place.
     pub v: &'a mut Columns<D>,
+    /// Force on each node where the step was evaluated last: `force[d][p - range.start]` [N].
+    pub force: [&'a [f64]; D],
     /// Mass of each node [kg].
     pub mass: &'a Parameter,
     /// One body or eight.
@@ -32,6 +34,8 @@ pub struct Moved<'a, const D: usize> {
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
+    /// Work done against the forces by putting nodes back on the surface, −Σ F·Δx [J], eight partial sums.
+    pub work_correction: &'a mut [f64; WIDTH],
 }
 
 /// The obstacles that a block of bodies may meet within a frame.

@@ -33,6 +33,19 @@ pub struct Field {
     pub documentation: &'static str,
 }
 
+impl Field {
+    /// A parameter by its word, allowed values, unit, default and sentence.
+    pub const fn new(
+        name: &'static str,
+        range: Allowed,
+        unit: &'static str,
+        default: Default,
+        documentation: &'static str,
+    ) -> Field {
+        Field { name, range, unit, default, documentation }
+    }
+}
+
 /// The values that a field may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Allowed {

@@ -84,7 +84,7 @@ pub struct Stabilisers {
 /// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work8 {
-    /// Work of forces and pins from outside, and of moving obstacles.
+    /// Work of forces from outside and of moving obstacles.
     pub user: [f64; WIDTH],
     /// Energy given to the gas by ramps, heating and leaks.
     pub gas: [f64; WIDTH],
@@ -94,6 +94,8 @@ pub struct Work8 {
     pub friction: [f64; WIDTH],
     /// Energy taken by impacts.
     pub contact: [f64; WIDTH],
+    /// Energy given by obstacles that put nodes back on their surface.
+    pub correction: [f64; WIDTH],
     /// How often a force was limited.
     pub limited_forces: u64,
     /// How often a velocity was limited.
@@ -409,14 +411,16 @@ impl<const D: usize> System<D> {
             self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit);
         }
         let Some(contacts) = &self.contacts else { return };
+        let buffer = self.plan.buffer(tile);
         contacts.resolve(
             self.simd,
             &mut Moved {
-                range,
+                range: range.clone(),
                 places_used: self.nodes * self.layout.stride(),
                 before: self.before.each_ref().map(|b| &**b),
                 x: &mut self.state.x,
                 v: &mut self.state.v,
+                force: self.forces.each_ref().map(|f| &f[buffer..buffer + range.len() + WIDTH]),
                 mass: &self.mass,
                 layout: self.layout,
                 time: self.time + h,
@@ -424,6 +428,7 @@ impl<const D: usize> System<D> {
                 loss_contact: &mut self.work.contact,
                 loss_friction: &mut self.work.friction,
                 work_colliders: &mut self.work.user,
+                work_correction: &mut self.work.correction,
             },
         );
     }

@@ -142,6 +142,11 @@ impl<'a> Canvas<'a> {
         self.rectangle([left + width - 1.0, top, 1.0, height], colour, 1.0);
     }
 
+    /// Width and height in pixels.
+    pub(crate) fn size(&self) -> [f32; 2] {
+        [self.pixmap.width() as f32, self.pixmap.height() as f32]
+    }
+
     /// Writes a text whose base line goes through a point.
     pub(crate) fn text(&mut self, text: &str, point: [f32; 2], size: f32, anchor: Anchor, colour: [u8; 3]) {
         let shift = match anchor {

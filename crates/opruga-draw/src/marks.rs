@@ -1,6 +1,6 @@
 //! Arrows, pins and the rubber lines of pointers, drawn over flat and solid scenes alike.
 
-use crate::canvas::{Canvas, paint};
+use crate::canvas::{Anchor, Canvas, paint, text_width};
 use crate::colour::{INK, OKABE_ITO, RUBBER};
 use crate::picture::{ArrowKind, Picture};
 use crate::view::View;
@@ -51,6 +51,9 @@ pub(crate) fn draw_marks(
             }
         }
     }
+    for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
+        label(canvas, &body.label, body.positions.iter().filter_map(|x| project(*x)), unit);
+    }
     for mark in &picture.arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
@@ -63,6 +66,26 @@ pub(crate) fn draw_marks(
             rubber_line(canvas, node, pointer, unit);
         }
     }
+}
+
+/// Writes a name under the pixels of a body, within the scene and on a light ground.
+fn label(canvas: &mut Canvas, text: &str, pixels: impl Iterator<Item = [f32; 2]>, unit: f32) {
+    let (mut left, mut right, mut bottom) = (f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY);
+    for [x, y] in pixels {
+        left = left.min(x);
+        right = right.max(x);
+        bottom = bottom.max(y);
+    }
+    let [width, height] = canvas.size();
+    let (middle, size) = (0.5 * (left + right), 12.0 * unit);
+    if !middle.is_finite() || middle < 0.0 || middle > width || bottom < 0.0 || bottom > height {
+        return;
+    }
+    let half = 0.5 * text_width(text, size) + 2.0 * unit;
+    let base = (bottom + 15.0 * unit).min(height - 5.0 * unit);
+    let middle = middle.min(width - half).max(half);
+    canvas.rectangle([middle - half, base - 0.85 * size, 2.0 * half, 1.15 * size], [255; 3], 0.7);
+    canvas.text(text, [middle, base], size, Anchor::Middle, INK);
 }
 
 /// Draws an arrow with a filled head, and a light rim where it lies over a scene.

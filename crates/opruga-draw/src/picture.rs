@@ -83,6 +83,8 @@ pub struct BodyPicture {
     pub nodes_drawn: bool,
     /// The nodes which are held in place.
     pub pinned: Vec<u32>,
+    /// A name that is written under the body; may be empty.
+    pub label: String,
 }
 
 impl Default for BodyPicture {
@@ -96,6 +98,7 @@ impl Default for BodyPicture {
             colour: None,
             nodes_drawn: false,
             pinned: Vec::new(),
+            label: String::new(),
         }
     }
 }

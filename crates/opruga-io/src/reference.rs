@@ -137,7 +137,8 @@ fn default(field: &Field) -> String {
 
 fn holds(child: &Child) -> String {
     match child.holds {
-        Holds::Table(_) | Holds::Integrator => "a table, see below".into(),
+        Holds::Table(_) => "a table, see below".into(),
+        Holds::Integrator => "a table, see Integrators, or its `kind` alone".into(),
         Holds::List(_) | Holds::Tagged { .. } | Holds::Models | Holds::Colliders => {
             "a list of tables, see below".into()
         }

@@ -70,7 +70,10 @@ fn structured(child: &Child, catalogue: &Catalogue) -> Value {
             list(json!({ "oneOf": tables }))
         }
         Holds::Shape => kinds(&shapes::all(), catalogue),
-        Holds::Integrator => kinds(&catalogue.integrators, catalogue),
+        Holds::Integrator => {
+            let words: Vec<&str> = catalogue.integrators.iter().map(|spec| spec.kind).collect();
+            json!({ "oneOf": [{ "enum": words }, kinds(&catalogue.integrators, catalogue)] })
+        }
         Holds::Models => list(kinds(&catalogue.models, catalogue)),
         Holds::Colliders => list(kinds(&catalogue.colliders, catalogue)),
         Holds::Selector => json!({ "$ref": "#/$defs/selector" }),

@@ -107,7 +107,7 @@ pub struct Summary {
     pub elements: usize,
     /// The kinds of the models in use.
     pub models: Vec<String>,
-    /// The kind of the integrator.
+    /// The kind of the integrator; where bodies have their own, all kinds, with commas between them.
     pub integrator: String,
     /// The length of a frame [s].
     pub frame: f64,
@@ -151,6 +151,7 @@ pub struct EnergySummary {
     pub gravity: f64,
     pub work_user: f64,
     pub work_gas: f64,
+    pub work_correction: f64,
     pub loss_damping: f64,
     pub loss_friction: f64,
     pub loss_contact: f64,

@@ -347,3 +347,47 @@ fn many_bodies() {
     let text = format!("{HEAD}{}copies = {{ count = [1000, 100], spacing = [3, 3] }}\n", BALL);
     assert_eq!(plane(&text).bodies.len(), 100_000);
 }
+
+/// Rows 18 and 46: what commands add counts too, and thin bodies of a density need a thickness.
+#[test]
+fn added_bodies_count_and_thin_ones_need_a_thickness() {
+    let add = |k: usize| {
+        format!(
+            "[[command]]\ndo = \"add\"\nat = {k}\nbody = {{ name = \"late{k}\", mass = 1, shape = {{ kind = \"ring\", radius = 1, vertices = 40 }} }}\n"
+        )
+    };
+    let text = |count: usize| format!("{HEAD}{BALL}{}", (0..count).map(add).collect::<String>());
+    let limits = |bodies, nodes| Limits { bodies, nodes, ..Limits::default() };
+    let codes = |count: usize, limits: Limits| -> Vec<String> {
+        match read_with(&text(count), &Options { limits, ..Options::default() }) {
+            Ok(_) => Vec::new(),
+            Err(errors) => errors.iter().map(|e| format!("{}@{}", e.code, e.line.unwrap_or(0))).collect(),
+        }
+    };
+    // 8 nodes of the ball and 40 of every other.
+    assert_eq!(codes(3, limits(4, 128)), Vec::<String>::new());
+    assert_eq!(codes(3, limits(4, 127)), ["limit.nodes@23"]);
+    assert_eq!(codes(3, limits(3, 1000)), ["limit.bodies@23"]);
+
+    let body = |dimension: usize, shape: &str, more: &str| {
+        let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
+        let head = if dimension == 3 { head.replace("-9.81]", "-9.81, 0.0]") } else { head };
+        format!("{head}[[body]]\nname = \"b\"\nshape = {{ {shape} }}\ndensity = 1000\n{more}")
+    };
+    let sheet = "kind = \"sheet\", u = [1, 0, 0], v = [0, 0, 1], cells = [2, 2]";
+    let chain = "kind = \"line\", from = [0, 0], to = [1, 0], segments = 3";
+    let filled = "kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1]";
+    for (scene, expected) in [
+        (body(3, sheet, ""), "`density` of a sheet needs its `thickness`"),
+        (body(3, sheet, "thickness = 1e-3\n"), ""),
+        (body(2, chain, ""), "`density` of a wire needs its width, here `thickness`"),
+        (body(2, chain, "thickness = 0.1\n"), ""),
+        (body(3, filled, ""), ""),
+    ] {
+        let said = match read_text(&scene) {
+            Ok(_) => String::new(),
+            Err(errors) => errors[0].message.clone(),
+        };
+        assert_eq!(said, expected, "{scene}");
+    }
+}

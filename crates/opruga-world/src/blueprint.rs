@@ -62,6 +62,8 @@ pub struct Surroundings<const D: usize> {
     pub largest_force: Option<f64>,
     /// The largest speed of a node [m/s]; counted every time it acts. None: no limit.
     pub largest_velocity: Option<f64>,
+    /// Bodies all of whose nodes are farther from the origin than this are taken away [m]; each is counted. None: no limit.
+    pub largest_distance: Option<f64>,
 }
 
 /// One body.
@@ -79,8 +81,10 @@ pub struct BodyBlueprint<const D: usize> {
     pub angular_velocity: Vec<f64>,
     /// How much it weighs.
     pub mass: Mass,
-    /// Thickness out of the plane in 2D, of a sheet in 3D [m].
+    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for [`Mass::Density`] alone [m].
     pub thickness: f64,
+    /// Its own integrator and the parameters of that; none: that of the scene.
+    pub integrator: Option<Values>,
     /// Its models and their parameters.
     pub models: Vec<Values>,
     /// Its pins.

@@ -5,7 +5,9 @@ use crate::error::WorldError;
 use crate::island::Island;
 use crate::loads::{FollowerPressure, NodeForces};
 use crate::registry::Registry;
+use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
+use opruga_core::integrator::Integrator;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
@@ -89,9 +91,10 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
     BodyState { x, v, memory: Vec::new() }
 }
 
-/// Which bodies may lie side by side: the same rest shape and models that differ in numbers only.
+/// Which bodies may lie side by side: the same rest shape and integrator, and models that differ in numbers only.
 fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
     Arc::ptr_eq(&a.mesh, &b.mesh)
+        && a.integrator == b.integrator
         && a.thickness == b.thickness
         && core::mem::discriminant(&a.mass) == core::mem::discriminant(&b.mass)
         && a.models.len() == b.models.len()
@@ -108,31 +111,30 @@ fn alike_values(a: &Values, b: &Values) -> bool {
 }
 
 /// Groups of bodies that are stepped together, in the order of their first body.
-pub(crate) fn group<const D: usize>(bodies: &[Option<&BodyBlueprint<D>>], batches: bool) -> Vec<Vec<usize>> {
-    let mut kinds: Vec<(usize, Vec<usize>)> = Vec::new();
+///
+/// A body keeps its seat among its kind when others are taken away: so only the group that loses or wins a body changes.
+pub(crate) fn group<const D: usize>(bodies: &[BodyBlueprint<D>], alive: &[bool], batches: bool) -> Vec<Vec<usize>> {
+    let mut kinds: Vec<Vec<usize>> = Vec::new();
     let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (number, body) in bodies.iter().enumerate() {
-        let Some(body) = body else { continue };
-        let key = Arc::as_ptr(&body.mesh) as usize;
-        let candidates = by_mesh.entry(key).or_default();
-        let found =
-            candidates.iter().copied().find(|k: &usize| bodies[kinds[*k].0].is_some_and(|first| alike(first, body)));
-        match found {
-            Some(kind) => kinds[kind].1.push(number),
+        let candidates = by_mesh.entry(Arc::as_ptr(&body.mesh) as usize).or_default();
+        match candidates.iter().copied().find(|k| alike(&bodies[kinds[*k][0]], body)) {
+            Some(kind) => kinds[kind].push(number),
             None => {
                 candidates.push(kinds.len());
-                kinds.push((number, vec![number]));
+                kinds.push(vec![number]);
             }
         }
     }
     let mut groups = Vec::new();
-    for (first, members) in kinds {
-        let small = bodies[first].is_some_and(|b| b.mesh.positions.len() <= LARGEST_IN_BATCH);
-        for chunk in members.chunks(WIDTH) {
-            if batches && small && chunk.len() >= SMALLEST_BATCH {
-                groups.push(chunk.to_vec());
+    for members in kinds {
+        let small = bodies[members[0]].mesh.positions.len() <= LARGEST_IN_BATCH;
+        for seats in members.chunks(WIDTH) {
+            let there: Vec<usize> = seats.iter().copied().filter(|b| alive[*b]).collect();
+            if batches && small && there.len() >= SMALLEST_BATCH {
+                groups.push(there);
             } else {
-                groups.extend(chunk.iter().map(|b| vec![*b]));
+                groups.extend(there.into_iter().map(|b| vec![b]));
             }
         }
     }
@@ -145,7 +147,8 @@ pub(crate) struct Builder<'a, const D: usize> {
     pub(crate) blueprint: &'a Blueprint<D>,
     pub(crate) registry: &'a Registry<D>,
     pub(crate) simd: Simd,
-    pub(crate) work_columns: usize,
+    /// That of the scene, for bodies without their own.
+    pub(crate) integrator: &'a Arc<dyn Integrator<D>>,
 }
 
 impl<const D: usize> Builder<'_, D> {
@@ -218,8 +221,14 @@ impl<const D: usize> Builder<'_, D> {
             self.add_pins(&mut system, body, l, layout);
             self.add_loads(&mut system, bodies[l], body, l, layout)?;
         }
-        system.plan(self.work_columns);
-        Ok(Island::new(system, bodies.to_vec()))
+        let integrator = match &first.integrator {
+            Some(values) => {
+                build_integrator(self.registry, values, || format!("integrator of body `{}`", first.name))?.into()
+            }
+            None => Arc::clone(self.integrator),
+        };
+        system.plan(integrator.work_columns());
+        Ok(Island::new(system, integrator, bodies.to_vec()))
     }
 
     fn add_drag(
@@ -347,4 +356,30 @@ fn facet_measure<const D: usize>(facet: &[u32; D], positions: &[[f64; D]]) -> f6
 /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
 pub(crate) fn rest_volume<const D: usize>(body: &BodyBlueprint<D>) -> f64 {
     signed_volume(&body.mesh.facets, &body.mesh.positions) * if D == 2 { body.thickness } else { 1.0 }
+}
+
+/// The obstacles of a blueprint.
+pub(crate) fn build_colliders<const D: usize>(
+    blueprint: &Blueprint<D>,
+) -> Result<Option<Arc<Colliders<D>>>, WorldError> {
+    if blueprint.colliders.is_empty() {
+        return Ok(None);
+    }
+    let values: Vec<_> = blueprint.colliders.iter().map(|c| c.values.clone()).collect();
+    let built = Colliders::<D>::build(&values);
+    Ok(Some(Arc::new(built.map_err(|source| WorldError::Build { place: "collider".into(), source })?)))
+}
+
+/// An integrator from its parameters; `place` says whose it is.
+pub(crate) fn build_integrator<const D: usize>(
+    registry: &Registry<D>,
+    values: &Values,
+    place: impl Fn() -> String,
+) -> Result<Box<dyn Integrator<D>>, WorldError> {
+    let refuse = |source| WorldError::Build { place: place(), source };
+    let Some(kind) = registry.integrator(values.kind()) else {
+        let source = BuildError::new(values.kind(), "scene.unknown_name", "there is no such integrator");
+        return Err(refuse(source));
+    };
+    kind.build(values).map_err(refuse)
 }

@@ -2,9 +2,12 @@
 //! snapshot of a changed scene can be restored in a world of the scene as it was, and an earlier one in a changed world.
 
 use crate::blueprint::{BodyBlueprint, Surroundings, Time};
+use crate::build::build_colliders;
 use crate::error::WorldError;
-use crate::world::{World, build_colliders};
+use crate::rebuild::Touched;
+use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
+use std::collections::BTreeMap;
 
 /// One change, and what it takes to undo it.
 #[derive(Clone, Debug)]
@@ -28,18 +31,19 @@ pub(crate) enum Source {
 #[derive(Clone, Debug)]
 pub(crate) enum Before<const D: usize> {
     Models(Vec<(usize, Vec<Values>)>),
+    OwnIntegrators(Vec<(usize, Option<Values>)>),
     Integrator(Values),
     Surroundings(Surroundings<D>),
     Time(Time),
     Collider(usize, Values),
 }
 
-const FORMS: &str = "body.NAME.models.KIND.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
-                     world.largest_force, world.largest_velocity, time.substeps";
+const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, world.gravity, world.drag, \
+                     world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
 
 impl<const D: usize> World<D> {
-    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `time.substeps`.
+    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
+    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
     ///
     /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
     /// stable step is estimated anew.
@@ -47,11 +51,10 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError`] says what is wrong; the world stays as it was.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
-        let before = self.change(path, value.clone())?;
-        if let Err(error) = self.rebuild().and_then(|()| self.check_stability()) {
+        let (before, touched) = self.change(path, value.clone())?;
+        if let Err(error) = self.follow(&touched) {
             self.undo(before);
-            self.rebuild()?;
-            self.check_stability()?;
+            self.follow(&touched)?;
             return Err(error);
         }
         match self.changes.last_mut() {
@@ -62,18 +65,18 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Changes the scene alone; returns what it was.
-    pub(crate) fn change(&mut self, path: &str, value: Value) -> Result<Before<D>, WorldError> {
+    /// Lets islands and estimates follow a change of the scene.
+    fn follow(&mut self, touched: &Touched) -> Result<(), WorldError> {
+        self.regroup(touched, &BTreeMap::new()).and_then(|()| self.check_stability())
+    }
+
+    /// Changes the scene alone; returns what it was, and the bodies whose islands must follow.
+    pub(crate) fn change(&mut self, path: &str, value: Value) -> Result<(Before<D>, Touched), WorldError> {
         let refuse = |message: String| WorldError::Path { path: path.to_string(), message };
         let parts: Vec<&str> = path.split('.').collect();
         match parts.as_slice() {
             ["body", name, "models", kind, field] => {
-                let bodies = self.named(name);
-                if bodies.is_empty() {
-                    let known = self.bodies().map(|b| self.blueprint.bodies[b].name.as_str());
-                    let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
-                    return Err(refuse(format!("there is no body `{name}`{hint}")));
-                }
+                let bodies = self.named_or_refused(name).map_err(refuse)?;
                 let mut changed = Vec::new();
                 for body in bodies {
                     let mut models = self.blueprint.bodies[body].models.clone();
@@ -96,14 +99,36 @@ impl<const D: usize> World<D> {
                 for (body, models) in &mut changed {
                     std::mem::swap(models, &mut self.blueprint.bodies[*body].models);
                 }
-                Ok(Before::Models(changed))
+                let touched = changed.iter().map(|(body, _)| *body).collect();
+                Ok((Before::Models(changed), Touched::Bodies(touched)))
+            }
+            ["body", name, "integrator", field] => {
+                let bodies = self.named_or_refused(name).map_err(refuse)?;
+                let mut changed = Vec::new();
+                for body in bodies {
+                    let Some(mut values) = self.blueprint.bodies[body].integrator.clone() else {
+                        let message = format!("body `{name}` follows the integrator of the scene: integrator.{field}");
+                        return Err(refuse(message));
+                    };
+                    let spec = self.registry.integrator(values.kind()).map(|i| i.spec());
+                    let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
+                    values.set(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    changed.push((body, Some(values)));
+                }
+                for (body, values) in &mut changed {
+                    std::mem::swap(values, &mut self.blueprint.bodies[*body].integrator);
+                }
+                let touched = changed.iter().map(|(body, _)| *body).collect();
+                Ok((Before::OwnIntegrators(changed), Touched::Bodies(touched)))
             }
             ["integrator", field] => {
                 let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
                 let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
                 let before = self.blueprint.integrator.clone();
                 self.blueprint.integrator.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
-                Ok(Before::Integrator(before))
+                let follow = |b: &usize| self.blueprint.bodies[*b].integrator.is_none();
+                let touched = self.bodies().filter(follow).collect();
+                Ok((Before::Integrator(before), Touched::Bodies(touched)))
             }
             ["collider", number, field] => {
                 let count = self.blueprint.colliders.len();
@@ -132,7 +157,7 @@ impl<const D: usize> World<D> {
                         return Err(error);
                     }
                 }
-                Ok(Before::Collider(number, before))
+                Ok((Before::Collider(number, before), Touched::Bodies(Vec::new())))
             }
             ["world", field] => {
                 let before = self.blueprint.surroundings;
@@ -153,8 +178,12 @@ impl<const D: usize> World<D> {
                     "drag" => now.drag = number(accept(Allowed::NOT_NEGATIVE)?).unwrap_or(0.0),
                     "largest_force" => now.largest_force = number(accept(Allowed::POSITIVE)?),
                     "largest_velocity" => now.largest_velocity = number(accept(Allowed::POSITIVE)?),
+                    "largest_distance" => {
+                        now.largest_distance = number(accept(Allowed::POSITIVE)?);
+                        return Ok((Before::Surroundings(before), Touched::Bodies(Vec::new())));
+                    }
                     other => {
-                        let known = ["gravity", "drag", "largest_force", "largest_velocity"];
+                        let known = ["gravity", "drag", "largest_force", "largest_velocity", "largest_distance"];
                         let hint = nearest(other, known.into_iter()).map(|n| format!("; did you mean `{n}`?"));
                         let hint = hint.unwrap_or_default();
                         return Err(refuse(format!(
@@ -163,18 +192,28 @@ impl<const D: usize> World<D> {
                         )));
                     }
                 }
-                Ok(Before::Surroundings(before))
+                Ok((Before::Surroundings(before), Touched::All))
             }
             ["time", "substeps"] => match value {
                 Value::Integer(n) if (1..=1_000_000).contains(&n) => {
                     let before = self.blueprint.time;
                     self.blueprint.time.substeps = n as u32;
-                    Ok(Before::Time(before))
+                    Ok((Before::Time(before), Touched::Bodies(Vec::new())))
                 }
                 other => Err(refuse(format!("is {other}; allowed: a whole number from 1 to 1000000"))),
             },
             _ => Err(refuse(format!("allowed: {FORMS}"))),
         }
+    }
+
+    fn named_or_refused(&self, name: &str) -> Result<Vec<usize>, String> {
+        let bodies = self.named(name);
+        if bodies.is_empty() {
+            let known = self.bodies().map(|b| self.blueprint.bodies[b].name.as_str());
+            let hint = nearest(name, known).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
+            return Err(format!("there is no body `{name}`{hint}"));
+        }
+        Ok(bodies)
     }
 
     /// The bodies that a name means: one, all copies, or the one of a number.
@@ -199,6 +238,11 @@ impl<const D: usize> World<D> {
             Before::Models(changed) => {
                 for (body, models) in changed {
                     self.blueprint.bodies[body].models = models;
+                }
+            }
+            Before::OwnIntegrators(changed) => {
+                for (body, values) in changed {
+                    self.blueprint.bodies[body].integrator = values;
                 }
             }
             Before::Integrator(values) => self.blueprint.integrator = values,
@@ -228,7 +272,7 @@ impl<const D: usize> World<D> {
         for change in changes {
             match change {
                 Told::Set(path, value) => {
-                    let before = self.change(&path, value.clone())?;
+                    let (before, _) = self.change(&path, value.clone())?;
                     self.changes.push(Change::Set { path, value, before });
                 }
                 Told::Added(source) => {

@@ -1,12 +1,13 @@
 //! What is done to bodies while they move: drag, push, pin, set, add, remove.
 
-use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
-use crate::changes::{Change, Source};
+use crate::blueprint::{Action, CommandBlueprint, Selector};
+use crate::changes::Source;
 use crate::error::WorldError;
 use crate::loads::{NodeForces, Pull};
-use crate::world::{Warning, World};
+use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::Pin;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -28,17 +29,23 @@ pub(crate) struct Running<const D: usize> {
     pub(crate) progress: Progress<D>,
 }
 
+impl<const D: usize> Action<D> {
+    /// The body on which it acts from its beginning to its end.
+    pub(crate) fn body(&self) -> Option<usize> {
+        match self {
+            Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } => Some(*body),
+            Action::Set { .. } | Action::Add(_) | Action::Remove { .. } => None,
+        }
+    }
+}
+
 impl<const D: usize> World<D> {
     /// Gives a command; it begins at its time, at the beginning of a frame.
     ///
     /// # Errors
     /// [`WorldError::Path`] if it names a body that is not there.
     pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
-        let body = match &command.action {
-            Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } => Some(*body),
-            _ => None,
-        };
-        if let Some(body) = body
+        if let Some(body) = command.action.body()
             && !self.alive.get(body).copied().unwrap_or(false)
         {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
@@ -52,7 +59,7 @@ impl<const D: usize> World<D> {
         let now = self.time();
         // A frame begins at a multiple of its length; times given in decimals may differ from it by rounding.
         let soon = now + 1e-9 * self.blueprint.time.frame;
-        let mut rebuild = false;
+        let mut touched = BTreeSet::new();
         let mut failed = Ok(());
         for number in 0..self.running.len() {
             let running = &self.running[number];
@@ -60,7 +67,7 @@ impl<const D: usize> World<D> {
             match running.progress {
                 Progress::Waiting if over => self.running[number].progress = Progress::Done,
                 Progress::Waiting if soon >= running.command.at => match self.begin(number) {
-                    Ok(acts) => rebuild |= acts,
+                    Ok(body) => touched.extend(body),
                     // It is told once; what else begins now begins all the same.
                     Err(error) => {
                         self.running[number].progress = Progress::Done;
@@ -69,24 +76,22 @@ impl<const D: usize> World<D> {
                 },
                 Progress::Acting { .. } if over => {
                     self.running[number].progress = Progress::Done;
-                    rebuild = true;
+                    touched.extend(self.running[number].command.action.body());
                 }
                 _ => {}
             }
         }
-        if rebuild {
-            self.rebuild()?;
-        }
+        self.rebuild(&touched)?;
         failed
     }
 
-    /// Begins a command; whether islands must be built anew.
-    fn begin(&mut self, number: usize) -> Result<bool, WorldError> {
+    /// Begins a command; the body on which it acts from now on.
+    fn begin(&mut self, number: usize) -> Result<Option<usize>, WorldError> {
         let command = self.running[number].command.clone();
-        if let Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } = &command.action
-            && self.handle(*body).is_none()
+        if let Some(body) = command.action.body()
+            && self.handle(body).is_none()
         {
-            let path = self.blueprint.bodies.get(*body).map_or(format!("body {body}"), |b| b.name.clone());
+            let path = self.blueprint.bodies.get(body).map_or(format!("body {body}"), |b| b.name.clone());
             let message = format!("there is no such body at t = {} s, when a command begins", self.time());
             return Err(WorldError::Path { path, message });
         }
@@ -111,21 +116,21 @@ impl<const D: usize> World<D> {
             Action::Set { path, value } => {
                 self.running[number].progress = Progress::Done;
                 self.set(path, value.clone())?;
-                return Ok(false);
+                return Ok(None);
             }
             Action::Add(body) => {
                 self.running[number].progress = Progress::Done;
                 self.include((**body).clone(), Source::Command(number))?;
-                return Ok(false);
+                return Ok(None);
             }
             Action::Remove { name } => {
                 self.running[number].progress = Progress::Done;
                 self.remove_body(name)?;
-                return Ok(false);
+                return Ok(None);
             }
         };
         self.running[number].progress = acting;
-        Ok(true)
+        Ok(command.action.body())
     }
 
     /// The nodes of a selector on a body, by its shape at rest.
@@ -173,10 +178,7 @@ impl<const D: usize> World<D> {
         for number in 0..self.running.len() {
             let Progress::Acting { held, anchors } = &self.running[number].progress else { continue };
             let action = &self.running[number].command.action;
-            let (Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. }) = action else {
-                continue;
-            };
-            let Some(lane) = bodies.iter().position(|b| b == body) else { continue };
+            let Some(lane) = bodies.iter().position(|b| Some(*b) == action.body()) else { continue };
             let system = &mut self.islands[island].system;
             let layout = system.layout;
             let place = |node: u32| layout.place(node as usize, lane);
@@ -213,18 +215,16 @@ impl<const D: usize> World<D> {
                 }
                 _ => {}
             }
-            let columns = self.integrator.work_columns();
-            system.plan(columns);
         }
         for (body, law) in &self.user_forces {
             if let Some(lane) = bodies.iter().position(|b| b == body) {
                 let system = &mut self.islands[island].system;
                 let layout = system.layout;
                 system.add(Box::new(crate::loads::UserForce { law: Arc::clone(law), layout, body: lane }));
-                let columns = self.integrator.work_columns();
-                system.plan(columns);
             }
         }
+        let island = &mut self.islands[island];
+        island.system.plan(island.integrator.work_columns());
     }
 
     /// Pulls that act at present: held point, pointer, force [N].
@@ -259,69 +259,6 @@ impl<const D: usize> World<D> {
             out.push((x, pointer, force));
         }
         out
-    }
-
-    /// Adds a body; returns its number.
-    ///
-    /// # Errors
-    /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
-    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
-        let kept = body.clone();
-        let number = self.include(body, Source::Program(self.added.len()))?;
-        self.added.push(kept);
-        Ok(number)
-    }
-
-    fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
-        if self.body(&body.name).is_some() {
-            return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
-        }
-        let number = self.blueprint.bodies.len();
-        self.save_states();
-        self.states.push(Some(crate::build::initial_state(&body)));
-        self.blueprint.bodies.push(body);
-        self.alive.push(true);
-        self.generation.push(0);
-        let outcome = self.rebuild_from_states().and_then(|()| self.check_stability());
-        if let Err(error) = outcome {
-            self.blueprint.bodies.pop();
-            self.alive.pop();
-            self.generation.pop();
-            self.states.pop();
-            self.rebuild_from_states()?;
-            self.check_stability()?;
-            return Err(error);
-        }
-        self.changes.push(Change::Added(source));
-        Ok(number)
-    }
-
-    /// Takes a body away.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if there is no body of that name.
-    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
-        let Some(body) = self.body(name) else {
-            return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
-        };
-        self.save_states();
-        self.alive[body] = false;
-        self.generation[body] += 1;
-        let mut dropped = 0;
-        for running in &mut self.running {
-            if let Action::Drag { body: b, .. } | Action::Push { body: b, .. } | Action::Pin { body: b, .. } =
-                &running.command.action
-                && *b == body
-            {
-                dropped += u64::from(running.progress != Progress::Done);
-                running.progress = Progress::Done;
-            }
-        }
-        if dropped > 0 {
-            let message = format!("commands on body `{name}` ended when it was taken away");
-            self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
-        }
-        self.rebuild_from_states()
     }
 }
 

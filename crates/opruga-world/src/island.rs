@@ -4,7 +4,8 @@ use crate::ledger::{Stock, Survey, survey, take_stock};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
-use opruga_core::state::Columns;
+use opruga_core::stability::Stability;
+use opruga_core::state::{Columns, View};
 use opruga_core::system::{System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
@@ -13,6 +14,9 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct Island<const D: usize> {
     pub(crate) system: System<D>,
+    pub(crate) integrator: Arc<dyn Integrator<D>>,
+    /// What the estimate of its stable step said, once it was made.
+    pub(crate) stability: Option<Stability>,
     /// The bodies, by their place in the world.
     pub(crate) bodies: Vec<usize>,
     pub(crate) stock: Stock,
@@ -34,7 +38,6 @@ struct Saved<const D: usize> {
 
 /// What a frame needs to know.
 pub(crate) struct FramePlan<'a, const D: usize> {
-    pub(crate) integrator: &'a dyn Integrator<D>,
     pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,
     pub(crate) start: f64,
     pub(crate) substeps: u32,
@@ -42,10 +45,12 @@ pub(crate) struct FramePlan<'a, const D: usize> {
 }
 
 impl<const D: usize> Island<D> {
-    pub(crate) fn new(system: System<D>, bodies: Vec<usize>) -> Self {
+    pub(crate) fn new(system: System<D>, integrator: Arc<dyn Integrator<D>>, bodies: Vec<usize>) -> Self {
         let survey = survey(&system);
         let mut island = Island {
             system,
+            integrator,
+            stability: None,
             bodies,
             stock: Stock::default(),
             survey,
@@ -61,6 +66,25 @@ impl<const D: usize> Island<D> {
     pub(crate) fn refresh(&mut self) {
         self.survey = survey(&self.system);
         self.stock = take_stock(&mut self.system);
+    }
+
+    /// What models say of one of the bodies.
+    pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<(&'static str, f64)> {
+        let system = &mut self.system;
+        let view = View {
+            x: system.state.x.slices(),
+            v: system.state.v.slices(),
+            nodes: system.nodes,
+            layout: system.layout,
+            time,
+        };
+        let mut out = Vec::new();
+        for member in &mut system.members {
+            if member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch).is_ok() {
+                out.extend(member.potential.readings(&view, &member.scratch, &member.memory, lane));
+            }
+        }
+        out
     }
 
     /// Steps through a frame in a workspace that is lent; on failure the island is at its last good frame and the reason
@@ -111,7 +135,7 @@ impl<const D: usize> Island<D> {
         }
         for substep in 0..plan.substeps {
             self.system.time = plan.start + f64::from(substep) * plan.h;
-            plan.integrator.step(&mut self.system, plan.h)?;
+            self.integrator.step(&mut self.system, plan.h)?;
         }
         let survey = survey(&self.system);
         if survey.finite {
@@ -126,7 +150,7 @@ impl<const D: usize> Island<D> {
         for substep in 0..plan.substeps {
             let time = plan.start + f64::from(substep) * plan.h;
             self.system.time = time;
-            if let Err(error) = plan.integrator.step(&mut self.system, plan.h) {
+            if let Err(error) = self.integrator.step(&mut self.system, plan.h) {
                 return Some(error);
             }
             if let Some(error) = self.culprit(time) {

@@ -26,7 +26,10 @@ pub struct Energy {
     pub loss_friction: f64,
     /// Energy taken by impacts.
     pub loss_contact: f64,
-    /// What the other channels do not explain: error of the integrator, and positions put back by obstacles and pins.
+    /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
+    /// the first order of the depth.
+    pub work_correction: f64,
+    /// What the other channels do not explain: the error of the integrator, and the work of pins that move.
     pub loss_integrator: f64,
     /// |loss_integrator| relative to the largest energy that was in motion.
     pub closure: f64,
@@ -222,6 +225,9 @@ impl<const D: usize> Work for Look<'_, D> {
     }
 }
 
+/// The unexplained part of the energy in motion above which a frame is counted and warned of.
+pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
+
 /// What entered and left, added up over all frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flows {
@@ -230,6 +236,7 @@ pub(crate) struct Flows {
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) contact: f64,
+    pub(crate) correction: f64,
     /// The energy at the start, moved by what commands put in or took out by changing the scene.
     pub(crate) start: f64,
     /// The largest energy in motion so far.
@@ -237,6 +244,10 @@ pub(crate) struct Flows {
     pub(crate) limited_forces: u64,
     pub(crate) limited_velocities: u64,
     pub(crate) limited_pulls: u64,
+    /// Bodies that went too far and were taken away.
+    pub(crate) lost_bodies: u64,
+    /// Frames that ended with a larger part of the energy unexplained than [`LARGEST_CLOSURE`].
+    pub(crate) open_frames: u64,
 }
 
 impl Flows {
@@ -246,6 +257,7 @@ impl Flows {
         self.damping += total_of(system, &work.damping);
         self.friction += total_of(system, &work.friction);
         self.contact += total_of(system, &work.contact);
+        self.correction += total_of(system, &work.correction);
         self.limited_forces += work.limited_forces;
         self.limited_velocities += work.limited_velocities;
     }
@@ -260,6 +272,7 @@ impl Flows {
             loss_damping: self.damping,
             loss_friction: self.friction,
             loss_contact: self.contact,
+            work_correction: self.correction,
             ..Energy::default()
         };
         let mut momentum = Momentum::default();
@@ -275,7 +288,7 @@ impl Flows {
                 momentum.angular[axis] += survey.momentum.angular[axis];
             }
         }
-        let given = self.start + self.user + self.gas;
+        let given = self.start + self.user + self.gas + self.correction;
         let taken = self.damping + self.friction + self.contact;
         energy.loss_integrator = given - taken - energy.total();
         let moved = energy.kinetic + energy.elastic.abs() + (energy.gas + energy.gravity - self.start).abs();

@@ -8,11 +8,15 @@ pub mod error;
 mod island;
 pub mod ledger;
 mod loads;
+mod population;
+mod readings;
+mod rebuild;
 pub mod registry;
 pub mod schema;
 pub mod selection;
 pub mod shapes;
 mod snapshot;
+mod stability;
 mod world;
 
 pub use error::WorldError;

@@ -48,7 +48,7 @@ pub enum Holds {
     },
     /// A table whose `kind` names a shape.
     Shape,
-    /// A table whose `kind` names an integrator.
+    /// A table whose `kind` names an integrator, or that word alone.
     Integrator,
     /// A list of tables whose `kind` names a model.
     Models,
@@ -82,16 +82,6 @@ const fn section(
     Spec { kind, summary, documentation, dimensions: ANY_DIMENSION, fields }
 }
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 const fn child(name: &'static str, holds: Holds, required: bool, documentation: &'static str) -> Child {
     Child { name, holds, required, documentation }
 }
@@ -109,22 +99,22 @@ pub const SCENE: Section = Section {
         "The top of the file",
         "Every scene begins with its format and its number of dimensions.",
         &[
-            field("format", Allowed::Text, "", Default::Required, "The version of the format: `opruga-1`."),
-            field(
+            Field::new("format", Allowed::Text, "", Default::Required, "The version of the format: `opruga-1`."),
+            Field::new(
                 "dimension",
                 Allowed::Integer { least: 2, greatest: 3 },
                 "",
                 Default::Required,
                 "2 for the plane, 3 for space.",
             ),
-            field(
+            Field::new(
                 "seed",
                 Allowed::Integer { least: 0, greatest: LARGEST_WHOLE },
                 "",
                 Default::Integer(1),
                 "The seed of everything random: the same seed gives the same bits.",
             ),
-            field("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
+            Field::new("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
         ],
     ),
     children: &[
@@ -151,15 +141,15 @@ pub const TIME: Section = Section {
         "How time passes",
         "A frame is divided into substeps of h = frame / substeps.",
         &[
-            field("seconds", Allowed::NOT_NEGATIVE, "s", Default::Required, "How long the scene lasts."),
-            field(
+            Field::new("seconds", Allowed::NOT_NEGATIVE, "s", Default::Required, "How long the scene lasts."),
+            Field::new(
                 "frame",
                 Allowed::POSITIVE,
                 "s",
                 Default::Number(1.0 / 60.0),
                 "The time from one picture to the next.",
             ),
-            field(
+            Field::new(
                 "substeps",
                 Allowed::Integer { least: 1, greatest: 1_000_000 },
                 "",
@@ -176,18 +166,25 @@ pub const WORLD: Section = Section {
     spec: &section(
         "world",
         "What acts everywhere",
-        "Gravity and drag act on every node. The largest force and velocity are stabilisers: off unless given, and every time they act is counted.",
+        "Gravity and drag act on every node. The largest force and velocity are stabilisers, the largest distance ends what would fall for ever: off unless given, and every time they act is counted.",
         &[
-            field("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
-            field(
+            Field::new("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
+            Field::new(
                 "drag",
                 Allowed::NOT_NEGATIVE,
                 "1/s",
                 Default::Number(0.0),
                 "Drag per unit of mass, a = −drag·v; it brakes rigid motion too.",
             ),
-            field("largest_force", Allowed::POSITIVE, "N", Default::Absent, "The largest force on a node."),
-            field("largest_velocity", Allowed::POSITIVE, "m/s", Default::Absent, "The largest speed of a node."),
+            Field::new("largest_force", Allowed::POSITIVE, "N", Default::Absent, "The largest force on a node."),
+            Field::new("largest_velocity", Allowed::POSITIVE, "m/s", Default::Absent, "The largest speed of a node."),
+            Field::new(
+                "largest_distance",
+                Allowed::POSITIVE,
+                "m",
+                Default::Absent,
+                "A body all of whose nodes are farther than this from the origin is taken away.",
+            ),
         ],
     ),
     children: &[],
@@ -200,33 +197,33 @@ pub const BODY: Section = Section {
         "A deformable body",
         "Exactly one of `mass`, `density` and `node_mass` says how much it weighs. Its shape is scaled, then rotated about the origin of the shape's own coordinates, then moved to `position`.",
         &[
-            field("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
-            field("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
-            field("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
-            field("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
-            field(
+            Field::new("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
+            Field::new("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
+            Field::new("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
+            Field::new("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
+            Field::new(
                 "fixed",
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
                 "All nodes are pinned; then no mass need be given.",
             ),
-            field(
+            Field::new(
                 "thickness",
                 Allowed::POSITIVE,
                 "m",
                 Default::Number(1.0),
-                "Thickness out of the plane in 2D, of a sheet in 3D.",
+                "Depth out of the plane in 2D, for gas, loads and bending too. In 3D it is the thickness of a sheet and the width of a square wire, for `density` alone, which then needs it, as it does for a wire in 2D.",
             ),
-            field(
+            Field::new(
                 "position",
                 Allowed::Vector,
                 "m",
                 Default::Origin,
                 "Where the origin of its shape lies at the start.",
             ),
-            field("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
-            field("velocity", Allowed::Vector, "m/s", Default::Origin, "Velocity at the start."),
+            Field::new("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
+            Field::new("velocity", Allowed::Vector, "m/s", Default::Origin, "Velocity at the start."),
         ],
     ),
     children: &[
@@ -238,6 +235,7 @@ pub const BODY: Section = Section {
             false,
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
+        child("integrator", Holds::Integrator, false, "How it is stepped, where not as the scene says."),
         child("models", Holds::Models, false, "What its material does."),
         child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
         child(
@@ -256,14 +254,14 @@ pub const PIN: Section = Section {
         "Nodes held at their place, or moved in a prescribed way",
         "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant.",
         &[
-            field(
+            Field::new(
                 "axes",
                 Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
                 "",
                 Default::Absent,
                 "The axes that are held; all where the scene is silent.",
             ),
-            field("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
+            Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
         ],
     ),
     children: &[child("select", Holds::Selector, true, "Which nodes.")],
@@ -276,15 +274,15 @@ pub const COPIES: Section = Section {
         "Rows, columns and layers of the same body",
         "Copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. Copies share one mesh.",
         &[
-            field(
+            Field::new(
                 "spacing",
                 Allowed::Vector,
                 "m",
                 Default::Required,
                 "The distance from copy to copy along every axis.",
             ),
-            field("first", Allowed::Vector, "m", Default::Origin, "An offset of all copies."),
-            field(
+            Field::new("first", Allowed::Vector, "m", Default::Origin, "An offset of all copies."),
+            Field::new(
                 "jitter",
                 Allowed::NOT_NEGATIVE,
                 "m",
@@ -309,8 +307,8 @@ pub const SELECTORS: &[Spec] = &[
         "Nodes at most a radius from a centre",
         "`{ ball = { center = [x, y], radius = r } }`",
         &[
-            field("center", Allowed::Vector, "m", Default::Required, "The centre."),
-            field("radius", Allowed::NOT_NEGATIVE, "m", Default::Required, "The radius."),
+            Field::new("center", Allowed::Vector, "m", Default::Required, "The centre."),
+            Field::new("radius", Allowed::NOT_NEGATIVE, "m", Default::Required, "The radius."),
         ],
     ),
     section(
@@ -318,8 +316,8 @@ pub const SELECTORS: &[Spec] = &[
         "Nodes on the side of a plane to which its normal points, or on it",
         "`{ half_space = { point = [x, y], normal = [x, y] } }`",
         &[
-            field("point", Allowed::Vector, "m", Default::Required, "A point of the plane."),
-            field("normal", Allowed::Vector, "", Default::Required, "The normal, of any length but zero."),
+            Field::new("point", Allowed::Vector, "m", Default::Required, "A point of the plane."),
+            Field::new("normal", Allowed::Vector, "", Default::Required, "The normal, of any length but zero."),
         ],
     ),
     section(

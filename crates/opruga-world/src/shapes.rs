@@ -4,23 +4,13 @@ use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
 use std::any::Any;
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 const fn count(least: i64) -> Allowed {
     Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
 }
 
-const CENTER: Field = field("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
-const CORNER: Field = field("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
-const START_ANGLE: Field = field(
+const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
+const CORNER: Field = Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
+const START_ANGLE: Field = Field::new(
     "start_angle",
     Allowed::ANY,
     "rad",
@@ -34,8 +24,8 @@ static RING: Spec = Spec {
     documentation: "Vertices on a circle, counter-clockwise; edge i runs from node i to node i + 1.",
     dimensions: &[2],
     fields: &[
-        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
-        field("vertices", count(3), "", Default::Required, "How many vertices."),
+        Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
+        Field::new("vertices", count(3), "", Default::Required, "How many vertices."),
         CENTER,
         START_ANGLE,
     ],
@@ -47,9 +37,9 @@ static RINGS: Spec = Spec {
     documentation: "Circles of `vertices` nodes each, one after the other. A negative radius is a hole: it runs clockwise, and the gas of the ring around it leaves it out. Rings should not cross.",
     dimensions: &[2],
     fields: &[
-        field("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
-        field("radii", Allowed::Numbers, "m", Default::Required, "The radius of each ring; negative: a hole."),
-        field("vertices", count(3), "", Default::Required, "How many vertices each ring has."),
+        Field::new("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
+        Field::new("radii", Allowed::Numbers, "m", Default::Required, "The radius of each ring; negative: a hole."),
+        Field::new("vertices", count(3), "", Default::Required, "How many vertices each ring has."),
     ],
 };
 
@@ -59,9 +49,9 @@ static REGULAR_POLYGON: Spec = Spec {
     documentation: "Corners on a circle, counter-clockwise; each side in equal edges.",
     dimensions: &[2],
     fields: &[
-        field("sides", count(3), "", Default::Required, "How many sides."),
-        field("radius", Allowed::POSITIVE, "m", Default::Required, "The distance of the corners from the centre."),
-        field("vertices_per_side", count(1), "", Default::Integer(1), "How many edges a side has."),
+        Field::new("sides", count(3), "", Default::Required, "How many sides."),
+        Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The distance of the corners from the centre."),
+        Field::new("vertices_per_side", count(1), "", Default::Integer(1), "How many edges a side has."),
         CENTER,
         START_ANGLE,
     ],
@@ -72,7 +62,7 @@ static POLYGON: Spec = Spec {
     summary: "an outline through points",
     documentation: "Node i is point i. The points may run either way; edges run counter-clockwise. Edges must not cross or touch.",
     dimensions: &[2],
-    fields: &[field(
+    fields: &[Field::new(
         "points",
         Allowed::Points,
         "m",
@@ -87,9 +77,9 @@ static LINE: Spec = Spec {
     documentation: "Equal edges from one point to another; it encloses nothing.",
     dimensions: &[2, 3],
     fields: &[
-        field("from", Allowed::Vector, "m", Default::Required, "Its first node."),
-        field("to", Allowed::Vector, "m", Default::Required, "Its last node."),
-        field("segments", count(1), "", Default::Required, "How many edges."),
+        Field::new("from", Allowed::Vector, "m", Default::Required, "Its first node."),
+        Field::new("to", Allowed::Vector, "m", Default::Required, "Its last node."),
+        Field::new("segments", count(1), "", Default::Required, "How many edges."),
     ],
 };
 
@@ -99,8 +89,14 @@ static POLYLINE: Spec = Spec {
     documentation: "Node i is point i; it encloses nothing, even where it is closed.",
     dimensions: &[2, 3],
     fields: &[
-        field("points", Allowed::Points, "m", Default::Required, "The nodes."),
-        field("closed", Allowed::Boolean, "", Default::Boolean(false), "Whether the last node is joined to the first."),
+        Field::new("points", Allowed::Points, "m", Default::Required, "The nodes."),
+        Field::new(
+            "closed",
+            Allowed::Boolean,
+            "",
+            Default::Boolean(false),
+            "Whether the last node is joined to the first.",
+        ),
     ],
 };
 
@@ -110,8 +106,8 @@ static GRID: Spec = Spec {
     documentation: "Node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, in space back and front.",
     dimensions: &[2, 3],
     fields: &[
-        field("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
-        field("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
         CORNER,
     ],
 };
@@ -123,9 +119,9 @@ static SHEET: Spec = Spec {
     dimensions: &[3],
     fields: &[
         CORNER,
-        field("u", Allowed::Vector, "m", Default::Required, "Its first side, from the corner."),
-        field("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
-        field("cells", Allowed::Integers, "", Default::Required, "How many cells along u and along v."),
+        Field::new("u", Allowed::Vector, "m", Default::Required, "Its first side, from the corner."),
+        Field::new("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along u and along v."),
     ],
 };
 
@@ -135,8 +131,8 @@ static BOX: Spec = Spec {
     documentation: "Two triangles per cell of each face. Groups: left, right, bottom, top, back, front. Filled boxes are grids.",
     dimensions: &[3],
     fields: &[
-        field("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
-        field("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
         CORNER,
     ],
 };
@@ -147,8 +143,8 @@ static ICOSPHERE: Spec = Spec {
     documentation: "10·4^s + 2 nodes: an icosahedron whose faces are cut in four s times.",
     dimensions: &[3],
     fields: &[
-        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
-        field(
+        Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
+        Field::new(
             "subdivisions",
             Allowed::Integer { least: 0, greatest: MAXIMUM_SUBDIVISIONS as i64 },
             "",
@@ -165,16 +161,16 @@ static TORUS: Spec = Spec {
     documentation: "Its axis is the z axis. Node (i, j) has number i·(nodes around the tube) + j.",
     dimensions: &[3],
     fields: &[
-        field("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
-        field(
+        Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
+        Field::new(
             "tube_radius",
             Allowed::POSITIVE,
             "m",
             Default::Required,
             "The radius of the tube, less than that of the circle.",
         ),
-        field("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
-        field("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
+        Field::new("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
+        Field::new("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
         CENTER,
     ],
 };

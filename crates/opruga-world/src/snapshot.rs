@@ -5,8 +5,11 @@ use crate::changes::{Change, Source, Told};
 use crate::commands::Progress;
 use crate::error::WorldError;
 use crate::ledger::Flows;
+use crate::rebuild::Touched;
 use crate::world::World;
 use opruga_core::spec::Value;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// Little-endian numbers, one after the other.
@@ -145,14 +148,13 @@ impl Reader<'_> {
     }
 }
 
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
     ///
     /// A world built from the same blueprint that restores it goes on bit for bit, on any number of threads.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        self.save_states();
         let mut out = Writer::default();
         out.count(VERSION);
         out.count(D as u64);
@@ -175,10 +177,13 @@ impl<const D: usize> World<D> {
                 }
             }
         }
-        out.count(self.states.len() as u64);
-        for (state, alive) in self.states.iter().zip(&self.alive) {
+        out.count(self.alive.len() as u64);
+        for (body, alive) in self.alive.iter().enumerate() {
             out.count(u64::from(*alive));
-            let Some(state) = state else { continue };
+            if !alive {
+                continue;
+            }
+            let state = self.state_of(body);
             out.vectors(&state.x);
             out.vectors(&state.v);
             out.count(state.memory.len() as u64);
@@ -204,10 +209,10 @@ impl<const D: usize> World<D> {
             }
         }
         let f = &self.flows;
-        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.start, f.largest] {
+        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.largest] {
             out.number(x);
         }
-        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls] {
+        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
             out.count(n);
         }
         out.0
@@ -219,11 +224,15 @@ impl<const D: usize> World<D> {
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
-        let bodies = (std::mem::take(&mut self.states), self.alive.clone(), self.generation.clone(), self.frames);
+        let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
+        let islands =
+            (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
         let outcome = self.go_to(bytes);
         if outcome.is_err() {
             (self.blueprint, self.changes, self.colliders, self.running) = kept;
-            (self.states, self.alive, self.generation, self.frames) = bodies;
+            (self.alive, self.generation, self.frames, self.flows) = bodies;
+            (self.islands, self.place, self.integrator) = islands;
+            self.refresh_ledger();
         }
         outcome
     }
@@ -232,7 +241,7 @@ impl<const D: usize> World<D> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         let mut reader = Reader(bytes);
         if reader.count()? != VERSION {
-            return refuse("its version is not 2");
+            return refuse("its version is not 3");
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
@@ -245,10 +254,13 @@ impl<const D: usize> World<D> {
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
         }
-        let mut states = Vec::new();
+        let mut states = BTreeMap::new();
         let mut alive = Vec::new();
-        for body in &self.blueprint.bodies {
+        for (number, body) in self.blueprint.bodies.iter().enumerate() {
             alive.push(reader.count()? == 1);
+            if !alive[number] {
+                continue;
+            }
             let x = reader.vectors::<D>()?;
             let v = reader.vectors::<D>()?;
             let models = reader.length()?;
@@ -263,7 +275,7 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            states.push(Some(BodyState { x, v, memory }));
+            states.insert(number, BodyState { x, v, memory });
         }
         if reader.count()? != self.running.len() as u64 {
             return refuse("it has another number of commands");
@@ -284,27 +296,29 @@ impl<const D: usize> World<D> {
                 _ => return refuse("a command is in an unknown state"),
             });
         }
-        let mut numbers = [0.0; 7];
+        let mut numbers = [0.0; 8];
         for x in &mut numbers {
             *x = reader.number()?;
         }
-        let counts = [reader.count()?, reader.count()?, reader.count()?];
+        let mut counts = [0; 5];
+        for n in &mut counts {
+            *n = reader.count()?;
+        }
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
-        self.states = states;
         self.alive = alive;
         self.generation.resize(self.alive.len(), 0);
         self.frames = frames;
         for (running, progress) in self.running.iter_mut().zip(progress) {
             running.progress = progress;
         }
-        self.rebuild_from_states()?;
+        self.regroup(&Touched::All, &states)?;
         if changed {
             self.check_stability()?;
         }
-        let [user, gas, damping, friction, contact, start, largest] = numbers;
-        let [limited_forces, limited_velocities, limited_pulls] = counts;
+        let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
+        let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
         self.limited_pulls.store(limited_pulls, Ordering::Relaxed);
         self.flows = Flows {
             user,
@@ -312,11 +326,14 @@ impl<const D: usize> World<D> {
             damping,
             friction,
             contact,
+            correction,
             start,
             largest,
             limited_forces,
             limited_velocities,
             limited_pulls,
+            lost_bodies,
+            open_frames,
         };
         self.refresh_ledger();
         Ok(())

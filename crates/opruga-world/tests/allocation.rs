@@ -96,6 +96,7 @@ fn scene<const D: usize>(
         angular_velocity: Vec::new(),
         mass: Mass::Total(1.0),
         thickness: 1.0,
+        integrator: None,
         models: models.to_vec(),
         pins: Vec::new(),
     };
@@ -114,6 +115,7 @@ fn scene<const D: usize>(
             drag: 0.1,
             largest_force: None,
             largest_velocity: None,
+            largest_distance: None,
         },
         integrator: Values::defaults(Registry::<D>::default().integrator(rule).expect("a rule").spec(), D),
         bodies: (0..count).map(body).collect(),
@@ -232,4 +234,27 @@ fn worlds_leave_nothing_behind() {
         once();
     }
     assert_eq!(live(), before, "bytes left behind by a thousand worlds");
+}
+
+/// Torture row 74: bodies come and go, and their nodes with them. What stays is their description, for snapshots.
+#[test]
+fn bodies_that_were_taken_away_keep_no_nodes() {
+    let models = [model::<2>("mass_spring", &[("stiffness", 1600.0), ("damping", 1.0)])];
+    let ring = Mesh::ring(0.5, 1000, [0.0, 0.55], 0.0).expect("a ring");
+    let mut blueprint = scene(ring, 2, &models, "symplectic_euler", None);
+    blueprint.bodies.iter_mut().for_each(|b| b.mass = Mass::Node(1.0));
+    let guest = BodyBlueprint { name: "guest".into(), ..blueprint.bodies[0].clone() };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    let mut cycle = |count: usize| {
+        for _ in 0..count {
+            world.add_body(guest.clone()).expect("a body");
+            world.frame().expect("a frame");
+            world.remove_body("guest").expect("it is there");
+        }
+        live()
+    };
+    let before = cycle(64);
+    let each = (cycle(192) - before) / 192;
+    println!("{each} bytes stay of a body of 1000 nodes");
+    assert!(each < 2500, "{each} bytes stay of a body of 1000 nodes");
 }

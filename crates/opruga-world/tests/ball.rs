@@ -43,7 +43,13 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
         title: String::new(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 40 },
-        surroundings: Surroundings { gravity: [0.0, -9.81], drag: 0.0, largest_force: None, largest_velocity: None },
+        surroundings: Surroundings {
+            gravity: [0.0, -9.81],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
         integrator: integrator(rule),
         bodies: (0..count)
             .map(|k| BodyBlueprint {
@@ -54,6 +60,7 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
                 angular_velocity: vec![1.0],
                 mass: Mass::Total(1.0),
                 thickness: 1.0,
+                integrator: None,
                 models: vec![
                     model("mass_spring", &[("stiffness", 1600.0 + k as f64), ("damping", 0.5)]),
                     model("pressure", &[("nRT", 50.0)]),
@@ -305,7 +312,11 @@ fn parameters_of_obstacles_limits_and_copies_change_in_flight() {
         ("body.ball.models.gas.nRT", Value::Number(1.0), "has no model `gas`; it has mass_spring, pressure"),
         ("body.ball.models.mass_spring.stiffness", Value::Number(1e9), "the largest stable step is"),
         ("body.9.models.pressure.nRT", Value::Number(1.0), "there is no body `9`"),
-        ("gravity", Value::Number(1.0), "allowed: body.NAME.models.KIND.FIELD, integrator.FIELD"),
+        (
+            "gravity",
+            Value::Number(1.0),
+            "allowed: body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD",
+        ),
     ] {
         let error = world.set(path, value).expect_err(path).to_string();
         assert!(error.contains(text), "{error}");

@@ -2,7 +2,7 @@
 // Pictures are no physics: a last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
-use crate::blueprint::{Action, BodyBlueprint};
+use crate::blueprint::BodyBlueprint;
 use crate::collide::Picture as Placed;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
@@ -28,6 +28,7 @@ struct Fixed {
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
+    label: String,
 }
 
 /// What changes from picture to picture, kept small.
@@ -54,11 +55,9 @@ impl Scenery {
     /// Looks at the bodies of a world, and at those that its commands will add.
     pub fn new<const D: usize>(world: &World<D>) -> Scenery {
         let present = &world.blueprint().bodies;
-        let coming = world.blueprint().commands.iter().filter_map(|command| match &command.action {
-            Action::Add(body) if present.iter().all(|b| b.name != body.name) => Some(&**body),
-            _ => None,
-        });
         let many = present.len() > 64;
+        // A body alone is told by the title, and copies have no names that say anything.
+        let named = (2..=8).contains(&present.len()) && present.iter().all(|b| !b.name.contains('['));
         let fixed = |blueprint: &BodyBlueprint<D>| {
             let mesh = &blueprint.mesh;
             let edges = mesh.edges(EdgeSet::All);
@@ -91,12 +90,13 @@ impl Scenery {
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
                 nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
                 pinned,
+                label: if named { blueprint.name.clone() } else { String::new() },
             }
         };
         Scenery {
             dimension: D as u8,
             title: world.blueprint().title.clone(),
-            bodies: present.iter().chain(coming).map(fixed).collect(),
+            bodies: present.iter().chain(world.coming_bodies()).map(fixed).collect(),
             y_down: y_down(world),
         }
     }
@@ -146,6 +146,7 @@ impl Scenery {
                 colour: None,
                 nodes_drawn: fixed.nodes_drawn,
                 pinned: fixed.pinned.clone(),
+                label: fixed.label.clone(),
             });
         }
         Picture {

@@ -233,6 +233,71 @@ fn far_and_fast() {
     }
 }
 
+/// Row 61: a number that is none, from outside or from a user's law: refused with body and node, the world as it was.
+#[test]
+fn numbers_that_are_none_are_refused_and_leave_the_world_whole() {
+    let two = ring(64, BALL, FLOOR).replace(FLOOR, "position = [3, 0]\n") + FLOOR;
+    let two =
+        format!("{two}[[body]]\nname = \"c\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 24 }}\n");
+    let mut world = built(plane(&two));
+    frames(&mut world, 5);
+    let (hash, energy) = (world.state_hash(), world.energy());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for (x, v) in [([bad, 0.0], [0.0; 2]), ([0.0; 2], [0.0, bad])] {
+            let error = world.place_node(0, 3, x, v).expect_err("no number");
+            assert!(error.to_string().starts_with("`body 0, node 3`: "), "{error}");
+        }
+    }
+    assert!(world.place_node(0, 24, [0.0; 2], [0.0; 2]).is_err(), "there is no such node");
+    assert!(world.add_force(2, std::sync::Arc::new(|_, _, _, _| [0.0; 2])).is_err(), "there is no such body");
+    assert_eq!((world.state_hash(), world.energy()), (hash, energy));
+    // A law that fails in the third frame from now, at one node of the second body.
+    let late = world.time() + 2.5 / 60.0;
+    let law =
+        move |node: u32, _: [f64; 2], _: [f64; 2], t: f64| [if node == 7 && t > late { f64::NAN } else { 0.0 }, 0.0];
+    world.add_force(1, std::sync::Arc::new(law)).expect("a body");
+    frames(&mut world, 2);
+    let (hash, frame) = (world.state_hash(), world.frames());
+    for _ in 0..2 {
+        match world.frame().expect_err("the law gives no number") {
+            WorldError::Diverged { body, node, time, last } => {
+                assert_eq!((body.as_str(), node), ("c", 7));
+                assert!(time >= late - 1e-3 && last <= late, "{time} {last}");
+            }
+            other => panic!("{other}"),
+        }
+        assert_eq!((world.state_hash(), world.frames()), (hash, frame), "the last good frame");
+    }
+}
+
+/// Row 63: what falls for ever is taken away, counted, and the same on any number of threads and after a restored snapshot.
+#[test]
+fn bodies_beyond_the_largest_distance_are_taken_away() {
+    let text = ring(16, "", "velocity = [2, 0]\ncopies = { count = [9], spacing = [2, 0] }\n")
+        .replace("gravity = [0, -9.81]", "gravity = [0, -9.81]\nlargest_distance = 30");
+    let end = |threads, restart: bool| {
+        let mut world = World::new(plane(&text), Options { threads, ..Options::default() }).expect("a world");
+        let mut counts = Vec::new();
+        for frame in 0..180 {
+            world.frame().expect("a frame");
+            if restart && frame == 130 {
+                let bytes = world.snapshot();
+                world = built(plane(&text));
+                world.restore(&bytes).expect("its own snapshot");
+            }
+            counts.push((world.bodies().count(), world.state_hash()));
+        }
+        let warning = world.warnings().into_iter().find(|w| w.code == "limit.distance").map(|w| w.count);
+        (counts, warning)
+    };
+    let (counts, warning) = end(1, false);
+    // 30 m below the start after √(2·30/9.81) = 2.47 s; the last of the row first, since it is farther away.
+    let first = counts.iter().position(|c| c.0 < 9).expect("the row goes");
+    assert!((125..150).contains(&first), "frame {first}");
+    assert!(counts[first].0 > 0 && counts[179].0 == 0 && warning == Some(9), "{warning:?}");
+    assert_eq!((end(3, false), end(1, true)), ((counts.clone(), warning), (counts, warning)));
+}
+
 /// Row 71: 100,000 steps at rest in a corner: no drift, no jitter.
 #[test]
 fn rest_in_a_corner_is_rest() {
@@ -275,6 +340,37 @@ fn pointers_pull_within_bounds() {
     assert!(said(&text).contains("error[scene.not_finite]"), "{}", said(&text));
 }
 
+/// Row 72: several pulls at once, on one node and on neighbours in a batch; a body that is taken away ends its pull.
+#[test]
+fn several_pulls_act_at_once() {
+    let pull = |body: usize, x: f64| {
+        format!(
+            "[[command]]\ndo = \"drag\"\nat = 0\nuntil = 1\nbody = \"b[{body}]\"\nnode = 0\npath = [[0, {x:?}, 0.6], [1, {x:?}, 0.6]]\nstiffness = 20.0\n"
+        )
+    };
+    let scene = |pulls: &str| {
+        let copies = format!("copies = {{ count = [4], spacing = [2, 0] }}\n{pulls}");
+        // Without gas the rest shape is at rest.
+        plane(&ring(32, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }", &copies).replace("-9.81", "0"))
+    };
+    // Node 0 of ball k lies at 2k + 0.5; two equal pulls to both sides leave it there.
+    let mut world = built(scene(&(pull(0, 0.0) + &pull(0, 1.0) + &pull(2, 5.0))));
+    frames(&mut world, 2);
+    assert_eq!((world.islands(), world.pulls().len()), (1, 3));
+    frames(&mut world, 10);
+    let momentum = |world: &World<2>, body: usize| (0..24).map(|n| world.velocity(body, n)[0]).sum::<f64>() / 24.0;
+    assert!(momentum(&world, 0).abs() < 1e-12, "{}", momentum(&world, 0));
+    assert!(momentum(&world, 2) > 0.5, "{}", momentum(&world, 2));
+    for untouched in [1, 3] {
+        assert!(momentum(&world, untouched).abs() < 1e-12);
+    }
+    world.remove_body("b[0]").expect("a body");
+    assert_eq!(world.pulls().len(), 1);
+    assert!(world.warnings().iter().any(|w| w.code == "command.no_body" && w.count == 2), "{:?}", world.warnings());
+    frames(&mut world, 30);
+    assert!(finite(&world));
+}
+
 /// Row 78: numbers of threads.
 #[test]
 fn numbers_of_threads() {
@@ -312,4 +408,88 @@ fn bodies_that_come_later_are_drawn() {
     let mut other = built(scene());
     other.restore(&bytes).expect("its own snapshot");
     assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &other), 2);
+}
+
+/// Row 73: while a frame runs nobody can add or take bodies away: a law that wants to is no program
+/// (`World::add_force` shows it); between frames both are as good as in a scene.
+#[test]
+fn bodies_come_and_go_between_frames_without_a_trace_on_others() {
+    let scene = || plane(&ring(32, BALL, FLOOR));
+    let mut quiet = built(scene());
+    frames(&mut quiet, 60);
+    let mut busy = built(scene());
+    let body = busy.blueprint().bodies[0].clone();
+    for k in 0..60 {
+        let mut guest = body.clone();
+        guest.name = "guest".into();
+        guest.translation[0] += 5.0;
+        let number = busy.add_body(guest.clone()).expect("a body");
+        let handle = busy.handle(number).expect("it is there");
+        assert!(busy.add_body(guest).is_err(), "the name is taken");
+        assert_eq!(busy.islands(), 2);
+        busy.frame().expect("a frame");
+        busy.remove_body("guest").expect("it is there");
+        assert!(busy.resolve(handle).is_none() && busy.remove_body("guest").is_err(), "{k}");
+    }
+    for node in 0..24 {
+        assert_eq!(busy.position(0, node), quiet.position(0, node));
+        assert_eq!(busy.velocity(0, node), quiet.velocity(0, node));
+    }
+}
+
+/// Row 78: threads change between frames, by way of a snapshot: the bits stay.
+#[test]
+fn threads_change_in_the_middle_of_a_run() {
+    let scene = || plane(&ring(32, BALL, &format!("copies = {{ count = [5], spacing = [2, 0] }}\n{FLOOR}")));
+    let mut one = built(scene());
+    frames(&mut one, 60);
+    let mut bytes = built(scene()).snapshot();
+    for threads in [2, 7, 1, 5] {
+        let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");
+        world.restore(&bytes).expect("its own snapshot");
+        frames(&mut world, 15);
+        bytes = world.snapshot();
+    }
+    let mut last = built(scene());
+    last.restore(&bytes).expect("its own snapshot");
+    assert_eq!((last.state_hash(), last.energy()), (one.state_hash(), one.energy()));
+}
+
+/// A body at rest: obstacles put back what weight presses in. Rules of second order close the ledger by that channel,
+/// symplectic Euler loses ½ m (g h)² per step, and a ledger that is open is warned of.
+#[test]
+fn the_ledger_closes_over_positions_that_obstacles_put_back() {
+    let rest = |rule: &str, substeps: u32| {
+        let models =
+            "{ kind = \"mass_spring\", stiffness = 600.0, damping = 0.5 }, { kind = \"pressure\", nRT = 30.0 }";
+        let floor = FLOOR.replace("0.2", "0");
+        let mut world = built(plane(&ring(substeps, models, &floor).replace("symplectic_euler", rule)));
+        world.set("world.drag", Value::Number(3.0)).expect("a parameter");
+        frames(&mut world, 300);
+        let before = world.energy();
+        frames(&mut world, 60);
+        let after = world.energy();
+        // Per second, at rest.
+        (
+            after.work_correction - before.work_correction,
+            after.loss_contact - before.loss_contact,
+            after.loss_integrator - before.loss_integrator,
+            world,
+        )
+    };
+    for rule in ["verlet", "runge_kutta", "heun"] {
+        let (correction, contact, unexplained, world) = rest(rule, 64);
+        println!("{rule}: put back {correction:.3e}, impacts {contact:.3e}, unexplained {unexplained:.1e} J/s");
+        assert!(correction > 1e-4 && (correction - contact).abs() < 0.02 * contact, "{rule}");
+        assert!(unexplained.abs() < 0.02 * correction, "{rule}: {unexplained}");
+        assert!(world.warnings().iter().all(|w| w.code != "ledger.closure"), "{rule}");
+    }
+    let (correction, contact, unexplained, _) = rest("symplectic_euler", 64);
+    assert!((unexplained - 0.5 * correction).abs() < 0.02 * correction, "{correction} {contact} {unexplained}");
+    let (coarse, _, _, _) = rest("symplectic_euler", 32);
+    assert!((coarse / correction - 2.0).abs() < 0.1, "it falls with the step: {coarse} {correction}");
+    let mut cloth = built(space(opruga::scenes::find("cloth-over-ball").expect("a scene")));
+    frames(&mut cloth, 180);
+    let warning = cloth.warnings().into_iter().find(|w| w.code == "ledger.closure");
+    assert!(cloth.energy().closure > 0.1 && warning.is_some_and(|w| w.count > 10), "{:?}", cloth.energy());
 }

@@ -1,11 +1,12 @@
 //! `[[body]]`: shape, mass, models, pins and copies.
 
+use super::cost::Cost;
 use super::reader::{Reader, join};
 use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
 use opruga_core::spec::{Allowed, Value, Values, nearest};
-use opruga_mesh::Mesh;
+use opruga_mesh::{Measure, Mesh};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
 use std::collections::BTreeMap;
@@ -22,6 +23,8 @@ pub(crate) struct Bodies<const D: usize> {
     names: BTreeMap<String, usize>,
     /// Name of a body with copies → the place of the first, and how far each is from where the body would lie.
     copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
+    /// What all of them would cost.
+    cost: Cost,
     /// Names of bodies that have errors of their own: a reference to them is no further error.
     broken: Vec<String>,
 }
@@ -36,6 +39,7 @@ struct Draft<'n, const D: usize> {
     rotation: Vec<f64>,
     angular_velocity: Vec<f64>,
     mass: Option<Mass>,
+    integrator: Option<Values>,
     models: Vec<Values>,
     pins: Vec<(PinBlueprint<D>, Place, String)>,
     copies: Option<Copies<D>>,
@@ -72,9 +76,10 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
         later: BTreeMap::new(),
         names: BTreeMap::new(),
         copied: BTreeMap::new(),
+        cost: Cost::default(),
         broken: Vec::new(),
     };
-    let affordable = within_limits(reader, &drafts);
+    let affordable = within_limits(reader, &drafts, &mut bodies.cost);
     for (number, draft) in drafts.into_iter().enumerate() {
         let Some(body) = (if affordable { build(reader, &draft) } else { None }) else {
             bodies.broken.push(draft.name);
@@ -92,7 +97,7 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
     for (number, (node, path)) in commands.iter().enumerate() {
         let (Some("add"), Some(at)) = (node.get("do").and_then(Node::text), node.get("body")) else { continue };
         let path = join(path, "body");
-        let Some(body) = single::<D>(reader, at, path.clone()) else {
+        let Some(body) = single::<D>(reader, at, path.clone(), &mut bodies.cost) else {
             bodies.broken.extend(at.get("name").and_then(Node::text).map(String::from));
             continue;
         };
@@ -118,9 +123,14 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
 }
 
 /// A body of an `add` command.
-fn single<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: String) -> Option<BodyBlueprint<D>> {
+fn single<const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: String,
+    cost: &mut Cost,
+) -> Option<BodyBlueprint<D>> {
     let drafts = vec![draft::<D>(reader, node, path, false)?];
-    if !within_limits(reader, &drafts) {
+    if !within_limits(reader, &drafts, cost) {
         return None;
     }
     build(reader, &drafts[0])
@@ -147,6 +157,7 @@ fn draft<'n, const D: usize>(
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
+    let integrator = reader.integrator(node, &path);
     let kinds = reader.catalogue.models.clone();
     let mut models = Vec::new();
     for (item, here) in reader.list(node, &path, "models") {
@@ -171,7 +182,21 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
-    Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, models, pins, copies, sound })
+    Some(Draft {
+        node,
+        path,
+        name,
+        values,
+        shape,
+        rotation,
+        angular_velocity,
+        mass,
+        integrator,
+        models,
+        pins,
+        copies,
+        sound,
+    })
 }
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
@@ -300,48 +325,14 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
     }
 }
 
-/// What the bodies would cost, compared with the limits before any mesh is made.
-fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) -> bool {
-    let limits = reader.options.limits.clone();
-    let (mut bodies, mut nodes, mut bytes) = (0u64, 0u64, 0u64);
+/// Adds what bodies would cost to that of those before them; whether that is within the limits.
+fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>], cost: &mut Cost) -> bool {
     for draft in drafts {
-        let copies = draft.copies.map_or(1, |c| c.total());
-        let size = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
-        bodies = bodies.saturating_add(copies);
-        nodes = nodes.saturating_add(size.saturating_mul(copies));
-        // A mesh once, and state, models and description for every copy.
-        let models: u64 = draft.models.len() as u64;
-        let each = size.saturating_mul(120 + 60 * D as u64 * models).saturating_add(1000 + 600 * models);
-        bytes = bytes.saturating_add(size.saturating_mul(250 * D as u64)).saturating_add(each.saturating_mul(copies));
-        let over = if bodies > limits.bodies {
-            Some((
-                "limit.bodies",
-                format!("the scene has {bodies} bodies or more"),
-                bodies,
-                format!("at most {} bodies", limits.bodies),
-            ))
-        } else if nodes > limits.nodes || size > u64::from(u32::MAX) {
-            Some((
-                "limit.nodes",
-                format!("the scene has {nodes} nodes or more"),
-                nodes,
-                format!("at most {} nodes", limits.nodes),
-            ))
-        } else if bytes > limits.memory_bytes {
-            Some((
-                "limit.memory",
-                format!("the scene would take about {bytes} bytes or more"),
-                bytes,
-                format!("at most {} bytes", limits.memory_bytes),
-            ))
-        } else {
-            None
-        };
-        if let Some((code, message, value, allowed)) = over {
-            let path = if draft.copies.is_some() { join(&draft.path, "copies") } else { join(&draft.path, "shape") };
-            let place =
-                if draft.copies.is_some() { place_of(draft.node, "copies") } else { place_of(draft.node, "shape") };
-            reader.report(place, SceneError::new(code, message).path(path).value(value.to_string()).allowed(allowed));
+        let nodes = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
+        let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
+        if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
+            let key = if draft.copies.is_some() { "copies" } else { "shape" };
+            reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
             return false;
         }
     }
@@ -380,6 +371,19 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         reader.report(place_of(draft.node, "shape"), error.allowed("finite coordinates"));
         return None;
     }
+    // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
+    let thin = match mesh.measure() {
+        Ok(Measure::Length(_)) => Some("of a wire needs its width, here"),
+        Ok(Measure::Area(_)) if D == 3 => Some("of a sheet needs its"),
+        _ => None,
+    };
+    if let (Some(Mass::Density(_)), Some(of), None) = (draft.mass, thin, draft.node.get("thickness")) {
+        let error = SceneError::new("scene.missing", format!("`density` {of} `thickness`"))
+            .path(join(&draft.path, "thickness"))
+            .allowed("a number > 0");
+        reader.report(place_of(draft.node, "density"), error.hint("or give the `mass` of the whole body"));
+        return None;
+    }
     let body = BodyBlueprint {
         name: draft.name.clone(),
         mesh: Arc::new(mesh),
@@ -388,6 +392,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         angular_velocity: draft.angular_velocity.clone(),
         mass: draft.mass?,
         thickness: draft.values.number("thickness").unwrap_or(1.0),
+        integrator: draft.integrator.clone(),
         models: draft.models.clone(),
         pins: draft.pins.iter().map(|(pin, _, _)| pin.clone()).collect(),
     };

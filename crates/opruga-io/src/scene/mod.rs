@@ -6,6 +6,7 @@
 
 mod actions;
 mod bodies;
+mod cost;
 mod parameters;
 mod plain;
 mod reader;
@@ -152,9 +153,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let top = reader.fields(root, "", &schema::SCENE, None);
     let time = time(reader, root);
     let surroundings = surroundings(reader, root);
-    let integrators = reader.catalogue.integrators.clone();
-    let integrator =
-        root.get("integrator").and_then(|node| reader.kind_table(node, "integrator", "integrator", &integrators));
+    let integrator = reader.integrator(root, "");
     let colliders = reader.catalogue.colliders.clone();
     let colliders: Vec<ColliderBlueprint> = reader
         .list(root, "", "collider")
@@ -233,6 +232,7 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
         drag: values.number("drag").unwrap_or(0.0),
         largest_force: values.number("largest_force"),
         largest_velocity: values.number("largest_velocity"),
+        largest_distance: values.number("largest_distance"),
     }
 }
 

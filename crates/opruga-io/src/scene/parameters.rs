@@ -102,21 +102,19 @@ fn field<const D: usize>(
                 }
             }
         }
+        ["body", name, "integrator", field] => {
+            let Some(body) = body(name, known)? else { return Ok(None) };
+            match body.integrator.as_ref().and_then(|v| spec_of(&catalogue.integrators, v.kind(), D)) {
+                Some(spec) => find(spec, field).map(Some),
+                None => Err(Lost {
+                    message: format!("body `{}` has no integrator of its own", visible(name)),
+                    allowed: "integrator.FIELD".into(),
+                    nearest: None,
+                }),
+            }
+        }
         ["body", name, "models", kind, field] => {
-            let Some(body) = known.bodies.first(name) else {
-                if known.added.contains(name) {
-                    return Ok(None);
-                }
-                let names: Vec<&str> = known
-                    .bodies
-                    .list
-                    .iter()
-                    .take(20)
-                    .map(|b| b.name.as_str())
-                    .chain(known.added.iter().copied())
-                    .collect();
-                return Err(lost("body", name, names.iter().copied()));
-            };
+            let Some(body) = body(name, known)? else { return Ok(None) };
             let kinds = body.models.iter().map(Values::kind);
             let model = kind
                 .parse::<usize>()
@@ -130,12 +128,13 @@ fn field<const D: usize>(
             }
         }
         _ => {
-            const FORMS: [&str; 5] = [
+            const FORMS: [&str; 6] = [
                 "world.FIELD",
                 "time.substeps",
                 "integrator.FIELD",
                 "collider.NUMBER.FIELD",
                 "body.NAME.models.KIND.FIELD",
+                "body.NAME.integrator.FIELD",
             ];
             const HEADS: [&str; 5] = ["world", "time", "integrator", "collider", "body"];
             let near =
@@ -147,6 +146,22 @@ fn field<const D: usize>(
             })
         }
     }
+}
+
+/// The body of a name; none where a command is yet to add it.
+fn body<'a, const D: usize>(
+    name: &str,
+    known: &'a Known<'_, D>,
+) -> Result<Option<&'a opruga_world::blueprint::BodyBlueprint<D>>, Lost> {
+    if let Some(body) = known.bodies.first(name) {
+        return Ok(Some(body));
+    }
+    if known.added.contains(&name) {
+        return Ok(None);
+    }
+    let names = known.bodies.list.iter().take(20).map(|b| b.name.as_str()).chain(known.added.iter().copied());
+    let names: Vec<&str> = names.collect();
+    Err(lost("body", name, names.iter().copied()))
 }
 
 fn find(spec: &'static Spec, name: &str) -> Result<&'static Field, Lost> {

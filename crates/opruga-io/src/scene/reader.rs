@@ -2,7 +2,7 @@
 
 use super::Options;
 use crate::catalogue::{Catalogue, find};
-use crate::document::{Data, Node, Place};
+use crate::document::{Data, Entry, Node, Place};
 use crate::problem::{Notice, SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Default, Spec, Values, nearest};
@@ -215,6 +215,17 @@ impl<'a> Reader<'a> {
             return None;
         }
         Some(self.fields(node, path, &Section { spec, children: &[] }, Some("kind")))
+    }
+
+    /// `integrator`: a table, or the word alone where its defaults will do.
+    pub(crate) fn integrator(&mut self, node: &Node, path: &str) -> Option<Values> {
+        let value = node.get("integrator")?;
+        let list = self.catalogue.integrators.clone();
+        let here = join(path, "integrator");
+        let Data::Text(_) = &value.data else { return self.kind_table(value, &here, "integrator", &list) };
+        let kind = Entry { key: "kind".into(), place: value.place, value: value.clone() };
+        let table = Node { place: value.place, data: Data::Table(vec![kind]) };
+        self.kind_table(&table, &here, "integrator", &list)
     }
 
     /// The word that says what a table is.

@@ -2,16 +2,6 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 /// The parameters of `as_published`.
 pub const SPEC: Spec = Spec {
     kind: "as_published",
@@ -23,37 +13,37 @@ An edge of no length makes its forces infinite or no number, as published. For t
 (E1 to E11) are told in the documentation of the module.",
     dimensions: &[2],
     fields: &[
-        field("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),
-        field(
+        Field::new("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),
+        Field::new(
             "damping",
             Allowed::NOT_NEGATIVE,
             "kg/s",
             Default::Number(40.0),
             "Damping constant KD along each spring.",
         ),
-        field(
+        Field::new(
             "final_pressure",
             Allowed::NOT_NEGATIVE,
             "",
             Default::Number(100.0),
             "FINAL_PRESSURE, reached in steps of a hundredth of it.",
         ),
-        field("factor", Allowed::ANY, "", Default::Number(1000.0), "The stray factor on the pressure force (E3)."),
-        field(
+        Field::new("factor", Allowed::ANY, "", Default::Number(1000.0), "The stray factor on the pressure force (E3)."),
+        Field::new(
             "gravity_y",
             Allowed::ANY,
             "px/s²",
             Default::Number(10.0),
             "GY, downwards positive; acts once the ramp has ended (E5).",
         ),
-        field(
+        Field::new(
             "pointer",
             Allowed::Path,
             "px",
             Default::Absent,
             "Where the mouse is over time: `[[t, x, y], …]`, straight between its points; the button is held from the first to the last.",
         ),
-        field(
+        Field::new(
             "held",
             Allowed::Curve,
             "s",

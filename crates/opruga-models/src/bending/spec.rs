@@ -2,16 +2,6 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 /// The parameters of `bending`.
 pub const SPEC: Spec = Spec {
     kind: "bending",
@@ -26,35 +16,35 @@ Angles beyond ±180° from θ₀ are taken the short way round. Edges of no leng
 that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shells; Seung and Nelson 1988.",
     dimensions: &[2, 3],
     fields: &[
-        field(
+        Field::new(
             "stiffness",
             Allowed::NOT_NEGATIVE,
             "N·m",
             Default::Absent,
             "Moment per angle k of every hinge; exactly one of `stiffness` and `modulus`.",
         ),
-        field(
+        Field::new(
             "modulus",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::Absent,
             "Young's modulus E, from which each hinge's stiffness follows; needs `thickness`.",
         ),
-        field(
+        Field::new(
             "thickness",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
             "Thickness t of the wall, or diameter of the wire of a chain in 3D; with `modulus`.",
         ),
-        field(
+        Field::new(
             "damping",
             Allowed::NOT_NEGATIVE,
             "N·m·s",
             Default::Number(0.0),
             "Moment per rate of the angle c of every hinge; zero under rigid motion.",
         ),
-        field(
+        Field::new(
             "rest",
             Allowed::Choice(&["shape", "straight"]),
             "",

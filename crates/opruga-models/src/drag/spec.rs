@@ -9,11 +9,5 @@ pub const SPEC: Spec = Spec {
     documentation: "Force −λ m v on every node: v falls as e^(−λt). Brakes rigid motion by design: a falling body tends to the speed g/λ. \
 For oscillations alone use `damping` of `mass_spring` or `bending`, which are zero under rigid motion.",
     dimensions: &[2, 3],
-    fields: &[Field {
-        name: "rate",
-        range: Allowed::NOT_NEGATIVE,
-        unit: "1/s",
-        default: Default::Required,
-        documentation: "Rate λ at which velocities fall.",
-    }],
+    fields: &[Field::new("rate", Allowed::NOT_NEGATIVE, "1/s", Default::Required, "Rate λ at which velocities fall.")],
 };

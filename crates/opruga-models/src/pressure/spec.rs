@@ -2,16 +2,6 @@
 
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
 
-const fn field(
-    name: &'static str,
-    range: Allowed,
-    unit: &'static str,
-    default: Default,
-    documentation: &'static str,
-) -> Field {
-    Field { name, range, unit, default, documentation }
-}
-
 /// The parameters of `pressure`.
 pub const SPEC: Spec = Spec {
     kind: "pressure",
@@ -25,70 +15,70 @@ U remains a function of V with continuous slope, so no energy is made. Without a
 Source: Matyka and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
-        field(
+        Field::new(
             "nRT",
             Allowed::NOT_NEGATIVE,
             "J",
             Default::Absent,
             "Amount of gas times temperature; exactly one of `nRT` and `pressure`.",
         ),
-        field(
+        Field::new(
             "pressure",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::Absent,
             "Absolute pressure P₀ inside at the rest volume.",
         ),
-        field(
+        Field::new(
             "ambient",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::Number(0.0),
             "Pressure P_a outside; equal to `pressure` it makes the rest shape an equilibrium.",
         ),
-        field(
+        Field::new(
             "process",
             Allowed::Choice(&["isothermal", "adiabatic"]),
             "",
             Default::Text("isothermal"),
             "Whether temperature or heat stays constant.",
         ),
-        field(
+        Field::new(
             "gamma",
             Allowed::Number { least: Bound::Open(1.0), greatest: Bound::Closed(10.0) },
             "",
             Default::Number(1.4),
             "Ratio of heat capacities γ of an adiabatic gas.",
         ),
-        field(
+        Field::new(
             "ramp",
             Allowed::NOT_NEGATIVE,
             "s",
             Default::Number(0.0),
             "Time over which the amount of gas rises linearly from zero at the start.",
         ),
-        field(
+        Field::new(
             "leak",
             Allowed::NOT_NEGATIVE,
             "1/s",
             Default::Number(0.0),
             "Rate λ of loss: d(nRT)/dt = −λ (P − P_a) V; nothing leaks once the pressures are equal.",
         ),
-        field(
+        Field::new(
             "temperature",
             Allowed::Curve,
             "",
             Default::Absent,
             "T/T₀ over time: `[[t, factor], …]`, straight between its points.",
         ),
-        field(
+        Field::new(
             "largest_pressure",
             Allowed::POSITIVE,
             "Pa",
             Default::Absent,
             "Cap on the pressure inside; every substep in which it acts is counted.",
         ),
-        field(
+        Field::new(
             "smallest_volume",
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Open(1.0) },
             "",

@@ -1,9 +1,9 @@
 //! `[[load]]`, `[[command]]` and `[[probe]]`.
 
-use super::{BODY, Child, Holds, Section, child, field, section};
+use super::{BODY, Child, Holds, Section, child, section};
 use opruga_core::spec::{Allowed, Default, Field};
 
-const CURVE: Field = field(
+const CURVE: Field = Field::new(
     "curve",
     Allowed::Curve,
     "s, 1",
@@ -32,7 +32,7 @@ pub const LOADS: &[Section] = &[
             "force",
             "The same force on every selected node",
             "",
-            &[field("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE],
+            &[Field::new("value", Allowed::Vector, "N", Default::Required, "The force on every node."), CURVE],
         ),
         children: LOAD_CHILDREN,
     },
@@ -41,7 +41,7 @@ pub const LOADS: &[Section] = &[
             "traction",
             "A force per area of the boundary at rest",
             "It is spread over the facets of the boundary all of whose nodes are selected.",
-            &[field("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
+            &[Field::new("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
         ),
         children: LOAD_CHILDREN,
     },
@@ -50,14 +50,17 @@ pub const LOADS: &[Section] = &[
             "pressure",
             "A pressure on the boundary, along its present inner normal",
             "It acts on the facets of the boundary all of whose nodes are selected.",
-            &[field("value", Allowed::ANY, "Pa", Default::Required, "The pressure; positive presses inwards."), CURVE],
+            &[
+                Field::new("value", Allowed::ANY, "Pa", Default::Required, "The pressure; positive presses inwards."),
+                CURVE,
+            ],
         ),
         children: LOAD_CHILDREN,
     },
 ];
 
-const AT: Field = field("at", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it begins.");
-const UNTIL: Field = field("until", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it ends.");
+const AT: Field = Field::new("at", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it begins.");
+const UNTIL: Field = Field::new("until", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it ends.");
 
 /// `[[command]]`, by `do`.
 pub const COMMANDS: &[Section] = &[
@@ -68,22 +71,22 @@ pub const COMMANDS: &[Section] = &[
             "",
             &[
                 AT,
-                field(
+                Field::new(
                     "until",
                     Allowed::NOT_NEGATIVE,
                     "s",
                     Default::Absent,
                     "When it ends; the end of the path where the scene is silent.",
                 ),
-                field("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
-                field(
+                Field::new("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
+                Field::new(
                     "stiffness",
                     Allowed::POSITIVE,
                     "N/m",
                     Default::Absent,
                     "Stiffness of the spring; chosen from the body where the scene is silent.",
                 ),
-                field(
+                Field::new(
                     "largest_force",
                     Allowed::POSITIVE,
                     "N",
@@ -107,7 +110,7 @@ pub const COMMANDS: &[Section] = &[
             "push",
             "A force on nodes",
             "",
-            &[AT, UNTIL, field("force", Allowed::Vector, "N", Default::Required, "The force on every node.")],
+            &[AT, UNTIL, Field::new("force", Allowed::Vector, "N", Default::Required, "The force on every node.")],
         ),
         children: LOAD_CHILDREN,
     },
@@ -119,7 +122,7 @@ pub const COMMANDS: &[Section] = &[
             &[
                 AT,
                 UNTIL,
-                field(
+                Field::new(
                     "axes",
                     Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
                     "",
@@ -137,12 +140,12 @@ pub const COMMANDS: &[Section] = &[
             "",
             &[
                 AT,
-                field(
+                Field::new(
                     "path",
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `body.NAME.integrator.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),
@@ -159,7 +162,7 @@ pub const COMMANDS: &[Section] = &[
             "",
             &[
                 AT,
-                field(
+                Field::new(
                     "body",
                     Allowed::Text,
                     "",
@@ -178,7 +181,7 @@ pub const PROBE: Section = Section {
         "probe",
         "Columns of diagnostics.csv that follow nodes",
         "Of positions and velocities the mean over the nodes is written, of reactions the sum.",
-        &[field(
+        &[Field::new(
             "name",
             Allowed::Text,
             "",

@@ -1,6 +1,7 @@
-//! Time per node of the pass: `cargo test --release -p opruga-collide --test speed -- --ignored --nocapture`.
+//! Time per node of the pass over one collider: `cargo bench -p opruga-collide`.
 #![allow(missing_docs)]
 
+#[path = "../tests/common/mod.rs"]
 mod common;
 use common::*;
 use opruga_core::contacts::{Contacts, Moved};
@@ -21,6 +22,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
     }
     let before = x0.clone();
     let mass = Parameter::uniform(1.0);
+    let none = vec![0.0; TILE + WIDTH];
     let mut best = f64::INFINITY;
     // What touches is pushed out by the first pass.
     let passes = if height < 0.0 { 1 } else { 8 };
@@ -29,7 +31,8 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
         let mut spent = 0.0;
         for _ in 0..repeats {
             let (mut x, mut v) = (x0.clone(), v0.clone());
-            let (mut contact, mut friction, mut work) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+            let (mut contact, mut friction, mut work, mut correction) =
+                ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
             let start = std::time::Instant::now();
             for _ in 0..passes {
                 for tile in 0..NODES / TILE {
@@ -40,6 +43,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
                         before: core::array::from_fn(|d| &before.0[d][range.clone()]),
                         x: &mut x,
                         v: &mut v,
+                        force: core::array::from_fn(|_| none.as_slice()),
                         mass: &mass,
                         layout: Layout::Single,
                         time: 1.0,
@@ -47,6 +51,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
                         loss_contact: &mut contact,
                         loss_friction: &mut friction,
                         work_colliders: &mut work,
+                        work_correction: &mut correction,
                     };
                     contacts.resolve(simd, &mut moved);
                 }
@@ -59,9 +64,7 @@ fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
     best
 }
 
-#[test]
-#[ignore = "a measurement"]
-fn nanoseconds_per_node() {
+fn main() {
     let floor = |mu: f64| values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("friction", number(mu))]);
     let far = values::<2>("ball", &[("center", vector(&[9.0, 0.0])), ("radius", number(1.0))]);
     let room = values::<2>(

@@ -1,0 +1,113 @@
+//! Bodies come and go.
+
+use crate::blueprint::{Action, BodyBlueprint};
+use crate::changes::{Change, Source};
+use crate::commands::Progress;
+use crate::error::WorldError;
+use crate::rebuild::Touched;
+use crate::world::{Warning, World};
+use opruga_math::Lane;
+use std::collections::BTreeMap;
+
+impl<const D: usize> World<D> {
+    /// Adds a body; returns its number.
+    ///
+    /// # Errors
+    /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
+    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
+        let kept = body.clone();
+        let number = self.include(body, Source::Program(self.added.len()))?;
+        self.added.push(kept);
+        Ok(number)
+    }
+
+    pub(crate) fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
+        if self.body(&body.name).is_some() {
+            return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
+        }
+        let number = self.blueprint.bodies.len();
+        let fresh = BTreeMap::from([(number, crate::build::initial_state(&body))]);
+        self.blueprint.bodies.push(body);
+        self.alive.push(true);
+        self.generation.push(0);
+        let outcome = self.regroup(&Touched::Bodies(Vec::new()), &fresh).and_then(|()| self.check_stability());
+        if let Err(error) = outcome {
+            self.blueprint.bodies.pop();
+            self.alive.pop();
+            self.generation.pop();
+            self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new())?;
+            self.check_stability()?;
+            return Err(error);
+        }
+        self.changes.push(Change::Added(source));
+        Ok(number)
+    }
+
+    /// Takes a body away.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no body of that name.
+    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
+        let Some(body) = self.body(name) else {
+            return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
+        };
+        self.take_away(&[body])
+    }
+
+    fn take_away(&mut self, bodies: &[usize]) -> Result<(), WorldError> {
+        let kept = (self.alive.clone(), self.generation.clone(), self.running.clone(), self.warnings.clone());
+        for &body in bodies {
+            self.alive[body] = false;
+            self.generation[body] += 1;
+            let mut dropped = 0;
+            for running in self.running.iter_mut().filter(|r| r.command.action.body() == Some(body)) {
+                dropped += u64::from(running.progress != Progress::Done);
+                running.progress = Progress::Done;
+            }
+            if dropped > 0 {
+                let name = &self.blueprint.bodies[body].name;
+                let message = format!("commands on body `{name}` ended when it was taken away");
+                self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
+            }
+        }
+        let outcome = self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new());
+        if outcome.is_err() {
+            (self.alive, self.generation, self.running, self.warnings) = kept;
+        }
+        outcome
+    }
+
+    /// Takes bodies away that lie wholly beyond `world.largest_distance`.
+    pub(crate) fn take_away_what_is_far(&mut self) -> Result<(), WorldError> {
+        let Some(limit) = self.blueprint.surroundings.largest_distance else { return Ok(()) };
+        let square = |x: [f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+        let mut gone = Vec::new();
+        for island in &self.islands {
+            // The corner of its box that is farthest from the origin: mostly it is near.
+            let [low, high] = island.survey.position;
+            let corner = core::array::from_fn(|d| low[d].abs().larger(high[d].abs()));
+            if square(corner) <= limit * limit {
+                continue;
+            }
+            let far = |body: &usize| {
+                (0..self.node_count(*body) as u32).all(|node| square(self.position(*body, node)) > limit * limit)
+            };
+            gone.extend(island.bodies.iter().copied().filter(far));
+        }
+        if gone.is_empty() {
+            return Ok(());
+        }
+        self.take_away(&gone)?;
+        self.flows.lost_bodies += gone.len() as u64;
+        Ok(())
+    }
+
+    /// Bodies that commands will add, in the order of time.
+    pub fn coming_bodies(&self) -> impl Iterator<Item = &BodyBlueprint<D>> {
+        let present = &self.blueprint.bodies;
+        self.blueprint.commands.iter().filter_map(move |command| match &command.action {
+            Action::Add(body) if present.iter().all(|b| b.name != body.name) => Some(&**body),
+            _ => None,
+        })
+    }
+}

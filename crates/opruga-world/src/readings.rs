@@ -1,0 +1,212 @@
+//! What can be read of a world: places, energies, volumes, probes, warnings, hash.
+
+use crate::blueprint::Recorded;
+use crate::build::rest_volume;
+use crate::island::Island;
+use crate::ledger::{Energy, Momentum};
+use crate::world::{BodyHandle, Warning, World, lock};
+use opruga_core::stability::Stability;
+
+impl<const D: usize> World<D> {
+    /// The energy ledger of the last frame.
+    pub fn energy(&self) -> Energy {
+        self.energy
+    }
+    /// The kinds of integrators in use: that of the scene, then those that bodies have of their own.
+    pub fn integrators(&self) -> Vec<&'static str> {
+        let mut out = Vec::new();
+        let bodies: Vec<_> = self.bodies().map(|b| &self.blueprint.bodies[b].integrator).collect();
+        if bodies.is_empty() || bodies.iter().any(|own| own.is_none()) {
+            out.push(self.blueprint.integrator.kind());
+        }
+        for values in bodies.into_iter().flatten() {
+            if !out.contains(&values.kind()) {
+                out.push(values.kind());
+            }
+        }
+        out
+    }
+    /// How many islands there are: bodies that are stepped together.
+    pub fn islands(&self) -> usize {
+        self.islands.len()
+    }
+    /// How many islands were built since the start: a command builds those of its bodies anew, no others.
+    pub fn islands_built(&self) -> u64 {
+        self.islands_built
+    }
+    /// The momentum of the last frame.
+    pub fn momentum(&self) -> Momentum<D> {
+        self.momentum
+    }
+    /// The estimates of the stable step, one for each kind of body.
+    pub fn stability(&self) -> &[(String, Stability)] {
+        &self.stability
+    }
+    /// Numbers of the bodies that are there.
+    pub fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.alive.len()).filter(|b| self.alive[*b])
+    }
+    /// The number of a body by its name.
+    pub fn body(&self, name: &str) -> Option<usize> {
+        self.bodies().find(|b| self.blueprint.bodies[*b].name == name)
+    }
+    /// A handle of a body that tells when the body is gone.
+    pub fn handle(&self, body: usize) -> Option<BodyHandle> {
+        let alive = self.alive.get(body).copied().unwrap_or(false);
+        alive.then(|| BodyHandle { index: body, generation: self.generation[body] })
+    }
+    /// The body of a handle, or none if it was removed.
+    pub fn resolve(&self, handle: BodyHandle) -> Option<usize> {
+        (self.handle(handle.index) == Some(handle)).then_some(handle.index)
+    }
+    /// The number of nodes of a body.
+    pub fn node_count(&self, body: usize) -> usize {
+        self.blueprint.bodies[body].mesh.positions.len()
+    }
+    /// The position of a node [m].
+    pub fn position(&self, body: usize, node: u32) -> [f64; D] {
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        system.state.x.at(system.layout.place(node as usize, lane))
+    }
+    /// The velocity of a node [m/s].
+    pub fn velocity(&self, body: usize, node: u32) -> [f64; D] {
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        system.state.v.at(system.layout.place(node as usize, lane))
+    }
+    /// The mass of a node [kg].
+    pub fn node_mass(&self, body: usize, node: u32) -> f64 {
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        system.mass.at(system.layout.place(node as usize, lane))
+    }
+    /// What models say of a body: `volume`, `pressure` and others.
+    ///
+    /// A body that is not there says nothing.
+    pub fn readings(&mut self, body: usize) -> Vec<(&'static str, f64)> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let time = self.time();
+        self.islands[island].readings(lane, time)
+    }
+    /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
+    pub fn rest_volume(&self, body: usize) -> f64 {
+        rest_volume(&self.blueprint.bodies[body])
+    }
+    /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there.
+    pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
+        let probe = self.blueprint.probes[number].clone();
+        let there = self.handle(probe.body).is_some();
+        let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
+        let axes = ["x", "y", "z"];
+        let mut out = Vec::new();
+        for what in &probe.record {
+            let (word, vector) = match what {
+                Recorded::Position => ("", self.mean(&nodes, |w, n| w.position(probe.body, n))),
+                Recorded::Velocity => ("v", self.mean(&nodes, |w, n| w.velocity(probe.body, n))),
+                Recorded::Reaction if there => ("r", self.reaction(probe.body, &nodes)),
+                Recorded::Reaction => ("r", [0.0; D]),
+            };
+            for d in 0..D {
+                out.push((format!("{}.{}{}", probe.name, word, axes[d]), if there { vector[d] } else { f64::NAN }));
+            }
+        }
+        out
+    }
+    fn mean(&self, nodes: &[u32], of: impl Fn(&Self, u32) -> [f64; D]) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for node in nodes {
+            let value = of(self, *node);
+            for d in 0..D {
+                sum[d] += value[d];
+            }
+        }
+        sum.map(|s| s / nodes.len().max(1) as f64)
+    }
+    /// The sum of the forces that pins exert on nodes [N].
+    pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
+        let (island, lane) = self.place[body];
+        let system = &mut self.islands[island].system;
+        let mut sum = [0.0; D];
+        let Ok(forces) = system.forces(true) else { return sum };
+        for node in nodes {
+            let place = system.layout.place(*node as usize, lane);
+            for pin in system.pins.iter().filter(|p| p.place == place) {
+                for d in 0..D {
+                    if pin.axes[d] {
+                        sum[d] -= forces.0[d][place];
+                    }
+                }
+            }
+        }
+        sum
+    }
+    /// Warnings so far, with counts.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut out = self.warnings.clone();
+        let mut count = |code: &str, message: &str, count: u64| {
+            if count > 0 {
+                out.push(Warning { code: code.into(), message: message.into(), count });
+            }
+        };
+        count("limit.force", "forces were shortened to `world.largest_force`", self.flows.limited_forces);
+        count("limit.velocity", "velocities were shortened to `world.largest_velocity`", self.flows.limited_velocities);
+        count("limit.drag", "pulls were shortened to their `largest_force`", self.flows.limited_pulls);
+        count(
+            "limit.distance",
+            "bodies went farther than `world.largest_distance` and were taken away",
+            self.flows.lost_bodies,
+        );
+        count(
+            "ledger.closure",
+            "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
+             integrator (more substeps make it smaller, `verlet` and `runge_kutta` make less of it) or the work of pins \
+             that move",
+            self.flows.open_frames,
+        );
+        let mut counts: Vec<(&'static str, u64)> = Vec::new();
+        for island in &self.islands {
+            for member in &island.system.members {
+                for (name, n) in member.potential.counts(&member.memory) {
+                    match counts.iter_mut().find(|c| c.0 == name) {
+                        Some(entry) => entry.1 += n,
+                        None => counts.push((name, n)),
+                    }
+                }
+            }
+        }
+        for (name, n) in counts {
+            count(name, "a limit of the model acted, counted per substep and body", n);
+        }
+        out
+    }
+    /// A 64-bit hash (FNV-1a) over the little-endian bits of all positions, then velocities, body by body in node order.
+    pub fn state_hash(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let mut feed = |number: f64| {
+            for byte in number.to_le_bytes() {
+                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+            }
+        };
+        for velocities in [false, true] {
+            for body in 0..self.alive.len() {
+                if !self.alive[body] {
+                    continue;
+                }
+                for node in 0..self.node_count(body) as u32 {
+                    let value = if velocities { self.velocity(body, node) } else { self.position(body, node) };
+                    value.into_iter().for_each(&mut feed);
+                }
+            }
+        }
+        hash
+    }
+    /// Bytes on the heap for the state and the models of all bodies.
+    pub fn heap_bytes(&self) -> usize {
+        let shared: usize = self.workspaces.iter().map(|workspace| lock(workspace).heap_bytes()).sum();
+        shared + self.islands.iter().map(Island::heap_bytes).sum::<usize>()
+    }
+}

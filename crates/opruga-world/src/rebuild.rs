@@ -1,0 +1,166 @@
+//! Islands are built anew where the scene changed; all others stay as they are.
+
+use crate::blueprint::{Blueprint, BodyBlueprint};
+use crate::build::{BodyState, Builder, build_integrator, group};
+use crate::error::WorldError;
+use crate::island::Island;
+use crate::world::World;
+use opruga_math::WIDTH;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, PoisonError};
+
+/// The bodies whose physics a change touches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Touched {
+    /// These; of none where the list is empty.
+    Bodies(Vec<usize>),
+    /// All of them: gravity, drag.
+    All,
+}
+
+impl Touched {
+    fn contains(&self, body: usize) -> bool {
+        match self {
+            Touched::Bodies(bodies) => bodies.contains(&body),
+            Touched::All => true,
+        }
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// The state of a body that is there.
+    pub(crate) fn state_of(&self, body: usize) -> BodyState<D> {
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        let place = |node| system.layout.place(node, lane);
+        let models = self.blueprint.bodies[body].models.len();
+        BodyState {
+            x: (0..system.nodes).map(|n| system.state.x.at(place(n))).collect(),
+            v: (0..system.nodes).map(|n| system.state.v.at(place(n))).collect(),
+            memory: system.members[..models]
+                .iter()
+                .map(|m| m.memory.iter().skip(lane).step_by(WIDTH).copied().collect())
+                .collect(),
+        }
+    }
+
+    /// Builds the islands of some bodies anew after commands on them began or ended; who lies beside whom stays.
+    ///
+    /// On failure the old islands stay.
+    pub(crate) fn rebuild(&mut self, bodies: &BTreeSet<usize>) -> Result<(), WorldError> {
+        let there = bodies.iter().filter(|b| self.alive[**b]);
+        let numbers: BTreeSet<usize> = there.map(|b| self.place[*b].0).collect();
+        if numbers.is_empty() {
+            return Ok(());
+        }
+        let before = self.stock_energy();
+        let mut built = Vec::with_capacity(numbers.len());
+        for number in &numbers {
+            let members = &self.islands[*number].bodies;
+            built.push((*number, self.island_of(members, &BTreeMap::new(), &self.integrator)?));
+        }
+        for (number, island) in built {
+            self.put(number, island);
+        }
+        self.shift_start(before);
+        Ok(())
+    }
+
+    /// Groups the bodies anew after some came, went or changed, and builds the islands that are touched by that or have
+    /// other members than before. `fresh` holds the states of bodies that are in no island yet.
+    ///
+    /// On failure the old islands stay.
+    pub(crate) fn regroup(
+        &mut self,
+        touched: &Touched,
+        fresh: &BTreeMap<usize, BodyState<D>>,
+    ) -> Result<(), WorldError> {
+        let before = self.stock_energy();
+        let integrator: Arc<_> =
+            build_integrator(&self.registry, &self.blueprint.integrator, || "integrator".into())?.into();
+        let groups = group(&self.blueprint.bodies, &self.alive, self.options.batches);
+        // For every group its old island, or one that is new.
+        let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());
+        for members in &groups {
+            let old = self.place.get(members[0]).map(|place| place.0).filter(|number| {
+                self.islands.get(*number).is_some_and(|island| island.bodies == *members)
+                    && members.iter().all(|b| !touched.contains(*b) && !fresh.contains_key(b))
+            });
+            found.push(match old {
+                Some(number) => Ok(number),
+                None => Err(Box::new(self.island_of(members, fresh, &integrator)?)),
+            });
+        }
+        let mut old: Vec<Option<Island<D>>> = std::mem::take(&mut self.islands).into_iter().map(Some).collect();
+        self.integrator = integrator;
+        self.place = vec![(0, 0); self.blueprint.bodies.len()];
+        for (number, (members, island)) in groups.iter().zip(found).enumerate() {
+            for (lane, body) in members.iter().enumerate() {
+                self.place[*body] = (number, lane);
+            }
+            match island {
+                Ok(kept) => self.islands.extend(old[kept].take()),
+                Err(island) => self.put(number, *island),
+            }
+        }
+        self.shift_start(before);
+        Ok(())
+    }
+
+    /// Builds the island of some bodies in the states they have, or that `fresh` gives them.
+    fn island_of(
+        &self,
+        members: &[usize],
+        fresh: &BTreeMap<usize, BodyState<D>>,
+        integrator: &Arc<dyn opruga_core::integrator::Integrator<D>>,
+    ) -> Result<Island<D>, WorldError> {
+        let states: Vec<BodyState<D>> =
+            members.iter().map(|b| fresh.get(b).cloned().unwrap_or_else(|| self.state_of(*b))).collect();
+        let builder = Builder { blueprint: &self.blueprint, registry: &self.registry, simd: self.simd, integrator };
+        builder.island(members, &states.iter().collect::<Vec<_>>(), self.time())
+    }
+
+    /// Puts an island that was just built in its place; what commands do at present is added to it.
+    fn put(&mut self, number: usize, island: Island<D>) {
+        if number < self.islands.len() {
+            self.islands[number] = island;
+        } else {
+            self.islands.push(island);
+        }
+        for workspace in &mut self.workspaces {
+            workspace.get_mut().unwrap_or_else(PoisonError::into_inner).fit(&self.islands[number].system);
+        }
+        self.islands_built += 1;
+        self.apply_running(number);
+    }
+
+    /// What a change of the scene does to the energy is nobody's work or loss.
+    fn shift_start(&mut self, before: f64) {
+        self.flows.start += self.stock_energy() - before;
+        self.refresh_ledger();
+    }
+
+    /// What a reader sees of a body that is not there yet: the names of its readings.
+    ///
+    /// # Errors
+    /// [`WorldError`] where a model refuses the body.
+    pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> {
+        let blueprint = Blueprint {
+            name: String::new(),
+            title: String::new(),
+            seed: self.blueprint.seed,
+            time: self.blueprint.time,
+            surroundings: self.blueprint.surroundings,
+            integrator: self.blueprint.integrator.clone(),
+            bodies: vec![body.clone()],
+            colliders: Vec::new(),
+            loads: Vec::new(),
+            commands: Vec::new(),
+            probes: Vec::new(),
+        };
+        let builder =
+            Builder { blueprint: &blueprint, registry: &self.registry, simd: self.simd, integrator: &self.integrator };
+        let mut island = builder.island(&[0], &[&crate::build::initial_state(body)], self.time())?;
+        Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
+    }
+}

@@ -1,0 +1,126 @@
+//! The stable step of every kind of body, estimated before it is stepped.
+
+use crate::error::WorldError;
+use crate::island::Island;
+use crate::world::{Warning, World};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::stability::{Stability, estimate};
+use std::sync::Arc;
+
+impl<const D: usize> World<D> {
+    /// Estimates the stable step of every kind of body that was built anew, and compares all steps with their limits.
+    ///
+    /// Bodies are of one kind where nothing that the estimate depends on differs. Islands that were left alone keep their
+    /// estimate: a change of one body refuses no step for the state that another has meanwhile come to.
+    pub(crate) fn check_stability(&mut self) -> Result<(), WorldError> {
+        let mut seen: Vec<(usize, Held)> = Vec::new();
+        let mut first_of_kind = Vec::new();
+        for (number, island) in self.islands.iter().enumerate() {
+            // Loads, pulls and users' forces belong to one body: such an island is of a kind of its own.
+            let mut known = !self.has_more_than_models(island);
+            for (lane, body) in island.bodies.iter().enumerate() {
+                let held = held(island, lane);
+                if !seen.iter().any(|(other, nodes)| *nodes == held && self.same_kind(*other, *body)) {
+                    known = false;
+                    seen.push((*body, held));
+                }
+            }
+            if !known {
+                first_of_kind.push(number);
+            }
+        }
+        let mut estimates = Vec::with_capacity(first_of_kind.len());
+        for number in first_of_kind {
+            let name = self.blueprint.bodies[self.islands[number].bodies[0]].name.clone();
+            let island = &mut self.islands[number];
+            let stability = match island.stability {
+                Some(stability) => stability,
+                None => estimate(&island.system, &*island.integrator).map_err(|e| WorldError::Build {
+                    place: format!("body `{name}`"),
+                    source: BuildError::new("stability", "step.not_finite", step_message(&e)),
+                })?,
+            };
+            island.stability = Some(stability);
+            estimates.push((number, name, stability));
+        }
+        self.compare_steps(estimates)
+    }
+
+    /// Refuses a step above the limit of a body, and warns where there is no limit.
+    fn compare_steps(&mut self, estimates: Vec<(usize, String, Stability)>) -> Result<(), WorldError> {
+        let h = self.h();
+        let mut warnings: Vec<Warning> = Vec::new();
+        for (number, name, stability) in &estimates {
+            let integrator = &*self.islands[*number].integrator;
+            match stability.largest_stable_step {
+                Some(limit) if h > limit => {
+                    let error = WorldError::UnstableStep {
+                        integrator: integrator.name(),
+                        body: name.clone(),
+                        h,
+                        limit,
+                        omega: stability.spectrum.omega,
+                        damping: stability.spectrum.damping,
+                        substeps: (self.blueprint.time.frame / limit).ceil() as u32,
+                    };
+                    if !self.options.allow_unstable {
+                        return Err(error);
+                    }
+                    warnings.push(Warning { code: "step.unstable".into(), message: error.to_string(), count: 1 });
+                }
+                None => {
+                    let growth = stability.spectrum.growth_per_second(integrator, h);
+                    let message = format!(
+                        "`{}` has no stable step for body `{name}` (ω = {:.4e} rad/s): its fastest motion grows as exp({growth:.4e} t)",
+                        integrator.name(),
+                        stability.spectrum.omega,
+                    );
+                    let same = format!("`{}` has", integrator.name());
+                    let known = |w: &&mut Warning| w.code == "step.no_stable_step" && w.message.starts_with(&same);
+                    match warnings.iter_mut().find(known) {
+                        Some(warning) => warning.count += 1,
+                        None => warnings.push(Warning { code: "step.no_stable_step".into(), message, count: 1 }),
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.warnings.retain(|w| w.code != "step.unstable" && w.code != "step.no_stable_step");
+        self.warnings.extend(warnings);
+        self.stability = estimates.into_iter().map(|(_, name, stability)| (name, stability)).collect();
+        Ok(())
+    }
+
+    fn has_more_than_models(&self, island: &Island<D>) -> bool {
+        let models = self.blueprint.bodies[island.bodies[0]].models.len();
+        let drag = usize::from(self.blueprint.surroundings.drag > 0.0);
+        island.system.members.len() > models + drag
+    }
+
+    /// Whether two bodies differ in nothing but place and motion.
+    fn same_kind(&self, a: usize, b: usize) -> bool {
+        let (a, b) = (&self.blueprint.bodies[a], &self.blueprint.bodies[b]);
+        Arc::ptr_eq(&a.mesh, &b.mesh)
+            && a.thickness == b.thickness
+            && a.mass == b.mass
+            && a.models == b.models
+            && a.integrator == b.integrator
+    }
+}
+
+/// The held nodes of a body and their axes, a bit each.
+type Held = Vec<(usize, u8)>;
+
+fn held<const D: usize>(island: &Island<D>, lane: usize) -> Held {
+    let stride = island.system.layout.stride();
+    let own = island.system.pins.iter().filter(|pin| pin.place % stride == lane);
+    own.map(|pin| (pin.place / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
+}
+
+/// What an error of the estimate says, without the name of the estimate.
+fn step_message(error: &StepError) -> String {
+    match error {
+        StepError::Model { message, .. } => message.clone(),
+        other => other.to_string(),
+    }
+}
