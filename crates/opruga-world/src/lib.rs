@@ -8,6 +8,8 @@ pub mod error;
 mod island;
 pub mod ledger;
 mod loads;
+mod plausible;
+mod problems;
 pub mod registry;
 pub mod schema;
 pub mod selection;

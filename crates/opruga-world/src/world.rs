@@ -8,6 +8,7 @@ use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
+use crate::plausible;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
 use opruga_core::error::{BuildError, StepError};
@@ -238,7 +239,8 @@ impl<const D: usize> World<D> {
     /// Estimates the stable step of every kind of body.
     pub(crate) fn check_stability(&mut self) -> Result<(), WorldError> {
         self.stability.clear();
-        self.warnings.retain(|w| w.code != "step.unstable" && w.code != "step.no_stable_step");
+        self.warnings
+            .retain(|w| w.code != "step.unstable" && w.code != "step.no_stable_step" && w.code != plausible::SAG);
         let h = self.h();
         let mut seen: Vec<(usize, Vec<opruga_core::spec::Values>)> = Vec::new();
         for number in 0..self.islands.len() {
@@ -285,6 +287,12 @@ impl<const D: usize> World<D> {
                     }
                 }
                 _ => {}
+            }
+            if let Some(odd) = plausible::sag(blueprint, &self.blueprint.surroundings.gravity, &stability.spectrum) {
+                match self.warnings.iter_mut().find(|w| w.code == odd.code) {
+                    Some(warning) => warning.count += 1,
+                    None => self.warnings.push(odd),
+                }
             }
             self.stability.push((name, stability));
         }
