@@ -3,11 +3,13 @@
 
 mod arguments;
 mod bench;
+mod checkpoints;
 mod failure;
 mod outputs;
 mod plots;
 mod reports;
 mod run;
+mod source;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -17,6 +19,14 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {
+            // Whoever asks for JSON reads errors as JSON, those of the call too.
+            let text = error.to_string();
+            let message = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
+            let failure = Failure::Call { message, hint: Some("--help tells what can be said".into()) };
+            failure.print(true);
+            return ExitCode::from(failure.exit_code());
+        }
         Err(error) => {
             let _ = error.print();
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
@@ -28,7 +38,7 @@ fn main() -> ExitCode {
         Command::Run(run) => run::run(run),
         Command::Check(check) => reports::check(check),
         Command::List { json } => reports::list(*json),
-        Command::New { name } => reports::new(name),
+        Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),
         Command::Bench { what } => reports::bench(what),
     };

@@ -1,11 +1,11 @@
 //! What a run leaves behind: tables, checkpoint, strip, video, plots.
 
 use crate::arguments::Run;
+use crate::checkpoints::{Keeper, NAME, PREVIOUS};
 use crate::failure::Failure;
-use crate::run::Source;
+use crate::source::Source;
 use opruga::World;
 use opruga::draw;
-use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::OutputFolder;
 use opruga::io::tables::{
     EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final,
@@ -34,47 +34,6 @@ pub(crate) struct Recorder {
     frame: f64,
     arrows: bool,
     gif: bool,
-}
-
-/// A checkpoint's payload: the snapshot and how the run was called.
-pub(crate) struct SavedRun {
-    pub(crate) name: String,
-    pub(crate) overrides: Vec<(String, String)>,
-    pub(crate) snapshot: Vec<u8>,
-}
-
-impl SavedRun {
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut out = Vec::new();
-        let mut text = |t: &str| {
-            out.extend((t.len() as u64).to_le_bytes());
-            out.extend(t.as_bytes());
-        };
-        text(&self.name);
-        text(&self.overrides.len().to_string());
-        for (path, value) in &self.overrides {
-            text(path);
-            text(value);
-        }
-        out.extend(&self.snapshot);
-        out
-    }
-    /// Reads a payload; none if it has another form.
-    pub(crate) fn read(mut bytes: &[u8]) -> Option<SavedRun> {
-        let mut text = || {
-            let (length, rest) = bytes.split_first_chunk::<8>()?;
-            let (text, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-            bytes = rest;
-            String::from_utf8(text.to_vec()).ok()
-        };
-        let name = text()?;
-        let count: usize = text()?.parse().ok()?;
-        let mut overrides = Vec::new();
-        for _ in 0..count {
-            overrides.push((text()?, text()?));
-        }
-        Some(SavedRun { name, overrides, snapshot: bytes.to_vec() })
-    }
 }
 
 impl Recorder {
@@ -171,17 +130,28 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 pub(crate) struct Outputs<'a> {
     pub(crate) folder: &'a OutputFolder,
     pub(crate) source: &'a Source,
-    pub(crate) set: &'a [(String, String)],
     pub(crate) wall: f64,
     pub(crate) steps: u64,
+    /// The time of the checkpoint that the run went on from [s].
+    pub(crate) resumed_at: Option<f64>,
+    /// What the reader of the scene found odd, and what went wrong on the way.
+    pub(crate) warnings: Vec<WarningSummary>,
     pub(crate) stop: &'a AtomicBool,
 }
 
 impl Outputs<'_> {
     /// Writes every file; returns the summary as JSON.
-    pub(crate) fn write<const D: usize>(&self, world: &mut World<D>, recorder: Recorder) -> Result<String, Failure> {
-        let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), "checkpoint".into()];
-        self.folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
+    pub(crate) fn write<const D: usize>(
+        &self,
+        world: &mut World<D>,
+        recorder: Recorder,
+        keeper: &mut Keeper<'_>,
+    ) -> Result<String, Failure> {
+        let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), NAME.into()];
+        keeper.write(world, &recorder.table)?;
+        if self.folder.path(PREVIOUS).exists() {
+            files.push(PREVIOUS.into());
+        }
         let numbers: Vec<usize> = world.bodies().collect();
         let nodes = |body: usize| 0..world.node_count(body) as u32;
         let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
@@ -194,10 +164,6 @@ impl Outputs<'_> {
             velocities,
         });
         self.folder.write("final.csv", false, |out| write_final(out, rows))?;
-        let saved =
-            SavedRun { name: self.source.name.clone(), overrides: self.set.to_vec(), snapshot: world.snapshot() };
-        let checkpoint = Checkpoint { scene: self.source.text.clone(), payload: saved.to_bytes() };
-        self.folder.write("checkpoint", true, |out| checkpoint.write(out))?;
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
         }
@@ -216,7 +182,6 @@ impl Outputs<'_> {
             world.bodies().flat_map(|b| blueprint.bodies[b].models.iter().map(|v| v.kind().to_string())).collect();
         models.sort();
         models.dedup();
-        let work = self.steps as f64 * nodes as f64;
         Summary {
             scene: blueprint.name.clone(),
             dimension: D,
@@ -231,7 +196,8 @@ impl Outputs<'_> {
             steps: self.steps,
             time: world.time(),
             wall_seconds: self.wall,
-            nanoseconds_per_node_step: if work > 0.0 { self.wall * 1e9 / work } else { 0.0 },
+            resumed_at: self.resumed_at,
+            nanoseconds_per_node_step: self.nanoseconds(nodes),
             simd: world.simd().name().into(),
             threads: world.threads(),
             reproducibility: "everywhere".into(),
@@ -253,11 +219,7 @@ impl Outputs<'_> {
                 angular: if D == 2 { vec![m.angular[2]] } else { m.angular.to_vec() },
             },
             state_hash: format!("{:016x}", world.state_hash()),
-            warnings: world
-                .warnings()
-                .into_iter()
-                .map(|w| WarningSummary { code: w.code, message: w.message, count: w.count })
-                .collect(),
+            warnings: self.all_warnings(world),
             files,
         }
     }
@@ -327,25 +289,47 @@ impl Outputs<'_> {
         Ok(name.into())
     }
 
+    /// Wall-clock time per node and substep [ns]; none where there was no such work.
+    fn nanoseconds(&self, nodes: usize) -> Option<f64> {
+        let work = self.steps as f64 * nodes as f64;
+        (work > 0.0).then(|| self.wall * 1e9 / work)
+    }
+
+    /// What was odd: in the scene, in the world, on the way.
+    fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
+        let of_world = world.warnings().into_iter();
+        let of_world = of_world.map(|w| WarningSummary { code: w.code, message: w.message, count: w.count });
+        self.warnings.iter().cloned().chain(of_world).collect()
+    }
+
     /// A few lines for people.
     pub(crate) fn talk<const D: usize>(&self, world: &World<D>) {
         let e = world.energy();
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
+        let from = self.resumed_at.map_or(String::new(), |t| format!("{t:.3} s to "));
+        let speed = match self.nanoseconds(nodes) {
+            Some(nanoseconds) => format!(" in {:.2} s ({nanoseconds:.2} ns per node and step)", self.wall),
+            None if self.steps == 0 => ", no steps".into(),
+            None => format!(" in {:.2} s", self.wall),
+        };
         eprintln!(
-            "{}: {:.3} s of {} nodes in {:.2} s ({:.2} ns per node and step), energy {:.6} J; {:.6} J unexplained, \
-             {:.2e} of the most that moved",
+            "{}: {from}{:.3} s of {}{speed}, energy {:.6} J; {:.6} J unexplained, {:.2e} of the most that moved",
             world.blueprint().name,
             world.time(),
-            nodes,
-            self.wall,
-            self.wall * 1e9 / (self.steps.max(1) as f64 * nodes.max(1) as f64),
+            counted(nodes as u64, "node", "nodes"),
             e.total(),
             e.loss_integrator,
             e.closure,
         );
-        for warning in world.warnings() {
-            eprintln!("warning[{}]: {} ({} times)", warning.code, warning.message, warning.count);
+        for warning in self.all_warnings(world) {
+            let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
+            eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
         }
         eprintln!("written to {}", self.folder.path("").display());
     }
+}
+
+/// `1 node`, `2 nodes`.
+pub(crate) fn counted(count: u64, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
