@@ -5,7 +5,12 @@ use std::path::PathBuf;
 
 /// Elastically deformable bodies: run a scene, look at what happened, measure it.
 #[derive(Debug, Parser)]
-#[command(name = "opruga", version, about, after_help = "Without a command, `opruga` runs the scene `ball`.")]
+#[command(
+    name = "opruga",
+    version,
+    max_term_width = 110,
+    after_help = "Without a command, `opruga` runs the scene `ball`."
+)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -82,7 +87,7 @@ pub(crate) struct BenchVertices {
 pub(crate) struct Check {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// Override a parameter: PATH=VALUE, such as time.substeps=64
+    /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
     /// Print what was found, or the errors, as JSON
@@ -101,12 +106,15 @@ pub(crate) struct Run {
     /// A scene file, or the name of a scene that comes with the program [default: ball]
     #[arg(conflicts_with = "resume")]
     pub(crate) scene: Option<String>,
-    /// The simulated time at which the run ends, instead of what the scene says, also of a resumed run; 0 writes the
-    /// state at the start [s]
+    /// The simulated time at which the run ends, instead of what the scene says [s]
+    ///
+    /// Whole frames are run, the last one to this time or just beyond it. It is the same for a resumed run: one that
+    /// goes on from t = 5 with --seconds 8 runs for 3 s. 0 writes the state at the start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
-    /// Pictures of the animation for each second of simulated time, above 0 up to 240; never more than the scene has
-    /// frames
+    /// Pictures of the animation for each second of simulated time
+    ///
+    /// Above 0 up to 240; never more than the scene has frames.
     #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
     pub(crate) fps: f64,
     /// The folder for the output [default: out/SCENE]
@@ -118,7 +126,10 @@ pub(crate) struct Run {
     /// Threads, 1 to 256; the results do not depend on them
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Override a parameter: PATH=VALUE, such as time.substeps=64
+    /// Override a parameter, such as time.substeps=64; may be given several times
+    ///
+    /// The path is the way through the scene file: integrator.kind=heun, body.ball.models.pressure.nRT=50,
+    /// body.0.mass=2, world.gravity=[0,0]. Entries of lists go by number, name or kind.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
     /// Print the summary, or an error, as JSON
@@ -130,11 +141,15 @@ pub(crate) struct Run {
     /// Write the animation as video.gif instead of video.mp4
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) gif: bool,
-    /// Go on from a checkpoint, which holds its scene and what --set has changed; other options are given anew
+    /// Go on from the checkpoint of an earlier run, to the same bits
+    ///
+    /// The checkpoint holds its scene and what --set has changed in it. Other options are given anew.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Write a checkpoint, and the table so far, every so many seconds on the clock: a run that is killed loses no more
-    /// than that, and goes on with --resume; 0: at the end only
+    /// Seconds on the clock between two checkpoints on the way; 0: at the end only
+    ///
+    /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` are there up to then, and
+    /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
     /// Run even if the step is above the stable limit

@@ -29,6 +29,9 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             let _ = error.print();
+            if let Some(scene) = scene_without_run(&error) {
+                eprintln!("  = hint: opruga run {scene}");
+            }
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
@@ -49,5 +52,16 @@ fn main() -> ExitCode {
             failure.print(json);
             ExitCode::from(failure.exit_code())
         }
+    }
+}
+
+/// The scene that somebody wants to run who left out `run`.
+fn scene_without_run(error: &clap::Error) -> Option<String> {
+    use clap::error::{ContextKind, ContextValue};
+    match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) if word.ends_with(".toml") || opruga::scenes::find(word).is_some() => {
+            Some(opruga::io::problem::visible(word))
+        }
+        _ => None,
     }
 }

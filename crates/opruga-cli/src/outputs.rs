@@ -37,8 +37,8 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// Prepares the columns, and pictures at the wanted rate as far as memory allows.
-    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Recorder {
+    /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
+    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Result<Recorder, Failure> {
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> = ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas"]
             .into_iter()
@@ -71,7 +71,17 @@ impl Recorder {
                 bytes >> 20
             );
         }
-        Recorder {
+        let rate = film_rate(every, frame);
+        if !call.no_pictures && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
+            return Err(Failure::Call {
+                message: format!(
+                    "no film can have {rate:e} pictures per second: --fps {}, frames of {frame} s",
+                    call.fps
+                ),
+                hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
+            });
+        }
+        Ok(Recorder {
             table: NumberTable::new(columns),
             bodies,
             first_probe,
@@ -81,7 +91,7 @@ impl Recorder {
             frame,
             arrows: call.arrows,
             gif: call.gif,
-        }
+        })
     }
 
     /// Keeps what there is to see of the present frame.
@@ -120,6 +130,11 @@ impl Recorder {
             self.moments.push(scenery.capture(world, self.arrows));
         }
     }
+}
+
+/// Pictures per second of simulated time, if every so manieth frame is kept.
+fn film_rate(every: u64, frame: f64) -> f64 {
+    1.0 / (every as f64 * frame)
 }
 
 fn angular_axes<const D: usize>() -> &'static [&'static str] {
@@ -261,7 +276,7 @@ impl Outputs<'_> {
         let [width, height] = if recorder.gif { [640, 480] } else { [800, 600] };
         let style = draw::Style { width, height, ..draw::Style::default() };
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
-        let rate = 1.0 / (recorder.every as f64 * recorder.frame);
+        let rate = film_rate(recorder.every, recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
             for (number, moment) in recorder.moments.iter().enumerate() {
                 // An interrupted film is cut short, but a film has at least one frame.

@@ -109,6 +109,7 @@ impl Job<'_> {
         if let Some(saved) = &self.resumed {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error))?;
         }
+        let mut recorder = Recorder::new(&mut world, call, frames)?;
         let folder = output_folder(call, source)?;
         let mut keeper =
             Keeper::new(&folder, source, &self.reading.overrides, call.checkpoint_every, call.resume.as_deref());
@@ -117,7 +118,6 @@ impl Job<'_> {
         // A second handler in the same process (tests) is no error: the first one stays.
         let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
         let bar = progress_bar(frames);
-        let mut recorder = Recorder::new(&mut world, call, frames);
         let start = Instant::now();
         let first = world.frames();
         let mut failure = None;

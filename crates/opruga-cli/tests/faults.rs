@@ -180,6 +180,7 @@ fn old_output_is_not_replaced_unasked() {
     let output = opruga(folder.path(), &[&SHORT[..], &["p"]].concat());
     assert_eq!(code(&output), 4);
     assert!(said(&output).contains("already holds thesis.tex"), "{}", said(&output));
+    assert_eq!(contents(&folder.path().join("p")).len(), 1, "nothing of ours is left beside it");
     assert_eq!(code(&opruga(folder.path(), &[&SHORT[..], &["p", "--force"]].concat())), 0);
     assert_eq!(std::fs::read(folder.path().join("p/thesis.tex")).expect("still there"), b"years of work");
 }

@@ -245,6 +245,38 @@ fn mixed_units_are_warned_of() {
     }
 }
 
+/// A rate that no film can have is found before the run, not after it.
+#[test]
+fn a_film_that_cannot_be_is_refused_before_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let slow = ["run", "pressures", "--set", "time.seconds=2e9", "--fps", "1e-9", "--out", "o"];
+    let output = opruga(folder.path(), &slow);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(
+        said(&output).contains("--fps 0.000000001") && said(&output).contains("0.0001 to 10000"),
+        "{}",
+        said(&output)
+    );
+    assert!(!folder.path().join("o").exists());
+    for fps in ["0", "-1", "nan", "inf", "1e9", "241"] {
+        let output = opruga(folder.path(), &["run", "pressures", "--fps", fps]);
+        assert_eq!(code(&output), 2, "{fps}: {}", said(&output));
+        assert!(said(&output).contains("allowed: numbers above 0 up to 240"), "{fps}: {}", said(&output));
+    }
+    let output = opruga(folder.path(), &["run", "pressures", "--fps", "0.0002", "--seconds", "0.1", "--out", "o"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+}
+
+#[test]
+fn who_leaves_out_run_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (word, hint) in [("ball", true), ("mine.toml", true), ("bananas", false)] {
+        let output = opruga(folder.path(), &[word]);
+        assert_eq!(code(&output), 2);
+        assert_eq!(said(&output).contains(&format!("= hint: opruga run {word}")), hint, "{}", said(&output));
+    }
+}
+
 /// With --json whatever is said is JSON: errors of the call, warnings of the scene, and what a check finds.
 #[test]
 fn with_json_nothing_else_is_said() {

@@ -303,6 +303,7 @@ impl OutputFolder {
                 }
             })?;
         }
+        let locked_before = path.join(LOCK).exists();
         let lock = OpenOptions::new()
             .create(true)
             .truncate(false)
@@ -336,6 +337,10 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
+                if !locked_before {
+                    // Nothing of ours is left in a folder that is somebody else's.
+                    let _ = fs::remove_file(path.join(LOCK));
+                }
                 let message = format!(
                     "the folder already holds {} files, among them {}",
                     names.len(),

@@ -144,7 +144,8 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
-        return Err(SceneError::new("read.not_regular_file", "this is no regular file"));
+        let what = if about.is_dir() { "this is a folder" } else { "this is no regular file" };
+        return Err(SceneError::new("read.not_regular_file", what));
     }
     let too_large = |size: u64| {
         SceneError::new("scene.too_large", format!("the scene has {size} bytes"))
