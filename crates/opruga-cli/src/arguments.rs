@@ -108,8 +108,9 @@ pub(crate) struct Run {
     pub(crate) scene: Option<String>,
     /// The simulated time at which the run ends, instead of what the scene says [s]
     ///
-    /// Whole frames are run, the last one to this time or just beyond it. It is the same for a resumed run: one that
-    /// goes on from t = 5 with --seconds 8 runs for 3 s. 0 writes the state at the start.
+    /// Whole frames are run, the last one to this time or just beyond it. A resumed run that goes on from t = 5 with
+    /// --seconds 8 runs for 3 s; without it, it ends where the earlier run was meant to end. 0 writes the state at the
+    /// start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     /// Pictures of the animation for each second of simulated time
@@ -143,7 +144,8 @@ pub(crate) struct Run {
     pub(crate) gif: bool,
     /// Go on from the checkpoint of an earlier run, to the same bits
     ///
-    /// The checkpoint holds its scene and what --set has changed in it. Other options are given anew.
+    /// The checkpoint holds its scene, what --set and --seconds have changed in it, --lenient and --allow-unstable. Other
+    /// options are given anew. Its output is that of the rest of the run, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
     /// Seconds on the clock between two checkpoints on the way; 0: at the end only

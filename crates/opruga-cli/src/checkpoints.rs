@@ -19,10 +19,21 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 /// The form of the payload; another one belongs to another version of the program.
 const FORM: &str = "run 2";
 
+/// How a run was called, as far as going on with it depends on that.
+#[derive(Clone, Default)]
+pub(crate) struct Calling {
+    /// What `--set` and `--seconds` have changed in the scene.
+    pub(crate) overrides: Vec<(String, String)>,
+    /// Whether unknown fields are warnings.
+    pub(crate) lenient: bool,
+    /// Whether a step above the stable limit is a warning.
+    pub(crate) allow_unstable: bool,
+}
+
 /// A checkpoint's payload: the snapshot and how the run was called.
 pub(crate) struct SavedRun {
     pub(crate) name: String,
-    pub(crate) overrides: Vec<(String, String)>,
+    pub(crate) calling: Calling,
     /// Frames since the start.
     pub(crate) frames: u64,
     /// Simulated time [s].
@@ -39,11 +50,13 @@ impl SavedRun {
         };
         text(FORM);
         text(&self.name);
-        text(&self.overrides.len().to_string());
-        for (path, value) in &self.overrides {
+        let Calling { overrides, lenient, allow_unstable } = &self.calling;
+        text(&overrides.len().to_string());
+        for (path, value) in overrides {
             text(path);
             text(value);
         }
+        out.extend([u8::from(*lenient), u8::from(*allow_unstable)]);
         out.extend(self.frames.to_le_bytes());
         out.extend(self.time.to_le_bytes());
         out.extend(&self.snapshot);
@@ -67,10 +80,12 @@ impl SavedRun {
         for _ in 0..count {
             overrides.push((text()?, text()?));
         }
+        let ([lenient, allow_unstable], bytes) = bytes.split_first_chunk::<2>()?;
+        let calling = Calling { overrides, lenient: *lenient == 1, allow_unstable: *allow_unstable == 1 };
         let (frames, bytes) = bytes.split_first_chunk::<8>()?;
         let (time, snapshot) = bytes.split_first_chunk::<8>()?;
         let (frames, time) = (u64::from_le_bytes(*frames), f64::from_le_bytes(*time));
-        Some(SavedRun { name, overrides, frames, time, snapshot: snapshot.to_vec() })
+        Some(SavedRun { name, calling, frames, time, snapshot: snapshot.to_vec() })
     }
 }
 
@@ -131,7 +146,7 @@ enum Older {
 pub(crate) struct Keeper<'a> {
     folder: &'a OutputFolder,
     source: &'a Source,
-    set: &'a [(String, String)],
+    calling: Calling,
     /// None: at the end only.
     every: Option<Duration>,
     next: Option<Instant>,
@@ -145,7 +160,7 @@ impl<'a> Keeper<'a> {
     pub(crate) fn new(
         folder: &'a OutputFolder,
         source: &'a Source,
-        set: &'a [(String, String)],
+        calling: Calling,
         seconds: f64,
         resumed: Option<&Path>,
     ) -> Keeper<'a> {
@@ -162,7 +177,7 @@ impl<'a> Keeper<'a> {
         };
         let every = (seconds > 0.0).then(|| Duration::from_secs_f64(seconds));
         let next = every.map(|every| Instant::now() + every);
-        Keeper { folder, source, set, every, next, older, failed: None }
+        Keeper { folder, source, calling, every, next, older, failed: None }
     }
 
     /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
@@ -188,7 +203,7 @@ impl<'a> Keeper<'a> {
         self.folder.write("diagnostics.csv", true, |out| table.write(out))?;
         let saved = SavedRun {
             name: self.source.name.clone(),
-            overrides: self.set.to_vec(),
+            calling: self.calling.clone(),
             frames: world.frames(),
             time: world.time(),
             snapshot: world.snapshot(),

@@ -9,11 +9,12 @@ use crate::source::{Source, overrides};
 use opruga::core::spec::{Spec, nearest};
 use opruga::core::stability::Stability;
 use opruga::draw;
-use opruga::io::safe_write::safe_write;
+use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::{Notice, scene};
 use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
 use serde_json::json;
 use std::fmt::Write as _;
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
 /// Reads a scene, builds its world, and says what is in it.
@@ -214,13 +215,19 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
         let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
         return Err(Failure::range("--only", only, &sizes.join(", ")));
     }
+    if let Some(path) = &call.plot {
+        // Better now than after minutes of measuring.
+        try_write(path)?;
+    }
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };
     let mut rows = Vec::new();
     for (bodies, vertices) in bench::ROWS {
         if call.only.is_some_and(|only| only != vertices) {
             continue;
         }
-        eprint!("\r{bodies} × {vertices} …                ");
+        if std::io::stderr().is_terminal() {
+            eprint!("\r{bodies} × {vertices} …                ");
+        }
         let mut scenery = None;
         let mut draw_frame = |world: &mut World<2>| {
             let scenery = scenery.get_or_insert_with(|| opruga::pictures::Scenery::new(world));
@@ -234,15 +241,17 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
             bench::time(bodies, vertices, &call.integrator, &options, call.seconds, drawing).map_err(Failure::call)?,
         );
     }
-    eprintln!("\r                              ");
-    if let Some(path) = &call.plot {
-        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
-        safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
+    if std::io::stderr().is_terminal() {
+        eprint!("\r                              \r");
     }
     if call.json {
         print_data(&format!("{}\n", json!({"rows": rows})))?;
     } else {
         print_data(&bench::table(&rows))?;
+    }
+    if let Some(path) = &call.plot {
+        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
+        safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
     }
     Ok(0)
 }

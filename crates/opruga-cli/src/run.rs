@@ -1,7 +1,7 @@
 //! `opruga run`: scene → world → frames → files.
 
 use crate::arguments::Run;
-use crate::checkpoints::{self, Keeper, SavedRun};
+use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
 use crate::outputs::{Outputs, Recorder};
 use crate::source::{Source, overrides};
@@ -29,21 +29,23 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     }
     let simd = simd_from_environment()?;
     let mut set = overrides(&call.set)?;
+    if let Some(seconds) = call.seconds {
+        // A checkpoint remembers when the run was meant to end as it remembers everything that was set.
+        set.push(("time.seconds".into(), seconds.to_string()));
+    }
     let (source, resumed) = match &call.resume {
         None => (Source::find(call.scene.as_deref().unwrap_or("ball"))?, None),
         Some(path) => {
             let (saved, source) = checkpoints::open(path)?;
-            set.splice(0..0, saved.overrides.clone());
+            set.splice(0..0, saved.calling.overrides.clone());
             (source, Some(saved))
         }
     };
-    let reading = scene::Options {
-        lenient: call.lenient,
-        strict: call.strict,
-        overrides: set.clone(),
-        ..scene::Options::default()
-    };
-    let world = Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };
+    let calling = |of: fn(&Calling) -> bool| resumed.as_ref().is_some_and(|saved| of(&saved.calling));
+    let lenient = call.lenient || calling(|saved| saved.lenient) && !call.strict;
+    let allow_unstable = call.allow_unstable || calling(|saved| saved.allow_unstable);
+    let reading = scene::Options { lenient, strict: call.strict, overrides: set.clone(), ..scene::Options::default() };
+    let world = Options { threads: call.threads.into(), simd, allow_unstable, batches: true };
     let (blueprint, notices) = source.read(&reading, &world)?;
     if !call.json {
         notices.iter().for_each(|notice| eprintln!("{notice}"));
@@ -96,14 +98,11 @@ struct Job<'a> {
 impl Job<'_> {
     fn run<const D: usize>(self, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
         let (call, source) = (self.call, self.source);
-        if let Some(seconds) = call.seconds {
-            blueprint.time.seconds = seconds;
-        }
         blueprint.name.clone_from(&source.name);
         let (seconds, frame) = (blueprint.time.seconds, blueprint.time.frame);
         let frames = (seconds / frame - 1e-9).ceil().max(0.0) as u64;
         if let Some(saved) = self.resumed.as_ref().filter(|saved| saved.frames >= frames) {
-            return Err(at_the_end(call, saved, seconds));
+            return Err(at_the_end(saved, seconds));
         }
         let mut world = source.build(blueprint, &self.reading, &self.world)?;
         if let Some(saved) = &self.resumed {
@@ -111,8 +110,12 @@ impl Job<'_> {
         }
         let mut recorder = Recorder::new(&mut world, call, frames)?;
         let folder = output_folder(call, source)?;
-        let mut keeper =
-            Keeper::new(&folder, source, &self.reading.overrides, call.checkpoint_every, call.resume.as_deref());
+        let calling = Calling {
+            overrides: self.reading.overrides.clone(),
+            lenient: self.reading.lenient,
+            allow_unstable: self.world.allow_unstable,
+        };
+        let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         // A second handler in the same process (tests) is no error: the first one stays.
@@ -173,13 +176,11 @@ impl Job<'_> {
 }
 
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.
-fn at_the_end(call: &Run, saved: &SavedRun, seconds: f64) -> Failure {
-    let message =
-        format!("the checkpoint is at t = {} s, and the run ends at {seconds} s: nothing is left to do", saved.time);
-    let whose = if call.seconds.is_some() { "--seconds" } else { "the scene's `time.seconds`" };
+fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
+    let time = saved.time;
     Failure::Call {
-        message,
-        hint: Some(format!("{whose} is when the run ends: --seconds T with T above {}", saved.time)),
+        message: format!("the checkpoint is at t = {time} s, and the run ends at {seconds} s: nothing is left to do"),
+        hint: Some(format!("--seconds is the simulated time at which the run ends: give one above {time}")),
     }
 }
 

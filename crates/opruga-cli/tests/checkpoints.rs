@@ -77,6 +77,36 @@ fn a_run_that_is_killed_goes_on_from_a_whole_checkpoint() {
     assert_eq!(names, [".opruga-lock", "checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
 }
 
+/// What a run was called with, it is resumed with: its end, its changes of the scene, and what it was allowed.
+#[test]
+fn a_killed_run_is_resumed_as_it_was_called() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let text = String::from_utf8(opruga(folder, &["new", "mine", "--force"]).stderr).expect("text");
+    assert!(text.contains("mine.toml"), "{text}");
+    let path = folder.join("mine.toml");
+    let text = std::fs::read_to_string(&path).expect("a scene");
+    std::fs::write(&path, text.replace("seed = 1 ", "sede = 1 ")).expect("a file");
+    // A hair above the stated limit, which keeps a margin to the true one.
+    let check = opruga(folder, &["check", "mine.toml", "--lenient", "--json"]);
+    let check: Value = serde_json::from_slice(&check.stdout).expect("JSON");
+    let limit = check["stability"][0]["largest_stable_step"].as_f64().expect("a limit");
+    let frame = format!("time.frame={}", 1.005 * limit * 32.0);
+    let call = ["run", "mine.toml", "--lenient", "--seconds", "3", "--set", &frame, "--allow-unstable"];
+    let unstable = opruga(folder, &[&call[..7], &["--out", "u"]].concat());
+    assert!(said(&unstable).contains("error[step.unstable]"), "{}", said(&unstable));
+    let whole = summary(folder, &[&call[..], &["--out", "whole"]].concat());
+    let arguments = [&call[..], &["--no-pictures", "--out", "o", "--checkpoint-every", "0.0001"]].concat();
+    let mut child = program(folder, &arguments).spawn().expect("the program runs");
+    until("no checkpoint is written", || folder.join("o/checkpoint").exists());
+    child.kill().expect("it runs");
+    child.wait().expect("it ends");
+    // Neither the file nor the options are needed any more.
+    std::fs::remove_file(&path).expect("a file");
+    let rest = summary(folder, &["run", "--resume", "o/checkpoint", "--out", "rest"]);
+    assert_eq!((hash(&rest), &rest["time"], &rest["h"]), (hash(&whole), &whole["time"], &whole["h"]));
+}
+
 /// Row 82: a damaged, missing or foreign checkpoint is refused, and the one before it is offered if it is whole.
 #[test]
 fn a_damaged_checkpoint_offers_the_one_before_it() {

@@ -43,7 +43,11 @@ fn a_resumed_run_with_nothing_left_to_do_says_so() {
         let output = opruga(folder.path(), &["run", "--resume", "a/checkpoint", "--seconds", seconds, "--out", "b"]);
         assert_eq!(code(&output), 2, "{}", said(&output));
         assert!(said(&output).contains("the checkpoint is at t = 0.5 s") && said(&output).contains(text));
-        assert!(said(&output).contains("= hint: --seconds is when the run ends"), "{}", said(&output));
+        assert!(
+            said(&output).contains("= hint: --seconds is the simulated time at which the run ends: give one above 0.5"),
+            "{}",
+            said(&output)
+        );
         assert!(!folder.path().join("b").exists(), "nothing is written");
     }
     let rest = summary(folder.path(), &["run", "--resume", "a/checkpoint", "--seconds", "0.75", "--out", "c"]);
@@ -51,12 +55,18 @@ fn a_resumed_run_with_nothing_left_to_do_says_so() {
     assert_eq!(rest["steps"], 15 * 40, "the steps of this run");
     let help = printed(&opruga(folder.path(), &["run", "--help"]));
     assert!(help.contains("The simulated time at which the run ends"), "{help}");
-    // Of a run that has come to the end of its scene, that is where it ends.
+    // A run that has come to its end, that of the scene or another, is not made longer unasked.
     std::fs::write(folder.path().join("s.toml"), scene("")).expect("a file");
-    summary(folder.path(), &["run", "s.toml", "--out", "s"]);
-    let output = opruga(folder.path(), &["run", "--resume", "s/checkpoint", "--out", "t"]);
+    for end in [&[][..], &["--seconds", "0.05"]] {
+        summary(folder.path(), &[&["run", "s.toml", "--out", "s", "--force"], end].concat());
+        let output = opruga(folder.path(), &["run", "--resume", "s/checkpoint", "--out", "t"]);
+        assert_eq!(code(&output), 2);
+        assert!(said(&output).contains("nothing is left to do"), "{}", said(&output));
+    }
+    // More frames than can be counted are refused, whoever asks for them.
+    let output = opruga(folder.path(), &["run", "s.toml", "--seconds", "1e7", "--set", "time.frame=1e-6"]);
     assert_eq!(code(&output), 2);
-    assert!(said(&output).contains("the scene's `time.seconds` is when the run ends"), "{}", said(&output));
+    assert!(said(&output).contains("at most 1e12 frames"), "{}", said(&output));
 }
 
 /// What the reader finds and what a world of the rest refuses come together, in the order of their lines.
@@ -133,7 +143,7 @@ fn what_is_not_there_is_no_error_in_a_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("meine.toml"), scene("")).expect("a file");
     std::fs::create_dir(folder.path().join("ball")).expect("a folder");
-    let cases: [(&[&str], i32, &str); 8] = [
+    let cases: [(&[&str], i32, &str); 9] = [
         (&["run", "zebra"], 4, "= hint: scenes that come with the program: ball, ball-as-published, "),
         (&["run", "presures"], 4, "= hint: did you mean `pressures`?"),
         (&["check", "meine"], 4, "= hint: did you mean `meine.toml`?"),
@@ -141,6 +151,7 @@ fn what_is_not_there_is_no_error_in_a_scene() {
         (&["run", "--resume", "zebra"], 4, "= hint: a run leaves it in the folder of its output"),
         (&["new", "nowhere/mine"], 4, "= hint: the folder around it is missing"),
         (&["new", ""], 2, "allowed: the name of a file"),
+        (&["bench", "vertices", "--plot", "nowhere/speed.svg"], 4, "= hint: the folder around it is missing"),
         (&["bench", "vertices", "--only", "7"], 2, "--only is 7; allowed: 8, 16, 36, "),
     ];
     for (arguments, exit, text) in cases {

@@ -73,6 +73,23 @@ pub fn safe_write(
     safe_write_through(path, force, |file| file, fill)
 }
 
+/// Tries whether a file could be written by [`safe_write`] with `force`; leaves what is there as it is.
+///
+/// # Errors
+/// `write.failed`.
+pub fn try_write(path: &Path) -> Result<(), WriteError> {
+    let mut trial = path.as_os_str().to_owned();
+    trial.push(".opruga-trial");
+    let trial = PathBuf::from(trial);
+    let of_path = |e| WriteError { path: path.to_path_buf(), ..e };
+    if path.is_dir() {
+        return Err(of_path(WriteError::new("write.failed", path, "this is a folder")));
+    }
+    safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
+        .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(path, 7, &e)))
+        .map_err(of_path)
+}
+
 /// Where the bytes of a file go, and how they are made to last.
 pub trait Target: Write {
     /// Returns when everything written so far would survive a loss of power.
@@ -358,10 +375,11 @@ impl OutputFolder {
             }
         }
         let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, _lock: lock };
-        let trial = folder.path(".opruga-trial");
-        safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
-            .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(&trial, 7, &e)))
-            .map_err(|e| WriteError { code: "write.folder", path: path.to_path_buf(), ..e })?;
+        try_write(&folder.path("trial")).map_err(|e| WriteError {
+            code: "write.folder",
+            path: path.to_path_buf(),
+            ..e
+        })?;
         Ok(folder)
     }
 
