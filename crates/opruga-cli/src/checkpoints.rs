@@ -95,7 +95,7 @@ impl SavedRun {
 pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
     let error = match read(path) {
         Ok(whole) => return Ok(whole),
-        Err(error) => SceneError { file: path.display().to_string(), ..error },
+        Err(error) => SceneError { file: path.display().to_string(), ..*error },
     };
     let hint = if path.is_dir() {
         let inside = path.join(NAME);
@@ -110,7 +110,7 @@ pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
         "read.failed" => "a run leaves it in the folder of its output, such as out/ball/checkpoint",
         _ => "try an older checkpoint; there is none beside this one",
     };
-    Err(Failure::Run(error.hint(hint.unwrap_or_else(|| otherwise.into()))))
+    Err(Failure::Run(Box::new(error.hint(hint.unwrap_or_else(|| otherwise.into())))))
 }
 
 fn previous(path: &Path) -> PathBuf {
@@ -119,7 +119,7 @@ fn previous(path: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn read(path: &Path) -> Result<(SavedRun, Source), SceneError> {
+fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
     let limits = scene::Limits { file_bytes: 1 << 40, ..scene::Limits::default() };
     let bytes = scene::bytes_of(path, &limits)?;
     let checkpoint = Checkpoint::read(&bytes).map_err(|e: CheckpointError| SceneError::from(&e))?;

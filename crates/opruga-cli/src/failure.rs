@@ -10,7 +10,7 @@ pub(crate) enum Failure {
     /// The scene has errors.
     Scene(Vec<SceneError>),
     /// A run diverged, or cannot go on from a checkpoint.
-    Run(SceneError),
+    Run(Box<SceneError>),
     /// A file cannot be written.
     Write(WriteError),
     /// A picture cannot be drawn or encoded.

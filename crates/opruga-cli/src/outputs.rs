@@ -149,8 +149,8 @@ pub(crate) struct Outputs<'a> {
     pub(crate) steps: u64,
     /// The time of the checkpoint that the run went on from [s].
     pub(crate) resumed_at: Option<f64>,
-    /// What the reader of the scene found odd, and what went wrong on the way.
-    pub(crate) warnings: Vec<WarningSummary>,
+    /// What was odd in the call and in the scene, and went wrong on the way; all of it was told when it was found.
+    pub(crate) told: Vec<WarningSummary>,
     pub(crate) stop: &'a AtomicBool,
 }
 
@@ -310,11 +310,11 @@ impl Outputs<'_> {
         (work > 0.0).then(|| self.wall * 1e9 / work)
     }
 
-    /// What was odd: in the scene, in the world, on the way.
+    /// What was odd: in the call, in the scene, on the way, in the world.
     fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
         let of_world = world.warnings().into_iter();
         let of_world = of_world.map(|w| WarningSummary { code: w.code, message: w.message, count: w.count });
-        self.warnings.iter().cloned().chain(of_world).collect()
+        self.told.iter().cloned().chain(of_world).collect()
     }
 
     /// A few lines for people.
@@ -336,10 +336,15 @@ impl Outputs<'_> {
             e.loss_integrator,
             e.closure,
         );
-        for warning in self.all_warnings(world) {
+        for warning in world.warnings() {
             let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
             eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
         }
+        self.say_where();
+    }
+
+    /// Where the output lies.
+    pub(crate) fn say_where(&self) {
         eprintln!("written to {}", self.folder.path("").display());
     }
 }

@@ -3,12 +3,12 @@
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
-use crate::outputs::{Outputs, Recorder};
+use crate::outputs::{Outputs, Recorder, counted};
 use crate::source::{Source, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
-use opruga::io::{Notice, scene};
 use opruga::{Options, Simd};
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -47,10 +47,23 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     let reading = scene::Options { lenient, strict: call.strict, overrides: set.clone(), ..scene::Options::default() };
     let world = Options { threads: call.threads.into(), simd, allow_unstable, batches: true };
     let (blueprint, notices) = source.read(&reading, &world)?;
+    let mut told: Vec<WarningSummary> = notices
+        .iter()
+        .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.message.clone(), count: n.count as u64 })
+        .collect();
     if !call.json {
         notices.iter().for_each(|notice| eprintln!("{notice}"));
     }
-    let job = Job { call, source: &source, reading, world, notices, resumed };
+    let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+    if world.threads > cores {
+        let message =
+            format!("{} threads on {}: more are no faster", world.threads, counted(cores as u64, "core", "cores"));
+        if !call.json {
+            eprintln!("warning[threads.above_cores]: {message}");
+        }
+        told.push(WarningSummary { code: "threads.above_cores".into(), message, count: 1 });
+    }
+    let job = Job { call, source: &source, reading, world, told, resumed };
     match blueprint {
         AnyBlueprint::Plane(blueprint) => job.run(blueprint),
         AnyBlueprint::Space(blueprint) => job.run(blueprint),
@@ -91,7 +104,8 @@ struct Job<'a> {
     source: &'a Source,
     reading: scene::Options,
     world: Options,
-    notices: Vec<Notice>,
+    /// Warnings so far.
+    told: Vec<WarningSummary>,
     resumed: Option<SavedRun>,
 }
 
@@ -147,23 +161,21 @@ impl Job<'_> {
         }
         let wall = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
-        let notices = self.notices.iter().map(|notice| WarningSummary {
-            code: notice.about.code.into(),
-            message: notice.about.message.clone(),
-            count: notice.count as u64,
-        });
         let outputs = Outputs {
             folder: &folder,
             source,
             wall,
             steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
-            warnings: notices.chain(keeper.warning()).collect(),
+            told: self.told.into_iter().chain(keeper.warning()).collect(),
             stop: &stop,
         };
         // What was computed until a failure is written all the same: it shows how the failure came about.
         let summary = outputs.write(&mut world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
+            if !call.json {
+                outputs.say_where();
+            }
             return Err(failure);
         }
         if call.json {

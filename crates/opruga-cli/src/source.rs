@@ -98,7 +98,7 @@ impl Source {
 
     /// An error of a run that is not the fault of a line.
     pub(crate) fn run_error(&self, error: &WorldError) -> Failure {
-        Failure::Run(SceneError { file: self.file.clone(), ..SceneError::from(error) })
+        Failure::Run(Box::new(SceneError { file: self.file.clone(), ..SceneError::from(error) }))
     }
 }
 

@@ -278,6 +278,26 @@ fn a_film_that_cannot_be_is_refused_before_the_run() {
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
+/// Row 78: more threads than cores are a warning, once; so is what was odd in the scene. A run that fails says where its
+/// output lies.
+#[test]
+fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("s.toml"), scene("colour = \"red\"\n")).expect("a file");
+    let output =
+        opruga(folder.path(), &["run", "s.toml", "--lenient", "--threads", "256", "--no-pictures", "--out", "o"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    for code in ["warning[scene.unknown_field]", "warning[threads.above_cores]: 256 threads on "] {
+        assert_eq!(said(&output).matches(code).count(), 1, "{}", said(&output));
+    }
+    let text = std::fs::read_to_string(folder.path().join("o/summary.json")).expect("a summary");
+    assert!(text.contains("scene.unknown_field") && text.contains("threads.above_cores"), "{text}");
+    let wild = ["run", "pressures", "--set", "time.substeps=1", "--allow-unstable", "--no-pictures", "--out", "w"];
+    let output = opruga(folder.path(), &wild);
+    assert_eq!(code(&output), 3);
+    assert!(said(&output).contains("written to w/\n"), "{}", said(&output));
+}
+
 #[test]
 fn who_leaves_out_run_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
