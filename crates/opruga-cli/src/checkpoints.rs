@@ -1,7 +1,7 @@
 //! Checkpoints of a run: what is in them, when they are written, and which older one stands in for a damaged one.
 
 use crate::failure::Failure;
-use crate::source::Source;
+use crate::source::{Source, argument};
 use opruga::World;
 use opruga::io::SceneError;
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
@@ -103,7 +103,11 @@ pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
     } else {
         let older = previous(path);
         read(&older).ok().map(|(run, _)| {
-            format!("the checkpoint before it is whole, at t = {} s: --resume {}", run.time, older.display())
+            format!(
+                "the checkpoint before it is whole, at t = {} s: --resume {}",
+                run.time,
+                argument(&older.display().to_string())
+            )
         })
     };
     let otherwise = match error.code {

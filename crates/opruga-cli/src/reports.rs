@@ -5,10 +5,11 @@ use crate::bench;
 use crate::failure::{Failure, print_data};
 use crate::outputs::counted;
 use crate::run::simd_from_environment;
-use crate::source::{Source, overrides};
+use crate::source::{Source, argument, overrides};
 use opruga::core::spec::{Spec, nearest};
 use opruga::core::stability::Stability;
 use opruga::draw;
+use opruga::io::problem::visible;
 use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::{Notice, scene};
 use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
@@ -177,7 +178,8 @@ pub(crate) fn new(name: &str, force: bool) -> Result<u8, Failure> {
     let title = path.file_stem().map_or_else(|| stem.to_string(), |s| s.to_string_lossy().into_owned());
     let text = opruga::io::template::commented(&title);
     safe_write(&path, force, |out| out.write_all(text.as_bytes()))?;
-    eprintln!("{} written; try `opruga run {}`", path.display(), path.display());
+    let shown = path.display().to_string();
+    eprintln!("{} written; try `opruga run {}`", visible(&shown), argument(&shown));
     Ok(0)
 }
 
@@ -205,7 +207,7 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("the integrators are {}", integrators.join(", ")),
         };
-        let message = format!("there is no integrator `{}`", opruga::io::problem::visible(&call.integrator));
+        let message = format!("there is no integrator `{}`", visible(&call.integrator));
         return Err(Failure::Call { message, hint: Some(hint) });
     }
     if let Some(only) = call.only.filter(|only| !bench::ROWS.iter().any(|row| row.1 == *only)) {

@@ -201,5 +201,7 @@ fn progress_bar(frames: u64) -> indicatif::ProgressBar {
         return indicatif::ProgressBar::hidden();
     }
     let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {msg}, {eta} left");
-    indicatif::ProgressBar::new(frames).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+    indicatif::ProgressBar::new(frames)
+        .with_message("t = 0 s")
+        .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
 }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::nearest;
+use opruga::io::problem::visible;
 use opruga::io::refusals::in_scene;
 use opruga::io::{Notice, SceneError, scene};
 use opruga::{Options, World, WorldError};
@@ -35,6 +36,11 @@ impl Source {
         let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
             let absent = std::fs::metadata(path).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);
             let error = if absent { missing(name) } else { error };
+            let beside = format!("{}.toml", name.trim_end_matches(['/', '\\']));
+            let error = match path.is_dir() && Path::new(&beside).is_file() {
+                true => error.hint(format!("did you mean `{}`?", visible(&beside))),
+                false => error,
+            };
             Failure::Scene(vec![SceneError { file: file.clone(), ..error }])
         })?;
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
@@ -122,9 +128,20 @@ fn missing(name: &str) -> SceneError {
     });
     let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
     SceneError::new("read.failed", "there is no such file, and no such scene comes with the program").hint(match near {
-        Some(near) => format!("did you mean `{}`?", opruga::io::problem::visible(&near)),
+        Some(near) => format!("did you mean `{}`?", visible(&near)),
         None => format!("scenes that come with the program: {}", scenes()),
     })
+}
+
+/// The name of a file as it is typed on the command line.
+pub(crate) fn argument(path: &str) -> String {
+    // Else it would be taken for an option.
+    let path = if path.starts_with('-') { format!("./{path}") } else { path.to_string() };
+    if path.chars().all(|c| c.is_alphanumeric() || "._-/\\:".contains(c)) {
+        path
+    } else {
+        format!("'{}'", visible(&path).replace('\'', "'\\''"))
+    }
 }
 
 /// Splits the overrides of a call.

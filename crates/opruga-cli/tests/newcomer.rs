@@ -142,9 +142,14 @@ fn an_unstable_step_is_explained_line_by_line() {
 fn what_is_not_there_is_no_error_in_a_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("meine.toml"), scene("")).expect("a file");
-    std::fs::create_dir(folder.path().join("ball")).expect("a folder");
-    let cases: [(&[&str], i32, &str); 9] = [
+    std::fs::write(folder.path().join("unser.toml"), scene("")).expect("a file");
+    for name in ["ball", "unser"] {
+        std::fs::create_dir(folder.path().join(name)).expect("a folder");
+    }
+    let cases: [(&[&str], i32, &str); 11] = [
         (&["run", "zebra"], 4, "= hint: scenes that come with the program: ball, ball-as-published, "),
+        (&["run", "qqqqqqqqqqqqqqqqqqqqqqqq"], 4, "= hint: scenes that come with the program: ball, "),
+        (&["check", "unser"], 4, "= hint: did you mean `unser.toml`?"),
         (&["run", "presures"], 4, "= hint: did you mean `pressures`?"),
         (&["check", "meine"], 4, "= hint: did you mean `meine.toml`?"),
         (&["check", "miene.toml"], 4, "= hint: did you mean `meine.toml`?"),
@@ -186,6 +191,14 @@ fn a_new_scene_replaces_an_old_one_only_with_force() {
     assert_eq!(std::fs::read(&path).expect("a file"), b"years of work");
     assert_eq!(code(&at(&["new", "a.b", "--force"])), 0);
     assert_eq!(code(&at(&["check", "a.b.toml"])), 0);
+    // What it says to try can be typed as it stands.
+    for (name, typed) in [("plain", "plain.toml"), ("two words", "'two words.toml'"), ("it's", "'it'\\''s.toml'")] {
+        let output = at(&["new", name]);
+        assert!(said(&output).contains(&format!("try `opruga run {typed}`")), "{}", said(&output));
+    }
+    let output = at(&["new", "--", "-x"]);
+    assert!(said(&output).contains("try `opruga run ./-x.toml`"), "{}", said(&output));
+    assert_eq!(code(&at(&["check", "./-x.toml"])), 0);
     let json = at(&["new", "a.b", "--json"]);
     let error: Value = serde_json::from_slice(&json.stderr).expect("JSON");
     assert_eq!(error["code"], "write.exists");
