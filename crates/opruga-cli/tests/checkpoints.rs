@@ -202,10 +202,10 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
 fn a_run_that_is_put_to_sleep_computes_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let awake = summary(folder, &["run", "thousand-balls", "--seconds", "1", "--out", "a"]);
-    let arguments = ["run", "thousand-balls", "--seconds", "1", "--out", "b", "--no-pictures", "--json"];
-    let child = program(folder, &[&arguments[..], &["--checkpoint-every", "0.05"]].concat()).spawn().expect("it runs");
-    until("the run does not begin", || folder.join("b/.opruga-lock").exists());
+    let awake = summary(folder, &["run", "thousand-balls", "--seconds", "1.5", "--out", "a"]);
+    let arguments = ["run", "thousand-balls", "--seconds", "1.5", "--out", "b", "--no-pictures", "--json"];
+    let child = program(folder, &[&arguments[..], &["--checkpoint-every", "0.01"]].concat()).spawn().expect("it runs");
+    until("the run does not begin", || folder.join("b/checkpoint").exists());
     signal(&child, "STOP");
     let asleep = Instant::now();
     std::thread::sleep(Duration::from_millis(400));
