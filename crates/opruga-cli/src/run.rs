@@ -120,7 +120,7 @@ impl Job<'_> {
         }
         let mut world = source.build(blueprint, &self.reading, &self.world)?;
         if let Some(saved) = &self.resumed {
-            world.restore(&saved.snapshot).map_err(|error| source.run_error(&error))?;
+            world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
         let mut recorder = Recorder::new(&mut world, call, frames)?;
         let folder = output_folder(call, source)?;
@@ -145,7 +145,7 @@ impl Job<'_> {
                 break;
             }
             if let Err(error) = world.frame() {
-                failure = Some(source.run_error(&error));
+                failure = Some(source.run_error(&error, world.time()));
                 break;
             }
             recorder.record(&mut world);

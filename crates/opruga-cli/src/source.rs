@@ -102,9 +102,14 @@ impl Source {
         Ok(built)
     }
 
-    /// An error of a run that is not the fault of a line.
-    pub(crate) fn run_error(&self, error: &WorldError) -> Failure {
-        Failure::Run(Box::new(SceneError { file: self.file.clone(), ..SceneError::from(error) }))
+    /// An error that ends a run at a time, such as that of a command; it is not the fault of a line.
+    pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
+        let said = SceneError::from(error);
+        let message = match error {
+            WorldError::Diverged { .. } | WorldError::Snapshot(_) => said.message.clone(),
+            _ => format!("at t = {time} s: {}", said.message),
+        };
+        Failure::Run(Box::new(SceneError { file: self.file.clone(), message, ..said }))
     }
 }
 

@@ -309,6 +309,14 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     let output = opruga(folder.path(), &wild);
     assert_eq!(code(&output), 3);
     assert!(said(&output).contains("written to w/\n"), "{}", said(&output));
+    // A command may make the step too long on the way: the time is said.
+    let harden =
+        "[[command]]\ndo = \"set\"\nat = 0.05\npath = \"body.ring.models.mass_spring.stiffness\"\nvalue = 9e9\n";
+    std::fs::write(folder.path().join("h.toml"), scene(harden)).expect("a file");
+    let output = opruga(folder.path(), &["run", "h.toml", "--no-pictures", "--out", "h"]);
+    assert_eq!(code(&output), 2);
+    assert!(said(&output).contains("h.toml: error[step.unstable]: at t = 0.05 s: the step h = "), "{}", said(&output));
+    assert!(said(&output).contains("written to h/\n"), "{}", said(&output));
 }
 
 #[test]
