@@ -5,7 +5,12 @@ use std::path::PathBuf;
 
 /// Elastically deformable bodies: run a scene, look at what happened, measure it.
 #[derive(Debug, Parser)]
-#[command(name = "opruga", version, about, after_help = "Without a command, `opruga` runs the scene `ball`.")]
+#[command(
+    name = "opruga",
+    version,
+    max_term_width = 110,
+    after_help = "Without a command, `opruga` runs the scene `ball`."
+)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -25,8 +30,14 @@ pub(crate) enum Command {
     },
     /// Write a commented scene NAME.toml to start from
     New {
-        /// The name of the scene
+        /// The name of the scene, with or without .toml
         name: String,
+        /// Replace the file that is there
+        #[arg(long)]
+        force: bool,
+        /// Print an error as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Print the reference of the scene format (Markdown), made from what the models say of themselves
     Reference {
@@ -49,7 +60,7 @@ pub(crate) enum Bench {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchVertices {
-    /// Threads
+    /// Threads, 1 to 256; the results do not depend on them
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
     /// Count the drawing of every frame too
@@ -58,17 +69,17 @@ pub(crate) struct BenchVertices {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// The integrator
+    /// The integrator: one of those of `opruga list`
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
-    /// Only rows with this many vertices
-    #[arg(long)]
+    /// Only rows whose rings have this many vertices
+    #[arg(long, value_name = "VERTICES")]
     pub(crate) only: Option<usize>,
-    /// Processor time spent on each row [s]
+    /// Processor time spent on each row, above 0 up to 600 [s]
     #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,
-    /// Write the log–log plot to this SVG file
-    #[arg(long)]
+    /// Write the log–log plot to this SVG file, replacing what is there
+    #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
 }
 
@@ -76,41 +87,50 @@ pub(crate) struct BenchVertices {
 pub(crate) struct Check {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// Override a parameter: PATH=VALUE
+    /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Print an error as JSON
+    /// Print what was found, or the errors, as JSON
     #[arg(long)]
     pub(crate) json: bool,
     /// Warnings are errors
     #[arg(long)]
     pub(crate) strict: bool,
     /// Unknown fields are warnings
-    #[arg(long)]
+    #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Run {
-    /// A scene file, or the name of a scene that comes with the program
-    #[arg(default_value = "ball")]
-    pub(crate) scene: String,
-    /// How long to run, instead of what the scene says; 0 writes the state at the start [s]
+    /// A scene file, or the name of a scene that comes with the program [default: ball]
+    #[arg(conflicts_with = "resume")]
+    pub(crate) scene: Option<String>,
+    /// The simulated time at which the run ends, instead of what the scene says [s]
+    ///
+    /// Whole frames are run, the last one to this time or just beyond it. A resumed run that goes on from t = 5 with
+    /// --seconds 8 runs for 3 s; without it, it ends where the earlier run was meant to end. 0 writes the state at the
+    /// start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
-    /// Frames of the animation for each second
+    /// Pictures of the animation for each second of simulated time
+    ///
+    /// Above 0 up to 240; never more than the scene has frames.
     #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
     pub(crate) fps: f64,
     /// The folder for the output [default: out/SCENE]
-    #[arg(long)]
+    #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace what is there
+    /// Replace the output that is there
     #[arg(long)]
     pub(crate) force: bool,
-    /// Threads
+    /// Threads, 1 to 256; the results do not depend on them
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Override a parameter: PATH=VALUE, such as time.substeps=64
+    /// Override a parameter, such as time.substeps=64; may be given several times
+    ///
+    /// The path is the way through the scene file: integrator.kind=heun, body.ball.models.pressure.nRT=50,
+    /// body.0.mass=2, world.gravity=[0,0]. Entries of lists go by number, name or kind.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
     /// Print the summary, or an error, as JSON
@@ -120,22 +140,31 @@ pub(crate) struct Run {
     #[arg(long)]
     pub(crate) no_pictures: bool,
     /// Write the animation as video.gif instead of video.mp4
-    #[arg(long)]
+    #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) gif: bool,
-    /// Go on from a checkpoint
+    /// Go on from the checkpoint of an earlier run, to the same bits
+    ///
+    /// The checkpoint holds its scene, what --set and --seconds have changed in it, --lenient and --allow-unstable. Other
+    /// options are given anew. Its output is that of the rest of the run, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
+    /// Seconds on the clock between two checkpoints on the way; 0: at the end only
+    ///
+    /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` are there up to then, and
+    /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
+    pub(crate) checkpoint_every: f64,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,
-    /// Warnings are errors
+    /// Warnings before the run are errors
     #[arg(long)]
     pub(crate) strict: bool,
     /// Unknown fields are warnings
-    #[arg(long)]
+    #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
     /// Draw forces of the pressure and of the pointer
-    #[arg(long)]
+    #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
 }
 
@@ -157,7 +186,8 @@ impl Command {
             Command::Check(check) => check.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
-            Command::New { .. } | Command::Reference { .. } => false,
+            Command::New { json, .. } => *json,
+            Command::Reference { .. } => false,
         }
     }
 }

@@ -1,7 +1,5 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
-use opruga::WorldError;
-use opruga::io::checkpoint::CheckpointError;
 use opruga::io::problem::SceneError;
 use opruga::io::safe_write::WriteError;
 use serde_json::{Value, json};
@@ -11,12 +9,10 @@ use serde_json::{Value, json};
 pub(crate) enum Failure {
     /// The scene has errors.
     Scene(Vec<SceneError>),
-    /// The world refuses or diverged.
-    World { error: WorldError, file: String },
+    /// A run diverged, or cannot go on from a checkpoint.
+    Run(Box<SceneError>),
     /// A file cannot be written.
     Write(WriteError),
-    /// A checkpoint cannot be read.
-    Checkpoint { error: CheckpointError, file: String },
     /// A picture cannot be drawn or encoded.
     Draw(String),
     /// stdout, or a folder for the output, cannot be written.
@@ -42,6 +38,11 @@ impl From<Vec<SceneError>> for Failure {
 }
 
 impl Failure {
+    /// A number of the call that is out of its range.
+    pub(crate) fn range(option: &str, value: impl core::fmt::Display, allowed: &str) -> Failure {
+        Failure::call(format!("{option} is {value}; allowed: {allowed}"))
+    }
+
     /// A call that makes no sense.
     pub(crate) fn call(message: impl Into<String>) -> Failure {
         Failure::Call { message: message.into(), hint: None }
@@ -51,10 +52,10 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),
-            Failure::World { error: WorldError::Diverged { .. } | WorldError::Step { .. }, .. } => 3,
-            Failure::World { .. } | Failure::Call { .. } => 2,
+            Failure::Run(error) if error.code.starts_with("run.") => 3,
+            Failure::Run(error) => error.exit_code() as u8,
+            Failure::Call { .. } => 2,
             Failure::Write(_) | Failure::Draw(_) | Failure::Output(_) => 4,
-            Failure::Checkpoint { .. } => 2,
             Failure::Interrupted => 130,
             Failure::ClosedPipe => 0,
         }
@@ -74,9 +75,8 @@ impl Failure {
                 }
                 first
             }
-            Failure::World { error, file } => plain(error.code(), error.to_string(), file, None),
+            Failure::Run(error) => error.to_json(),
             Failure::Write(error) => error.to_json(),
-            Failure::Checkpoint { error, file } => error.to_json(file),
             Failure::Draw(message) => plain("draw.failed", message.clone(), "", None),
             Failure::Output(message) => plain("write.failed", message.clone(), "", None),
             Failure::Call { message, hint } => plain("call", message.clone(), "", hint.as_deref()),
@@ -98,16 +98,15 @@ impl Failure {
                 for error in errors {
                     let _ = writeln!(err, "{error}");
                 }
-                writeln!(err, "{} error{} in the scene", errors.len(), if errors.len() == 1 { "" } else { "s" })
+                if errors.len() > 1 { writeln!(err, "{} errors", errors.len()) } else { Ok(()) }
             }
-            Failure::World { error, file } => writeln!(err, "{file}: error[{}]: {error}", error.code()),
+            Failure::Run(error) => writeln!(err, "{error}"),
             Failure::Write(error) => writeln!(err, "{error}"),
-            Failure::Checkpoint { error, file } => writeln!(err, "{file}: error[{}]: {error}", error.code()),
             Failure::Draw(message) => writeln!(err, "error[draw.failed]: {message}"),
             Failure::Output(message) => writeln!(err, "error[write.failed]: {message}"),
             Failure::Call { message, hint } => {
                 let _ = writeln!(err, "error: {message}");
-                hint.as_ref().map_or(Ok(()), |h| writeln!(err, "hint: {h}"))
+                hint.as_ref().map_or(Ok(()), |h| writeln!(err, "  = hint: {h}"))
             }
             Failure::Interrupted => writeln!(err, "interrupted; the files are closed"),
             Failure::ClosedPipe => Ok(()),

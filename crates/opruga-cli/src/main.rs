@@ -3,11 +3,13 @@
 
 mod arguments;
 mod bench;
+mod checkpoints;
 mod failure;
 mod outputs;
 mod plots;
 mod reports;
 mod run;
+mod source;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -17,8 +19,19 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {
+            // Whoever asks for JSON reads errors as JSON, those of the call too.
+            let text = error.to_string();
+            let message = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
+            let failure = Failure::Call { message, hint: Some("--help tells what can be said".into()) };
+            failure.print(true);
+            return ExitCode::from(failure.exit_code());
+        }
         Err(error) => {
             let _ = error.print();
+            if let Some(scene) = scene_without_run(&error) {
+                eprintln!("  = hint: opruga run {scene}");
+            }
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
@@ -28,7 +41,7 @@ fn main() -> ExitCode {
         Command::Run(run) => run::run(run),
         Command::Check(check) => reports::check(check),
         Command::List { json } => reports::list(*json),
-        Command::New { name } => reports::new(name),
+        Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),
         Command::Bench { what } => reports::bench(what),
     };
@@ -39,5 +52,16 @@ fn main() -> ExitCode {
             failure.print(json);
             ExitCode::from(failure.exit_code())
         }
+    }
+}
+
+/// The scene that somebody wants to run who left out `run`.
+fn scene_without_run(error: &clap::Error) -> Option<String> {
+    use clap::error::{ContextKind, ContextValue};
+    match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) if word.ends_with(".toml") || opruga::scenes::find(word).is_some() => {
+            Some(opruga::io::problem::visible(word))
+        }
+        _ => None,
     }
 }

@@ -1,11 +1,11 @@
 //! What a run leaves behind: tables, checkpoint, strip, video, plots.
 
 use crate::arguments::Run;
+use crate::checkpoints::{Keeper, NAME, PREVIOUS};
 use crate::failure::Failure;
-use crate::run::Source;
+use crate::source::Source;
 use opruga::World;
 use opruga::draw;
-use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::OutputFolder;
 use opruga::io::tables::{
     EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final,
@@ -36,50 +36,9 @@ pub(crate) struct Recorder {
     gif: bool,
 }
 
-/// A checkpoint's payload: the snapshot and how the run was called.
-pub(crate) struct SavedRun {
-    pub(crate) name: String,
-    pub(crate) overrides: Vec<(String, String)>,
-    pub(crate) snapshot: Vec<u8>,
-}
-
-impl SavedRun {
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut out = Vec::new();
-        let mut text = |t: &str| {
-            out.extend((t.len() as u64).to_le_bytes());
-            out.extend(t.as_bytes());
-        };
-        text(&self.name);
-        text(&self.overrides.len().to_string());
-        for (path, value) in &self.overrides {
-            text(path);
-            text(value);
-        }
-        out.extend(&self.snapshot);
-        out
-    }
-    /// Reads a payload; none if it has another form.
-    pub(crate) fn read(mut bytes: &[u8]) -> Option<SavedRun> {
-        let mut text = || {
-            let (length, rest) = bytes.split_first_chunk::<8>()?;
-            let (text, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-            bytes = rest;
-            String::from_utf8(text.to_vec()).ok()
-        };
-        let name = text()?;
-        let count: usize = text()?.parse().ok()?;
-        let mut overrides = Vec::new();
-        for _ in 0..count {
-            overrides.push((text()?, text()?));
-        }
-        Some(SavedRun { name, overrides, snapshot: bytes.to_vec() })
-    }
-}
-
 impl Recorder {
-    /// Prepares the columns, and pictures at the wanted rate as far as memory allows.
-    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Recorder {
+    /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
+    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Result<Recorder, Failure> {
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
@@ -120,7 +79,17 @@ impl Recorder {
                 bytes >> 20
             );
         }
-        Recorder {
+        let rate = film_rate(every, frame);
+        if !call.no_pictures && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
+            return Err(Failure::Call {
+                message: format!(
+                    "no film can have {rate:e} pictures per second: --fps {}, frames of {frame} s",
+                    call.fps
+                ),
+                hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
+            });
+        }
+        Ok(Recorder {
             table: NumberTable::new(columns),
             bodies,
             first_probe,
@@ -130,7 +99,7 @@ impl Recorder {
             frame,
             arrows: call.arrows,
             gif: call.gif,
-        }
+        })
     }
 
     /// Keeps what there is to see of the present frame.
@@ -174,6 +143,11 @@ impl Recorder {
     }
 }
 
+/// Pictures per second of simulated time, if every so manieth frame is kept.
+fn film_rate(every: u64, frame: f64) -> f64 {
+    1.0 / (every as f64 * frame)
+}
+
 fn angular_axes<const D: usize>() -> &'static [&'static str] {
     if D == 2 { &[""] } else { &[".x", ".y", ".z"] }
 }
@@ -182,17 +156,28 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 pub(crate) struct Outputs<'a> {
     pub(crate) folder: &'a OutputFolder,
     pub(crate) source: &'a Source,
-    pub(crate) set: &'a [(String, String)],
     pub(crate) wall: f64,
     pub(crate) steps: u64,
+    /// The time of the checkpoint that the run went on from [s].
+    pub(crate) resumed_at: Option<f64>,
+    /// What was odd in the call and in the scene, and went wrong on the way; all of it was told when it was found.
+    pub(crate) told: Vec<WarningSummary>,
     pub(crate) stop: &'a AtomicBool,
 }
 
 impl Outputs<'_> {
     /// Writes every file; returns the summary as JSON.
-    pub(crate) fn write<const D: usize>(&self, world: &mut World<D>, recorder: Recorder) -> Result<String, Failure> {
-        let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), "checkpoint".into()];
-        self.folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
+    pub(crate) fn write<const D: usize>(
+        &self,
+        world: &mut World<D>,
+        recorder: Recorder,
+        keeper: &mut Keeper<'_>,
+    ) -> Result<String, Failure> {
+        let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), NAME.into()];
+        keeper.write(world, &recorder.table)?;
+        if self.folder.path(PREVIOUS).exists() {
+            files.push(PREVIOUS.into());
+        }
         let numbers: Vec<usize> = world.bodies().collect();
         let nodes = |body: usize| 0..world.node_count(body) as u32;
         let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
@@ -205,10 +190,6 @@ impl Outputs<'_> {
             velocities,
         });
         self.folder.write("final.csv", false, |out| write_final(out, rows))?;
-        let saved =
-            SavedRun { name: self.source.name.clone(), overrides: self.set.to_vec(), snapshot: world.snapshot() };
-        let checkpoint = Checkpoint { scene: self.source.text.clone(), payload: saved.to_bytes() };
-        self.folder.write("checkpoint", true, |out| checkpoint.write(out))?;
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
         }
@@ -227,7 +208,6 @@ impl Outputs<'_> {
             world.bodies().flat_map(|b| blueprint.bodies[b].models.iter().map(|v| v.kind().to_string())).collect();
         models.sort();
         models.dedup();
-        let work = self.steps as f64 * nodes as f64;
         Summary {
             scene: blueprint.name.clone(),
             dimension: D,
@@ -242,7 +222,8 @@ impl Outputs<'_> {
             steps: self.steps,
             time: world.time(),
             wall_seconds: self.wall,
-            nanoseconds_per_node_step: if work > 0.0 { self.wall * 1e9 / work } else { 0.0 },
+            resumed_at: self.resumed_at,
+            nanoseconds_per_node_step: self.nanoseconds(nodes),
             simd: world.simd().name().into(),
             threads: world.threads(),
             reproducibility: "everywhere".into(),
@@ -265,11 +246,7 @@ impl Outputs<'_> {
                 angular: if D == 2 { vec![m.angular[2]] } else { m.angular.to_vec() },
             },
             state_hash: format!("{:016x}", world.state_hash()),
-            warnings: world
-                .warnings()
-                .into_iter()
-                .map(|w| WarningSummary { code: w.code, message: w.message, count: w.count })
-                .collect(),
+            warnings: self.all_warnings(world),
             files,
         }
     }
@@ -311,7 +288,7 @@ impl Outputs<'_> {
         let [width, height] = if recorder.gif { [640, 480] } else { [800, 600] };
         let style = draw::Style { width, height, ..draw::Style::default() };
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
-        let rate = 1.0 / (recorder.every as f64 * recorder.frame);
+        let rate = film_rate(recorder.every, recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
             for (number, moment) in recorder.moments.iter().enumerate() {
                 // An interrupted film is cut short, but a film has at least one frame.
@@ -339,25 +316,52 @@ impl Outputs<'_> {
         Ok(name.into())
     }
 
+    /// Wall-clock time per node and substep [ns]; none where there was no such work.
+    fn nanoseconds(&self, nodes: usize) -> Option<f64> {
+        let work = self.steps as f64 * nodes as f64;
+        (work > 0.0).then(|| self.wall * 1e9 / work)
+    }
+
+    /// What was odd: in the call, in the scene, on the way, in the world.
+    fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
+        let of_world = world.warnings().into_iter();
+        let of_world = of_world.map(|w| WarningSummary { code: w.code, message: w.message, count: w.count });
+        self.told.iter().cloned().chain(of_world).collect()
+    }
+
     /// A few lines for people.
     pub(crate) fn talk<const D: usize>(&self, world: &World<D>) {
         let e = world.energy();
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
+        let from = self.resumed_at.map_or(String::new(), |t| format!("{t:.3} s to "));
+        let speed = match self.nanoseconds(nodes) {
+            Some(nanoseconds) => format!(" in {:.2} s ({nanoseconds:.2} ns per node and step)", self.wall),
+            None if self.steps == 0 => ", no steps".into(),
+            None => format!(" in {:.2} s", self.wall),
+        };
         eprintln!(
-            "{}: {:.3} s of {} nodes in {:.2} s ({:.2} ns per node and step), energy {:.6} J; {:.6} J unexplained, \
-             {:.2e} of the most that moved",
+            "{}: {from}{:.3} s of {}{speed}, energy {:.6} J; {:.6} J unexplained, {:.2e} of the most that moved",
             world.blueprint().name,
             world.time(),
-            nodes,
-            self.wall,
-            self.wall * 1e9 / (self.steps.max(1) as f64 * nodes.max(1) as f64),
+            counted(nodes as u64, "node", "nodes"),
             e.total(),
             e.loss_integrator,
             e.closure,
         );
         for warning in world.warnings() {
-            eprintln!("warning[{}]: {} ({} times)", warning.code, warning.message, warning.count);
+            let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
+            eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
         }
+        self.say_where();
+    }
+
+    /// Where the output lies.
+    pub(crate) fn say_where(&self) {
         eprintln!("written to {}", self.folder.path("").display());
     }
+}
+
+/// `1 node`, `2 nodes`.
+pub(crate) fn counted(count: u64, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }

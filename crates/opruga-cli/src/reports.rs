@@ -3,92 +3,149 @@
 use crate::arguments::{Bench, Check};
 use crate::bench;
 use crate::failure::{Failure, print_data};
-use crate::run::{find_scene, overrides, simd_from_environment};
-use opruga::core::spec::Spec;
+use crate::outputs::counted;
+use crate::run::simd_from_environment;
+use crate::source::{Source, argument, overrides};
+use opruga::core::spec::{Spec, nearest};
+use opruga::core::stability::Stability;
 use opruga::draw;
-use opruga::io::safe_write::safe_write;
-use opruga::io::scene;
-use opruga::{Options, World, blueprint::AnyBlueprint};
+use opruga::io::problem::visible;
+use opruga::io::safe_write::{safe_write, try_write};
+use opruga::io::{Notice, scene};
+use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
 use serde_json::json;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
 
 /// Reads a scene, builds its world, and says what is in it.
 pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
-    let source = find_scene(&call.scene)?;
-    let options = scene::Options {
+    let source = Source::find(&call.scene)?;
+    let reading = scene::Options {
         lenient: call.lenient,
         strict: call.strict,
         overrides: overrides(&call.set)?,
         ..scene::Options::default()
     };
-    let (blueprint, notices) = scene::read(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;
-    for notice in &notices {
-        eprintln!("{notice}");
-    }
-    let text = match blueprint {
-        AnyBlueprint::Plane(b) => {
-            describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?)
-        }
-        AnyBlueprint::Space(b) => {
-            describe(&World::new(b, Options::default()).map_err(|e| world_error(e, &source.file))?)
-        }
+    let (blueprint, notices) = source.read(&reading, &Options::default())?;
+    let found = match blueprint {
+        AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),
+        AnyBlueprint::Space(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),
     };
-    print_data(&format!("{}: no errors\n{text}", source.file))?;
+    if call.json {
+        print_data(&format!("{}\n", found.to_json(&source.file, &notices)))?;
+    } else {
+        notices.iter().for_each(|notice| eprintln!("{notice}"));
+        print_data(&format!("{}: no errors\n{found}", source.file))?;
+    }
     Ok(0)
 }
 
-fn world_error(error: opruga::WorldError, file: &str) -> Failure {
-    Failure::World { error, file: file.to_string() }
+/// What a scene without errors holds.
+struct Found {
+    dimension: usize,
+    bodies: usize,
+    nodes: usize,
+    integrator: String,
+    h: f64,
+    substeps: u32,
+    stability: Vec<(String, Stability)>,
+    warnings: Vec<Warning>,
 }
 
-fn describe<const D: usize>(world: &World<D>) -> String {
-    let mut text = String::new();
-    let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
-    let bodies = world.bodies().count();
-    let plural = if bodies == 1 { "body" } else { "bodies" };
-    let _ = writeln!(text, "{bodies} {plural}, {nodes} nodes, {D} dimensions");
-    let _ = writeln!(
-        text,
-        "{}: h = {:.6e} s, {} substeps a frame",
-        world.integrators().join(", "),
-        world.h(),
-        world.blueprint().time.substeps
-    );
-    for (body, stability) in world.stability() {
-        let limit = stability.largest_stable_step.map_or("none".into(), |h| format!("{h:.4e} s"));
-        let s = &stability.spectrum;
-        let _ = writeln!(
-            text,
-            "  `{body}`: ω = {:.4e} rad/s, damping {:.4e} 1/s, largest stable step {limit}",
-            s.omega, s.damping
-        );
+impl Found {
+    fn of<const D: usize>(world: &World<D>) -> Found {
+        Found {
+            dimension: D,
+            bodies: world.bodies().count(),
+            nodes: world.bodies().map(|b| world.node_count(b)).sum(),
+            integrator: world.integrators().join(", "),
+            h: world.h(),
+            substeps: world.blueprint().time.substeps,
+            stability: world.stability().to_vec(),
+            warnings: world.warnings(),
+        }
     }
-    for warning in world.warnings() {
-        let _ = writeln!(text, "warning[{}]: {}", warning.code, warning.message);
+
+    fn to_json(&self, file: &str, notices: &[Notice]) -> serde_json::Value {
+        let stability = |(body, s): &(String, Stability)| {
+            json!({"body": body, "omega": s.spectrum.omega, "damping": s.spectrum.damping,
+                   "largest_stable_step": s.largest_stable_step})
+        };
+        let of_scene = notices.iter().map(|n| {
+            let mut object = n.about.to_json();
+            object["count"] = n.count.into();
+            object
+        });
+        let of_world = self.warnings.iter().map(|w| json!({"code": w.code, "message": w.message, "count": w.count}));
+        json!({
+            "file": file, "errors": 0, "dimension": self.dimension, "bodies": self.bodies, "nodes": self.nodes,
+            "integrator": self.integrator, "h": self.h, "substeps": self.substeps,
+            "stability": self.stability.iter().map(stability).collect::<Vec<_>>(),
+            "warnings": of_scene.chain(of_world).collect::<Vec<_>>(),
+        })
     }
-    text
+}
+
+impl core::fmt::Display for Found {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (bodies, nodes) =
+            (counted(self.bodies as u64, "body", "bodies"), counted(self.nodes as u64, "node", "nodes"));
+        writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
+        let substeps = counted(self.substeps.into(), "substep", "substeps");
+        writeln!(f, "{}: h = {:.6e} s, {substeps} a frame", self.integrator, self.h)?;
+        for (body, stability) in &self.stability {
+            let limit = stability.largest_stable_step.map_or("none".into(), |h| format!("{h:.4e} s"));
+            let s = &stability.spectrum;
+            let (omega, damping) = (s.omega, s.damping);
+            writeln!(f, "  `{body}`: ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s, largest stable step {limit}")?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning[{}]: {}", warning.code, warning.message)?;
+        }
+        Ok(())
+    }
+}
+
+/// Specifications of one kind, which may have one for each dimension.
+struct Kind {
+    kind: &'static str,
+    summary: &'static str,
+    dimensions: Vec<usize>,
+}
+
+/// One row for each kind, with all dimensions in which it exists.
+fn kinds(specs: &[&'static Spec]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> = Vec::new();
+    for spec in specs {
+        match kinds.iter_mut().find(|k| k.kind == spec.kind) {
+            Some(kind) => kind.dimensions.extend(spec.dimensions),
+            None => kinds.push(Kind { kind: spec.kind, summary: spec.summary, dimensions: spec.dimensions.to_vec() }),
+        }
+    }
+    for kind in &mut kinds {
+        kind.dimensions.sort_unstable();
+        kind.dimensions.dedup();
+    }
+    kinds
 }
 
 /// Lists what there is.
 pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
     let catalogue = opruga::catalogue();
-    let shapes = opruga::shapes::all();
-    let sections: [(&str, &[&Spec]); 4] = [
-        ("models", &catalogue.models),
-        ("integrators", &catalogue.integrators),
-        ("shapes", &shapes),
-        ("colliders", &catalogue.colliders),
+    let sections = [
+        ("models", kinds(&catalogue.models)),
+        ("integrators", kinds(&catalogue.integrators)),
+        ("shapes", kinds(&opruga::shapes::all())),
+        ("colliders", kinds(&catalogue.colliders)),
     ];
     let scenes: Vec<(&str, &str)> =
         opruga::scenes::names().map(|n| (n, opruga::scenes::title(opruga::scenes::find(n).unwrap_or("")))).collect();
     if as_json {
-        let rows = |specs: &[&Spec]| -> Vec<_> {
-            specs.iter().map(|s| json!({"kind": s.kind, "summary": s.summary, "dimensions": s.dimensions})).collect()
-        };
+        let row = |k: &Kind| json!({"kind": k.kind, "summary": k.summary, "dimensions": k.dimensions});
         let mut object = serde_json::Map::new();
-        for (name, specs) in sections {
-            object.insert(name.into(), rows(specs).into());
+        for (name, kinds) in &sections {
+            object.insert((*name).into(), kinds.iter().map(row).collect::<Vec<_>>().into());
         }
         let scenes: Vec<_> = scenes.iter().map(|(n, t)| json!({"name": n, "title": t})).collect();
         object.insert("scenes".into(), scenes.into());
@@ -96,10 +153,11 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         return Ok(0);
     }
     let mut text = String::new();
-    for (name, specs) in sections {
+    for (name, kinds) in &sections {
         let _ = writeln!(text, "{name}");
-        for spec in specs {
-            let _ = writeln!(text, "  {:<18} {}", spec.kind, spec.summary);
+        for kind in kinds {
+            let dimensions: Vec<String> = kind.dimensions.iter().map(|d| format!("{d}D")).collect();
+            let _ = writeln!(text, "  {:<18} {:<6} {}", kind.kind, dimensions.join(" "), kind.summary);
         }
     }
     let _ = writeln!(text, "scenes (opruga run NAME)");
@@ -111,13 +169,17 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
 }
 
 /// Writes a commented scene to start from.
-pub(crate) fn new(name: &str) -> Result<u8, Failure> {
+pub(crate) fn new(name: &str, force: bool) -> Result<u8, Failure> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
-    let path = Path::new(stem).with_extension("toml");
+    if stem.is_empty() || stem.ends_with(['/', '\\']) {
+        return Err(Failure::range("NAME", format!("`{name}`"), "the name of a file"));
+    }
+    let path = PathBuf::from(format!("{stem}.toml"));
     let title = path.file_stem().map_or_else(|| stem.to_string(), |s| s.to_string_lossy().into_owned());
     let text = opruga::io::template::commented(&title);
-    safe_write(&path, false, |out| out.write_all(text.as_bytes()))?;
-    eprintln!("{} written; try `opruga run {}`", path.display(), path.display());
+    safe_write(&path, force, |out| out.write_all(text.as_bytes()))?;
+    let shown = path.display().to_string();
+    eprintln!("{} written; try `opruga run {}`", visible(&shown), argument(&shown));
     Ok(0)
 }
 
@@ -137,10 +199,27 @@ pub(crate) fn reference(schema: bool) -> Result<u8, Failure> {
 pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
     let Bench::Vertices(call) = what;
     if !(call.seconds > 0.0 && call.seconds <= 600.0) {
-        return Err(Failure::call("--seconds: allowed are numbers above 0 up to 600"));
+        return Err(Failure::range("--seconds", call.seconds, "numbers above 0 up to 600"));
     }
-    if opruga::Registry::<2>::default().integrator(&call.integrator).is_none() {
-        return Err(Failure::call(format!("there is no integrator `{}`; `opruga list` shows them", call.integrator)));
+    let integrators: Vec<&str> = opruga::catalogue().integrators.iter().map(|s| s.kind).collect();
+    if !integrators.contains(&call.integrator.as_str()) {
+        let hint = match nearest(&call.integrator, integrators.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("the integrators are {}", integrators.join(", ")),
+        };
+        let message = format!("there is no integrator `{}`", visible(&call.integrator));
+        return Err(Failure::Call { message, hint: Some(hint) });
+    }
+    if let Some(only) = call.only.filter(|only| !bench::ROWS.iter().any(|row| row.1 == *only)) {
+        let mut sizes: Vec<usize> = bench::ROWS.iter().map(|row| row.1).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+        return Err(Failure::range("--only", only, &sizes.join(", ")));
+    }
+    if let Some(path) = &call.plot {
+        // Better now than after minutes of measuring.
+        try_write(path)?;
     }
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };
     let mut rows = Vec::new();
@@ -148,7 +227,9 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
         if call.only.is_some_and(|only| only != vertices) {
             continue;
         }
-        eprint!("\r{bodies} × {vertices} …                ");
+        if std::io::stderr().is_terminal() {
+            eprint!("\r{bodies} × {vertices} …                ");
+        }
         let mut scenery = None;
         let mut draw_frame = |world: &mut World<2>| {
             let scenery = scenery.get_or_insert_with(|| opruga::pictures::Scenery::new(world));
@@ -162,15 +243,17 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
             bench::time(bodies, vertices, &call.integrator, &options, call.seconds, drawing).map_err(Failure::call)?,
         );
     }
-    eprintln!("\r                              ");
-    if let Some(path) = &call.plot {
-        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
-        safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
+    if std::io::stderr().is_terminal() {
+        eprint!("\r                              \r");
     }
     if call.json {
         print_data(&format!("{}\n", json!({"rows": rows})))?;
     } else {
         print_data(&bench::table(&rows))?;
+    }
+    if let Some(path) = &call.plot {
+        let plot = crate::plots::of_bench(&rows).map_err(|e| Failure::Draw(e.to_string()))?;
+        safe_write(path, true, |out| out.write_all(plot.as_bytes()))?;
     }
     Ok(0)
 }

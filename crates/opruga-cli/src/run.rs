@@ -1,106 +1,77 @@
 //! `opruga run`: scene → world → frames → files.
 
 use crate::arguments::Run;
+use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
-use crate::outputs::{Outputs, Recorder};
+use crate::outputs::{Outputs, Recorder, counted};
+use crate::source::{Source, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::scene;
-use opruga::{Options, Simd, World};
+use opruga::io::tables::WarningSummary;
+use opruga::{Options, Simd};
 use std::io::IsTerminal as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// A scene's text and where it came from.
-pub(crate) struct Source {
-    pub(crate) name: String,
-    pub(crate) file: String,
-    pub(crate) text: String,
-}
-
-/// Finds a scene: a file, or one that comes with the program.
-pub(crate) fn find_scene(name: &str) -> Result<Source, Failure> {
-    let path = Path::new(name);
-    if path.is_file() || name.contains(['/', '\\']) || name.ends_with(".toml") || path.exists() {
-        let bytes = scene::bytes_of(path, &scene::Limits::default())
-            .map_err(|e| Failure::Scene(vec![opruga::io::SceneError { file: path.display().to_string(), ..e }]))?;
-        let stem = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
-        // Bytes that are no UTF-8 are refused by the reader, with their place.
-        return Ok(Source {
-            name: stem,
-            file: path.display().to_string(),
-            text: String::from_utf8_lossy(&bytes).into_owned(),
-        });
-    }
-    match opruga::scenes::find(name) {
-        Some(text) => Ok(Source { name: name.into(), file: format!("{name}.toml"), text: text.into() }),
-        None => {
-            let hint =
-                opruga::core::spec::nearest(name, opruga::scenes::names()).map(|n| format!("did you mean `{n}`?"));
-            Err(Failure::Scene(vec![opruga::io::SceneError {
-                file: name.to_string(),
-                hint: hint.or(Some("`opruga list` shows the scenes that come with the program".into())),
-                ..opruga::io::SceneError::new(
-                    "read.failed",
-                    "there is no such file, and no such scene comes with the program",
-                )
-            }]))
-        }
-    }
-}
-
-/// Splits `PATH=VALUE`.
-pub(crate) fn overrides(set: &[String]) -> Result<Vec<(String, String)>, Failure> {
-    let split = |s: &String| {
-        s.split_once('=').map(|(p, v)| (p.trim().to_string(), v.trim().to_string())).ok_or_else(|| Failure::Call {
-            message: format!("--set {s}: there is no `=`"),
-            hint: Some("--set PATH=VALUE, such as --set time.substeps=64".into()),
-        })
-    };
-    set.iter().map(split).collect()
-}
-
 /// Runs a scene.
 pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
-    if call.seconds.is_some_and(|s| !(0.0..=1e9).contains(&s)) {
-        return Err(Failure::call("--seconds: allowed are 0 to 1e9"));
+    if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
+        return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
     }
     if !(call.fps > 0.0 && call.fps <= 240.0) {
-        return Err(Failure::call("--fps: allowed are numbers above 0 up to 240"));
+        return Err(Failure::range("--fps", call.fps, "numbers above 0 up to 240"));
+    }
+    if !(0.0..=1e9).contains(&call.checkpoint_every) {
+        return Err(Failure::range("--checkpoint-every", call.checkpoint_every, "0 to 1e9"));
     }
     let simd = simd_from_environment()?;
     let mut set = overrides(&call.set)?;
-    let mut resumed = None;
-    let source = match &call.resume {
-        None => find_scene(&call.scene)?,
+    if let Some(seconds) = call.seconds {
+        // A checkpoint remembers when the run was meant to end as it remembers everything that was set.
+        set.push(("time.seconds".into(), seconds.to_string()));
+    }
+    let (source, resumed) = match &call.resume {
+        None => (Source::find(call.scene.as_deref().unwrap_or("ball"))?, None),
         Some(path) => {
-            let file = path.display().to_string();
-            let bytes = scene::bytes_of(path, &scene::Limits { file_bytes: 1 << 40, ..scene::Limits::default() })
-                .map_err(|e| Failure::Scene(vec![opruga::io::SceneError { file: file.clone(), ..e }]))?;
-            let refuse = |error| Failure::Checkpoint { error, file: file.clone() };
-            let checkpoint = Checkpoint::read(&bytes).map_err(refuse)?;
-            let saved = crate::outputs::SavedRun::read(&checkpoint.payload).ok_or_else(|| {
-                Failure::call(format!("{file}: this checkpoint belongs to another version of the program"))
-            })?;
-            set.splice(0..0, saved.overrides.clone());
-            let name = saved.name.clone();
-            resumed = Some(saved);
-            Source { file: format!("{name}.toml"), name, text: checkpoint.scene }
+            let (saved, source) = checkpoints::open(path)?;
+            set.splice(0..0, saved.calling.overrides.clone());
+            (source, Some(saved))
         }
     };
-    let options = scene::Options {
-        lenient: call.lenient,
-        strict: call.strict,
-        overrides: set.clone(),
-        ..scene::Options::default()
-    };
-    let (blueprint, notices) = scene::read(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;
-    for notice in &notices {
-        eprintln!("{notice}");
+    let calling = |of: fn(&Calling) -> bool| resumed.as_ref().is_some_and(|saved| of(&saved.calling));
+    let lenient = call.lenient || calling(|saved| saved.lenient) && !call.strict;
+    let allow_unstable = call.allow_unstable || calling(|saved| saved.allow_unstable);
+    let reading = scene::Options { lenient, strict: call.strict, overrides: set.clone(), ..scene::Options::default() };
+    let world = Options { threads: call.threads.into(), simd, allow_unstable, batches: true };
+    let (blueprint, notices) = source.read(&reading, &world)?;
+    let mut told: Vec<WarningSummary> = notices
+        .iter()
+        .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.message.clone(), count: n.count as u64 })
+        .collect();
+    if !call.json {
+        notices.iter().for_each(|notice| eprintln!("{notice}"));
     }
+    let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+    if world.threads > cores {
+        let message =
+            format!("{} threads on {}: more are no faster", world.threads, counted(cores as u64, "core", "cores"));
+        if !call.json {
+            eprintln!("warning[threads.above_cores]: {message}");
+        }
+        told.push(WarningSummary { code: "threads.above_cores".into(), message, count: 1 });
+    }
+    let job = Job { call, source: &source, reading, world, told, resumed };
+    match blueprint {
+        AnyBlueprint::Plane(blueprint) => job.run(blueprint),
+        AnyBlueprint::Space(blueprint) => job.run(blueprint),
+    }
+}
+
+/// The folder for the output; it is locked, and known to be writable.
+fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
     let folder = match &call.out {
         Some(path) => path.clone(),
         None => {
@@ -114,14 +85,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     };
     // A resumed run writes its own part only: it must not replace the part before it unasked.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
-    let folder = OutputFolder::open(&folder, existing)?;
-    let world_options =
-        Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };
-    let job = Job { call, source: &source, set: &set, folder, world_options, resumed };
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => job.run(blueprint),
-        AnyBlueprint::Space(blueprint) => job.run(blueprint),
-    }
+    Ok(OutputFolder::open(&folder, existing)?)
 }
 
 /// The vector instructions that `OPRUGA_SIMD` asks for.
@@ -138,33 +102,39 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
 struct Job<'a> {
     call: &'a Run,
     source: &'a Source,
-    set: &'a [(String, String)],
-    folder: OutputFolder,
-    world_options: Options,
-    resumed: Option<crate::outputs::SavedRun>,
+    reading: scene::Options,
+    world: Options,
+    /// Warnings so far.
+    told: Vec<WarningSummary>,
+    resumed: Option<SavedRun>,
 }
 
 impl Job<'_> {
     fn run<const D: usize>(self, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
-        if let Some(seconds) = self.call.seconds {
-            blueprint.time.seconds = seconds;
+        let (call, source) = (self.call, self.source);
+        blueprint.name.clone_from(&source.name);
+        let (seconds, frame) = (blueprint.time.seconds, blueprint.time.frame);
+        let frames = (seconds / frame - 1e-9).ceil().max(0.0) as u64;
+        if let Some(saved) = self.resumed.as_ref().filter(|saved| saved.frames >= frames) {
+            return Err(at_the_end(saved, seconds));
         }
-        blueprint.name.clone_from(&self.source.name);
-        let seconds = blueprint.time.seconds;
-        let frame = blueprint.time.frame;
-        let file = self.source.file.clone();
-        let world_error = |error| Failure::World { error, file: file.clone() };
-        let mut world = World::new(blueprint, self.world_options.clone()).map_err(world_error)?;
+        let mut world = source.build(blueprint, &self.reading, &self.world)?;
         if let Some(saved) = &self.resumed {
-            world.restore(&saved.snapshot).map_err(world_error)?;
+            world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
+        let mut recorder = Recorder::new(&mut world, call, frames)?;
+        let folder = output_folder(call, source)?;
+        let calling = Calling {
+            overrides: self.reading.overrides.clone(),
+            lenient: self.reading.lenient,
+            allow_unstable: self.world.allow_unstable,
+        };
+        let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         // A second handler in the same process (tests) is no error: the first one stays.
         let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-        let frames = (seconds / frame - 1e-9).ceil().max(0.0) as u64;
         let bar = progress_bar(frames);
-        let mut recorder = Recorder::new(&mut world, self.call, frames);
         let start = Instant::now();
         let first = world.frames();
         let mut failure = None;
@@ -175,10 +145,13 @@ impl Job<'_> {
                 break;
             }
             if let Err(error) = world.frame() {
-                failure = Some(world_error(error));
+                failure = Some(source.run_error(&error, world.time()));
                 break;
             }
             recorder.record(&mut world);
+            if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
+                bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", world.time()));
+            }
             bar.set_position(world.frames());
             let wall = start.elapsed().as_secs_f64();
             if wall > 0.0 {
@@ -189,19 +162,23 @@ impl Job<'_> {
         let wall = start.elapsed().as_secs_f64();
         bar.finish_and_clear();
         let outputs = Outputs {
-            folder: &self.folder,
-            source: self.source,
-            set: self.set,
+            folder: &folder,
+            source,
             wall,
             steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),
+            resumed_at: self.resumed.as_ref().map(|saved| saved.time),
+            told: self.told.into_iter().chain(keeper.warning()).collect(),
             stop: &stop,
         };
         // What was computed until a failure is written all the same: it shows how the failure came about.
-        let summary = outputs.write(&mut world, recorder)?;
+        let summary = outputs.write(&mut world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
+            if !call.json {
+                outputs.say_where();
+            }
             return Err(failure);
         }
-        if self.call.json {
+        if call.json {
             print_data(&format!("{summary}\n"))?;
         } else {
             outputs.talk(&world);
@@ -210,10 +187,21 @@ impl Job<'_> {
     }
 }
 
+/// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.
+fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
+    let time = saved.time;
+    Failure::Call {
+        message: format!("the checkpoint is at t = {time} s, and the run ends at {seconds} s: nothing is left to do"),
+        hint: Some(format!("--seconds is the simulated time at which the run ends: give one above {time}")),
+    }
+}
+
 fn progress_bar(frames: u64) -> indicatif::ProgressBar {
     if !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
     let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {msg}, {eta} left");
-    indicatif::ProgressBar::new(frames).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+    indicatif::ProgressBar::new(frames)
+        .with_message("t = 0 s")
+        .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
 }

@@ -1,27 +1,17 @@
 //! The program as its users meet it: files, exit codes, errors, interruption.
 #![allow(clippy::disallowed_methods)] // no physics here
 
+mod common;
+use common::*;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-
-fn opruga(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_opruga")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("an exit code")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use std::process::{Command, Stdio};
 
 #[test]
 fn a_run_writes_every_file_and_its_summary_keeps_the_contract() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = opruga(folder.path(), &["run", "pressures", "--seconds", "0.5", "--out", "o", "--json"]);
-    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(code(&output), 0, "{}", said(&output));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
     for key in [
         "schema",
@@ -83,7 +73,7 @@ fn a_run_writes_a_film() {
     let folder = tempfile::tempdir().expect("a folder");
     let run = |arguments: &[&str], out: &str| {
         let output = opruga(folder.path(), &[arguments, &["--out", out, "--json"]].concat());
-        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+        assert_eq!(code(&output), 0, "{}", said(&output));
         let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
         let files = summary["files"].as_array().expect("a list").clone();
         let films: Vec<&str> =
@@ -103,7 +93,7 @@ fn a_run_writes_a_film() {
 fn zero_seconds_write_the_state_at_the_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = opruga(folder.path(), &["run", "pressures", "--seconds", "0", "--out", "o", "--no-pictures"]);
-    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(code(&output), 0, "{}", said(&output));
     let last = std::fs::read_to_string(folder.path().join("o/final.csv")).expect("a table");
     let first = last.lines().nth(1).expect("a row");
     let cells: Vec<&str> = first.split(',').collect();
@@ -116,7 +106,7 @@ fn a_resumed_run_ends_with_the_bits_of_an_uninterrupted_one() {
     let folder = tempfile::tempdir().expect("a folder");
     let hash = |arguments: &[&str]| {
         let output = opruga(folder.path(), arguments);
-        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+        assert_eq!(code(&output), 0, "{}", said(&output));
         let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
         summary["state_hash"].as_str().expect("a text").to_string()
     };
@@ -149,7 +139,7 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
         .expect("a file");
     let bad = at(&["run", "bad.toml", "--out", "o"]);
     assert_eq!(code(&bad), 2);
-    assert!(text(&bad.stderr).contains("bad.toml:3:1"), "{}", text(&bad.stderr));
+    assert!(said(&bad).contains("bad.toml:3:1"), "{}", said(&bad));
     let json = at(&["check", "bad.toml", "--json"]);
     assert_eq!(code(&json), 2);
     let error: Value = serde_json::from_slice(&json.stderr).expect("stderr is JSON");
@@ -157,7 +147,7 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
         assert!(error.get(key).is_some(), "the error lacks {key}");
     }
     assert_eq!(code(&at(&["run", "nothing-of-that-name"])), 4);
-    assert!(text(&at(&["run", "presures"]).stderr).contains("did you mean `pressures`"));
+    assert!(said(&at(&["run", "presures"])).contains("did you mean `pressures`"));
     assert_eq!(code(&at(&["run", "--fps", "-3"])), 2);
     assert_eq!(code(&at(&["run", "--threads", "0"])), 2);
     assert_eq!(code(&at(&["run", "--threads", "257"])), 2);
@@ -169,15 +159,15 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
     let before = std::fs::read(folder.path().join("o/final.csv")).expect("a file");
     let again = at(&["run", "pressures", "--seconds", "0.2", "--out", "o", "--no-pictures"]);
     assert_eq!(code(&again), 4);
-    assert!(text(&again.stderr).contains("--force"), "{}", text(&again.stderr));
+    assert!(said(&again).contains("--force"), "{}", said(&again));
     assert_eq!(std::fs::read(folder.path().join("o/final.csv")).expect("a file"), before);
     let unstable = at(&["run", "pressures", "--set", "time.substeps=1", "--out", "u", "--no-pictures"]);
     assert_eq!(code(&unstable), 2);
-    assert!(text(&unstable.stderr).contains("substeps >="), "{}", text(&unstable.stderr));
+    assert!(said(&unstable).contains("substeps >="), "{}", said(&unstable));
     let diverged =
         at(&["run", "pressures", "--set", "time.substeps=1", "--out", "v", "--no-pictures", "--allow-unstable"]);
     assert_eq!(code(&diverged), 3);
-    assert!(text(&diverged.stderr).contains("node"), "{}", text(&diverged.stderr));
+    assert!(said(&diverged).contains("node"), "{}", said(&diverged));
 }
 
 #[test]
@@ -187,7 +177,7 @@ fn a_new_scene_runs_and_is_not_overwritten() {
     assert_eq!(code(&opruga(folder.path(), &["check", "mine.toml"])), 0);
     assert_eq!(code(&opruga(folder.path(), &["new", "mine"])), 4);
     let run = opruga(folder.path(), &["run", "mine.toml", "--seconds", "0.2", "--out", "o"]);
-    assert_eq!(code(&run), 0, "{}", text(&run.stderr));
+    assert_eq!(code(&run), 0, "{}", said(&run));
 }
 
 #[test]
@@ -197,7 +187,7 @@ fn lists_and_references_are_data_on_stdout() {
     let value: Value = serde_json::from_slice(&list.stdout).expect("JSON");
     let kinds = |section: &str| value[section].as_array().expect("a list").len();
     assert!(kinds("models") >= 2 && kinds("integrators") >= 5 && kinds("shapes") >= 7 && kinds("scenes") >= 10);
-    let reference = text(&opruga(folder.path(), &["reference"]).stdout);
+    let reference = printed(&opruga(folder.path(), &["reference"]));
     assert!(reference.contains("mass_spring") && reference.contains("nRT"));
     let schema = opruga(folder.path(), &["reference", "--schema"]);
     let schema: Value = serde_json::from_slice(&schema.stdout).expect("JSON");
@@ -217,7 +207,7 @@ fn a_reader_that_goes_away_is_no_failure() {
     drop(child.stdout.take());
     let status = child.wait_with_output().expect("it ends");
     assert_eq!(status.status.code(), Some(0));
-    assert!(!text(&status.stderr).contains("panicked"));
+    assert!(!said(&status).contains("panicked"));
 }
 
 #[cfg(unix)]
@@ -233,7 +223,7 @@ fn an_interrupted_run_closes_its_files_and_says_so() {
     std::thread::sleep(std::time::Duration::from_millis(1500));
     let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
     for file in ["summary.json", "final.csv", "diagnostics.csv", "checkpoint"] {
         assert!(folder.path().join("o").join(file).metadata().is_ok_and(|m| m.len() > 0), "{file}");
     }
@@ -250,7 +240,7 @@ fn a_full_disk_is_an_error_of_writing() {
         .stdout(full)
         .output()
         .expect("the program runs");
-    assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
 }
 
 /// The pages of the scene format in `docs/` are what the program prints: `opruga reference > docs/scene-file.md` and
@@ -282,7 +272,7 @@ fn bodies_that_commands_add_have_columns_of_their_own() {
         [[command]]\ndo = \"remove\"\nat = 0.4\nbody = \"late\"\n";
     std::fs::write(folder.path().join("s.toml"), scene).expect("a scene");
     let output = opruga(folder.path(), &["run", "s.toml", "--out", "o", "--no-pictures", "--json", "--allow-unstable"]);
-    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(code(&output), 0, "{}", said(&output));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("stdout is JSON");
     assert!(summary["energy"]["work_correction"].is_number());
     let table = std::fs::read_to_string(folder.path().join("o/diagnostics.csv")).expect("a table");

@@ -2,41 +2,12 @@
 //! The numbers are rows of a list of torments: 16–18 sizes, 49–58 parameters, 79–88 files and signals.
 #![allow(clippy::disallowed_methods)] // no physics here
 
+mod common;
+use common::*;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command};
 use std::time::{Duration, Instant};
-
-fn program(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_opruga"));
-    command.args(arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped()).stdin(Stdio::null());
-    command
-}
-
-fn opruga(folder: &Path, arguments: &[&str]) -> Output {
-    program(folder, arguments).output().expect("the program runs")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("an exit code")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// Names of files in a folder and their bytes.
-fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut out: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| {
-            let entry = entry.expect("an entry");
-            (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()).expect("a file"))
-        })
-        .collect();
-    out.sort();
-    out
-}
 
 const SHORT: [&str; 6] = ["run", "pressures", "--seconds", "0.1", "--no-pictures", "--out"];
 
@@ -52,12 +23,6 @@ fn endless(folder: &Path, more: &[&str]) -> Child {
     }
     std::thread::sleep(Duration::from_millis(700));
     child
-}
-
-#[cfg(unix)]
-fn signal(child: &Child, name: &str) {
-    let status = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
-    assert!(status.is_ok_and(|s| s.success()), "the signal is sent");
 }
 
 /// Rows 79 and 80: killed in mid run, what was there before is whole, and the next run needs no cleaning up.
@@ -215,6 +180,7 @@ fn old_output_is_not_replaced_unasked() {
     let output = opruga(folder.path(), &[&SHORT[..], &["p"]].concat());
     assert_eq!(code(&output), 4);
     assert!(said(&output).contains("already holds thesis.tex"), "{}", said(&output));
+    assert_eq!(contents(&folder.path().join("p")).len(), 1, "nothing of ours is left beside it");
     assert_eq!(code(&opruga(folder.path(), &[&SHORT[..], &["p", "--force"]].concat())), 0);
     assert_eq!(std::fs::read(folder.path().join("p/thesis.tex")).expect("still there"), b"years of work");
 }
@@ -350,12 +316,12 @@ fn calls_that_make_no_sense_are_explained() {
         (run("body.soft.models.pressure.nRT=-1"), "= allowed: a number >= 0"),
         (run("body.soft.models.pressure.gamma=0.9"), "error[scene.range]: `gamma` is 0.9"),
         (run("body.sof.mass=1"), "= hint: did you mean `soft`?"),
-        (run("mass"), "error: --set mass: there is no `=`"),
+        (run("mass"), "error[set.syntax]: `mass` is no override"),
         (vec!["run", "pressures", "--seconds", "nan"], "--seconds"),
-        (vec!["run", "pressures", "--seconds", "1e99"], "error: --seconds: allowed are 0 to 1e9"),
+        (vec!["run", "pressures", "--seconds", "1e99"], "allowed: 0 to 1e9"),
         (vec!["run", "--threads", "-1"], "error: invalid value '-1' for '--threads <THREADS>': -1 is not in 1..=256"),
-        (vec!["run", "--seconds", "-1"], "error: --seconds: allowed are 0 to 1e9"),
-        (vec!["run", "--fps", "-1"], "error: --fps: allowed are numbers above 0 up to 240"),
+        (vec!["run", "--seconds", "-1"], "error: --seconds is -1; allowed: 0 to 1e9"),
+        (vec!["run", "--fps", "-1"], "error: --fps is -1; allowed: numbers above 0 up to 240"),
         (vec!["run", "--thread", "2"], "--threads"),
         (vec!["bench", "vertices", "--threads", "1000"], "1000"),
     ];

@@ -387,7 +387,8 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
     let limit = word.chars().count() / 3 + 1;
     candidates
         .map(|c| (letters_apart(word, c), c))
-        .filter(|(distance, _)| *distance <= limit)
+        // A word of which no letter is kept is near to nothing.
+        .filter(|(distance, c)| *distance <= limit && *distance < c.chars().count())
         .min()
         .map(|(_, c)| c.to_string())
 }

@@ -11,6 +11,7 @@
 //! ```
 //! The file ends there: anything more or less is refused.
 
+use crate::problem::SceneError;
 use std::io::{self, Write};
 
 /// The version that is written.
@@ -75,12 +76,11 @@ impl CheckpointError {
             CheckpointError::Damaged { .. } => "checkpoint.damaged",
         }
     }
-    /// The error object of the command line.
-    pub fn to_json(&self, file: &str) -> serde_json::Value {
-        serde_json::json!({
-            "code": self.code(), "message": self.to_string(), "file": file, "line": null, "column": null,
-            "path": "", "value": null, "allowed": format!("a whole checkpoint of version {VERSION}"), "hint": "try an older checkpoint",
-        })
+}
+
+impl From<&CheckpointError> for SceneError {
+    fn from(error: &CheckpointError) -> SceneError {
+        SceneError::new(error.code(), error.to_string()).allowed(format!("a whole checkpoint of version {VERSION}"))
     }
 }
 

@@ -9,6 +9,7 @@ mod document;
 pub mod overrides;
 pub mod problem;
 pub mod reference;
+pub mod refusals;
 pub mod safe_write;
 pub mod scene;
 pub mod schema;

@@ -21,18 +21,26 @@ pub fn split(argument: &str) -> Result<(String, String), SceneError> {
     }
 }
 
+/// An override as the place of an error.
+pub(crate) fn named(path: &str, value: &str) -> String {
+    format!("--set {}={}", visible(path), visible(value))
+}
+
 /// Applies all overrides in their order.
 pub(crate) fn apply_all(root: &mut Node, overrides: &[(String, String)]) -> Result<(), Vec<SceneError>> {
     let mut errors = Vec::new();
     for (number, (path, value)) in overrides.iter().enumerate() {
         if let Err(error) = apply(root, path, value, number) {
-            errors.push(SceneError { file: format!("--set {}={}", visible(path), visible(value)), ..error });
+            errors.push(SceneError { file: named(path, value), ..error });
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
 fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), SceneError> {
+    if value.is_empty() {
+        return Err(SceneError::new("set.value", "the value is missing").path(path).allowed("PATH=VALUE"));
+    }
     let value = document::parse_value(value, number).map_err(|why| {
         SceneError::new("set.value", format!("the value is no TOML: {why}"))
             .path(path)

@@ -73,15 +73,58 @@ pub fn safe_write(
     safe_write_through(path, force, |file| file, fill)
 }
 
+/// Tries whether a file could be written by [`safe_write`] with `force`; leaves what is there as it is.
+///
+/// # Errors
+/// `write.failed`.
+pub fn try_write(path: &Path) -> Result<(), WriteError> {
+    let mut trial = path.as_os_str().to_owned();
+    trial.push(".opruga-trial");
+    let trial = PathBuf::from(trial);
+    let of_path = |e| WriteError { path: path.to_path_buf(), ..e };
+    if path.is_dir() {
+        return Err(of_path(WriteError::new("write.failed", path, "this is a folder")));
+    }
+    safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
+        .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(path, 7, &e)))
+        .map_err(of_path)
+}
+
+/// Where the bytes of a file go, and how they are made to last.
+pub trait Target: Write {
+    /// Returns when everything written so far would survive a loss of power.
+    ///
+    /// # Errors
+    /// Those of the system: drives in a network often report only here that they are gone.
+    fn sync(&self) -> io::Result<()>;
+}
+
+impl Target for File {
+    fn sync(&self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
 /// [`safe_write`] through a writer of the caller's making: for tests that let the disk fail.
 ///
 /// # Errors
 /// As [`safe_write`].
-pub fn safe_write_through<W: Write>(
+pub fn safe_write_through<W: Target>(
     path: &Path,
     force: bool,
     wrap: impl FnOnce(File) -> W,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<u64, WriteError> {
+    write_aside(path, force, wrap, fill, || Ok(()))
+}
+
+/// Writes and syncs aside, then does what must come last, then renames.
+fn write_aside<W: Target>(
+    path: &Path,
+    force: bool,
+    wrap: impl FnOnce(File) -> W,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    last: impl FnOnce() -> Result<(), WriteError>,
 ) -> Result<u64, WriteError> {
     if path.is_dir() {
         return Err(WriteError::new("write.failed", path, "this is a folder"));
@@ -100,21 +143,22 @@ pub fn safe_write_through<W: Write>(
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let mut aside = std::ffi::OsString::from(".");
-    aside.push(name);
-    aside.push(format!(".{}.writing", std::process::id()));
-    let aside = folder.join(aside);
+    let aside = folder.join(aside_name(name));
 
     // What a killed process of the same number left behind is in nobody's use.
     let _ = fs::remove_file(&aside);
-    let file =
-        OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| WriteError::failed(path, 0, &e))?;
+    let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| {
+        let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
+        let hint = (e.kind() == io::ErrorKind::NotFound).then(|| "the folder around it is missing".into());
+        WriteError { hint, ..WriteError::new("write.failed", path, message) }
+    })?;
     let result = fill_and_sync(&file, wrap, fill).map_err(|(bytes, e)| WriteError::failed(path, bytes, &e));
     drop(file);
     let result = result.and_then(|bytes| {
         if !force && path.exists() {
             return Err(exists());
         }
+        last()?;
         fs::rename(&aside, path).map_err(|e| WriteError::failed(path, bytes, &e))?;
         sync_folder(folder).map_err(|e| WriteError::failed(path, bytes, &e))?;
         Ok(bytes)
@@ -126,7 +170,7 @@ pub fn safe_write_through<W: Write>(
 }
 
 /// Everything up to the renaming; an error comes with the number of bytes that reached the file.
-fn fill_and_sync<W: Write>(
+fn fill_and_sync<W: Target>(
     file: &File,
     wrap: impl FnOnce(File) -> W,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -135,10 +179,27 @@ fn fill_and_sync<W: Write>(
     let mut writer = BufWriter::with_capacity(1 << 16, Counted { inner, bytes: 0 });
     let filled = fill(&mut writer).and_then(|()| writer.flush());
     let (counted, _) = writer.into_parts();
-    match filled.and_then(|()| file.sync_all()) {
+    match filled.and_then(|()| counted.inner.sync()) {
         Ok(()) => Ok(counted.bytes),
         Err(e) => Err((counted.bytes, e)),
     }
+}
+
+/// The ending of files that are being written.
+const WRITING: &str = ".writing";
+
+/// The name under which this process writes a file before it gets its own.
+fn aside_name(name: &std::ffi::OsStr) -> std::ffi::OsString {
+    let mut aside = std::ffi::OsString::from(".");
+    aside.push(name);
+    aside.push(format!(".{}{WRITING}", std::process::id()));
+    aside
+}
+
+/// Whether a name is one of [`aside_name`].
+fn is_aside(name: &str) -> bool {
+    let stem = name.strip_prefix('.').and_then(|n| n.strip_suffix(WRITING)).and_then(|n| n.rsplit_once('.'));
+    stem.is_some_and(|(_, process)| !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// Makes a renaming last; only where folders can be opened.
@@ -168,19 +229,37 @@ impl<W: Write> Write for Counted<W> {
 pub struct Failing<W> {
     inner: W,
     left: u64,
+    /// The error of the system; none: no space is left.
+    system: Option<i32>,
+    /// Whether it fails when the bytes shall last.
+    at_sync: bool,
 }
 
 impl<W: Write> Failing<W> {
-    /// Lets `bytes` bytes through.
+    /// Lets `bytes` bytes through; then the disk is full.
     pub fn after(bytes: u64, inner: W) -> Failing<W> {
-        Failing { inner, left: bytes }
+        Failing { inner, left: bytes, system: None, at_sync: false }
+    }
+    /// Lets `bytes` bytes through; then the system reports the error of this number, such as 5 for a drive that is gone.
+    pub fn with(bytes: u64, system: i32, inner: W) -> Failing<W> {
+        Failing { system: Some(system), ..Failing::after(bytes, inner) }
+    }
+    /// Takes every byte, and fails when they shall last.
+    pub fn at_sync(system: i32, inner: W) -> Failing<W> {
+        Failing { at_sync: true, ..Failing::with(u64::MAX, system, inner) }
+    }
+    fn error(&self) -> io::Error {
+        match self.system {
+            Some(number) => io::Error::from_raw_os_error(number),
+            None => io::Error::new(io::ErrorKind::StorageFull, "no space left on device"),
+        }
     }
 }
 
 impl<W: Write> Write for Failing<W> {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         if self.left == 0 && !buffer.is_empty() {
-            return Err(io::Error::new(io::ErrorKind::StorageFull, "no space left on device"));
+            return Err(self.error());
         }
         let n = self.inner.write(&buffer[..buffer.len().min(usize::try_from(self.left).unwrap_or(usize::MAX))])?;
         self.left -= n as u64;
@@ -188,6 +267,12 @@ impl<W: Write> Write for Failing<W> {
     }
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush()
+    }
+}
+
+impl<W: Target> Target for Failing<W> {
+    fn sync(&self) -> io::Result<()> {
+        if self.at_sync { Err(self.error()) } else { self.inner.sync() }
     }
 }
 
@@ -235,6 +320,7 @@ impl OutputFolder {
                 }
             })?;
         }
+        let locked_before = path.join(LOCK).exists();
         let lock = OpenOptions::new()
             .create(true)
             .truncate(false)
@@ -254,6 +340,12 @@ impl OutputFolder {
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
             Err(fs::TryLockError::Error(e)) => return Err(cannot("locked", &e)),
         }
+        // Only the owner of the lock writes here: what was being written when an earlier one was killed is nobody's.
+        for entry in fs::read_dir(path).map_err(|e| cannot("read", &e))?.flatten() {
+            if entry.file_name().to_str().is_some_and(is_aside) {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
         if existing == Existing::Refuse {
             let mut names: Vec<String> = fs::read_dir(path)
                 .map_err(|e| cannot("read", &e))?
@@ -262,6 +354,10 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
+                if !locked_before {
+                    // Nothing of ours is left in a folder that is somebody else's.
+                    let _ = fs::remove_file(path.join(LOCK));
+                }
                 let message = format!(
                     "the folder already holds {} files, among them {}",
                     names.len(),
@@ -279,10 +375,11 @@ impl OutputFolder {
             }
         }
         let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, _lock: lock };
-        let trial = folder.path(".opruga-trial");
-        safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
-            .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(&trial, 7, &e)))
-            .map_err(|e| WriteError { code: "write.folder", path: path.to_path_buf(), ..e })?;
+        try_write(&folder.path("trial")).map_err(|e| WriteError {
+            code: "write.folder",
+            path: path.to_path_buf(),
+            ..e
+        })?;
         Ok(folder)
     }
 
@@ -302,5 +399,49 @@ impl OutputFolder {
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<u64, WriteError> {
         safe_write(&self.path(name), force || self.force, fill)
+    }
+
+    /// Writes a file of the folder as [`OutputFolder::write`] with `force`, and keeps the one that it replaces, if there is
+    /// one, under a second name, in place of the file that had it. At every moment, a crash included, both names are whole
+    /// files.
+    ///
+    /// # Errors
+    /// `write.failed`; then the first name is as it was, and the second is as it was or the same file as the first.
+    pub fn write_keeping(
+        &self,
+        name: &str,
+        second: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<u64, WriteError> {
+        write_aside(&self.path(name), true, |file| file, fill, || self.keep(name, second))
+    }
+
+    /// Gives a file of the folder a second name; does nothing where there is no such file.
+    fn keep(&self, name: &str, second: &str) -> Result<(), WriteError> {
+        let (from, to) = (self.path(name), self.path(second));
+        if !from.exists() {
+            return Ok(());
+        }
+        let aside = self.path.join(aside_name(second.as_ref()));
+        let _ = fs::remove_file(&aside);
+        // Some file systems know no second names: there it is a copy.
+        let copied = || fs::copy(&from, &aside).and_then(|_| File::open(&aside)?.sync_all());
+        let kept = fs::hard_link(&from, &aside).or_else(|_| copied()).and_then(|()| fs::rename(&aside, &to));
+        kept.and_then(|()| sync_folder(&self.path)).map_err(|e| {
+            let _ = fs::remove_file(&aside);
+            WriteError::failed(&to, 0, &e)
+        })
+    }
+
+    /// Removes a file of the folder if it is there.
+    ///
+    /// # Errors
+    /// `write.failed`; then it is still there.
+    pub fn remove(&self, name: &str) -> Result<(), WriteError> {
+        let path = self.path(name);
+        match fs::remove_file(&path) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(WriteError::failed(&path, 0, &e)),
+            _ => Ok(()),
+        }
     }
 }

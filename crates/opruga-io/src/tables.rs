@@ -115,14 +115,16 @@ pub struct Summary {
     pub substeps: u32,
     /// The length of a substep [s].
     pub h: f64,
-    /// How many substeps were taken.
+    /// How many substeps were taken, those before the checkpoint of a resumed run not counted.
     pub steps: u64,
+    /// Simulated time of the checkpoint from which the run went on [s]; none where it began at the beginning.
+    pub resumed_at: Option<f64>,
     /// Simulated time at the end [s].
     pub time: f64,
     /// Wall-clock time [s].
     pub wall_seconds: f64,
-    /// Wall-clock time per node and substep [ns].
-    pub nanoseconds_per_node_step: f64,
+    /// Wall-clock time per node and substep [ns]; none where no step was taken.
+    pub nanoseconds_per_node_step: Option<f64>,
     /// The path of the processor's instructions: `scalar`, `avx2`, `avx512` …
     pub simd: String,
     /// How many threads.

@@ -1,7 +1,7 @@
 //! Files that are never half written, checkpoints that are never half read, tables.
 
 use opruga_io::checkpoint::{Checkpoint, CheckpointError};
-use opruga_io::safe_write::{Existing, Failing, OutputFolder, safe_write, safe_write_through};
+use opruga_io::safe_write::{Existing, Failing, OutputFolder, Target, safe_write, safe_write_through};
 use opruga_io::tables::{FinalBody, NumberTable, Summary, write_final};
 use std::io::Write;
 use std::path::PathBuf;
@@ -32,6 +32,145 @@ fn a_failing_disk_leaves_the_old_file_whole() {
         256
     );
     assert_eq!(std::fs::read(&path).expect("there"), new);
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// What is written at the end of a run.
+type Writer = Box<dyn Fn(&mut dyn Write) -> std::io::Result<()>>;
+
+/// Every writer of an output, with contents enough to be interrupted anywhere.
+fn writers() -> Vec<(&'static str, Writer)> {
+    let mut table = NumberTable::new(vec!["time".into(), "kinetic".into()]);
+    (0..8).for_each(|k| table.push(&[f64::from(k), 1.0 / f64::from(k + 1)]));
+    let checkpoint = Checkpoint { scene: "format = \"opruga-1\"\n".into(), payload: (0..200u8).collect() };
+    let positions: Vec<[f64; 2]> = (0..6).map(|k| [f64::from(k), 0.1]).collect();
+    vec![
+        ("diagnostics.csv", Box::new(move |out| table.write(out))),
+        (
+            "final.csv",
+            Box::new(move |out| {
+                let body = FinalBody { name: "a", positions: &positions, velocities: &positions };
+                write_final(out, [body].into_iter())
+            }),
+        ),
+        ("summary.json", Box::new(|out| Summary { scene: "ball".into(), ..Summary::default() }.write(out))),
+        ("checkpoint", Box::new(move |out| checkpoint.write(out))),
+        ("mine.toml", Box::new(|out| out.write_all(opruga_io::template::commented("mine").as_bytes()))),
+    ]
+}
+
+/// Rows 83 and 91: a drive that is full, broken, gone from the network or over its quota, at any byte of any output.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_drive_that_goes_away_at_any_byte_leaves_the_old_file_whole() {
+    const FAULTS: [(i32, &str); 4] =
+        [(28, "no space left"), (5, "input/output error"), (116, "stale file handle"), (122, "disk quota exceeded")];
+    let folder = folder("gone");
+    for (name, writer) in writers() {
+        let path = folder.join(name);
+        let mut whole = Vec::new();
+        writer(&mut whole).expect("memory does not fail");
+        safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
+        let refused = |error: opruga_io::safe_write::WriteError, bytes: u64, text: &str| {
+            assert_eq!((error.code, error.bytes, error.exit_code(), &error.path), ("write.failed", bytes, 4, &path));
+            assert!(error.message.contains(text), "{error}");
+            assert_eq!(std::fs::read(&path).expect("still there"), b"old", "{name} after {bytes} bytes");
+        };
+        for (number, text) in FAULTS {
+            for k in 0..whole.len() as u64 {
+                let error = safe_write_through(&path, true, |file| Failing::with(k, number, file), &writer);
+                refused(error.expect_err("the drive is gone"), k, text);
+            }
+            // Drives in a network often tell only when the bytes shall last.
+            let error = safe_write_through(&path, true, |file| Failing::at_sync(number, file), &writer);
+            refused(error.expect_err("the drive is gone"), whole.len() as u64, text);
+        }
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
+        // What was in memory is still there, and can be saved once the drive is back.
+        safe_write(&path, true, &writer).expect("the drive is back");
+        assert_eq!(std::fs::read(&path).expect("there"), whole);
+        std::fs::remove_file(&path).expect("the file is there");
+    }
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// A writer whose calls are interrupted by signals, and that takes one byte at a time, loses nothing.
+#[test]
+fn interrupted_and_short_writes_lose_nothing() {
+    struct Halting(std::fs::File, bool);
+    impl Write for Halting {
+        fn write(&mut self, buffer: &[u8]) -> std::io::Result<usize> {
+            self.1 = !self.1;
+            if self.1 {
+                Err(std::io::ErrorKind::Interrupted.into())
+            } else {
+                self.0.write(&buffer[..buffer.len().min(1)])
+            }
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            self.0.flush()
+        }
+    }
+    impl Target for Halting {
+        fn sync(&self) -> std::io::Result<()> {
+            self.0.sync_all()
+        }
+    }
+    let folder = folder("halting");
+    for (name, writer) in writers() {
+        let mut whole = Vec::new();
+        writer(&mut whole).expect("memory does not fail");
+        let bytes = safe_write_through(&folder.join(name), false, |file| Halting(file, false), &writer);
+        assert_eq!(bytes, Ok(whole.len() as u64));
+        assert_eq!(std::fs::read(folder.join(name)).expect("there"), whole, "{name}");
+    }
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Row 79: what a killed run was writing is cleared away by the next one, and nothing else is.
+#[test]
+fn what_a_killed_run_was_writing_is_cleared_away() {
+    let folder = folder("killed");
+    for name in [".checkpoint.4711.writing", ".summary.json.1.writing", ".mine.writing", "x.1.writing", ".a.b.writing"]
+    {
+        std::fs::write(folder.join(name), b"half").expect("a file");
+    }
+    let out = OutputFolder::open(&folder, Existing::Replace).expect("the folder is there");
+    let mut left: Vec<String> = std::fs::read_dir(&folder)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    left.sort();
+    assert_eq!(left, [".a.b.writing", ".mine.writing", ".opruga-lock", "x.1.writing"]);
+    drop(out);
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Row 82: the older checkpoint keeps its bytes under its second name whatever is written under the first.
+#[test]
+fn a_second_name_keeps_the_older_file() {
+    let folder = folder("second");
+    let out = OutputFolder::open(&folder.join("o"), Existing::Refuse).expect("new");
+    let read = |name: &str| std::fs::read(out.path(name)).ok();
+    for k in 0..4u8 {
+        out.write_keeping("checkpoint", "checkpoint.previous", |w| w.write_all(&[k])).expect("written");
+        assert_eq!(read("checkpoint"), Some(vec![k]));
+        assert_eq!(read("checkpoint.previous"), k.checked_sub(1).map(|k| vec![k]));
+    }
+    let full = |w: &mut dyn Write| {
+        w.write_all(b"half")?;
+        Err(std::io::ErrorKind::StorageFull.into())
+    };
+    assert_eq!(out.write_keeping("checkpoint", "checkpoint.previous", full).expect_err("full").code, "write.failed");
+    assert_eq!(
+        (read("checkpoint"), read("checkpoint.previous")),
+        (Some(vec![3]), Some(vec![2])),
+        "both are as they were"
+    );
+    out.remove("checkpoint.previous").expect("removed");
+    out.remove("checkpoint.previous").expect("it is gone already");
+    assert_eq!((read("checkpoint"), read("checkpoint.previous")), (Some(vec![3]), None));
+    drop(out);
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 

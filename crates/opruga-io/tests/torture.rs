@@ -341,6 +341,70 @@ fn all_errors_at_once() {
     assert_eq!((found.len(), found[200].code), (201, "scene.more"));
 }
 
+/// Errors in the fields of a body do not hide those of what selects its nodes, wherever that stands.
+#[test]
+fn wrong_numbers_of_nodes_are_found_beside_wrong_fields() {
+    let text = format!(
+        "{HEAD}[[body]]\nname = \"b\"\nshape = {{ kind = \"ring\", radius = 1, vertices = 8 }}\nmass = -1\nvelocity = [1]\n\
+         models = [{{ kind = \"mass_spring\", stifness = 10 }}]\npin = [{{ select = {{ node = 99 }} }}]\n\
+         [[probe]]\nname = \"p\"\nbody = \"b\"\nselect = {{ node = 98 }}\nrecord = [\"position\"]\n\
+         [[load]]\nkind = \"force\"\nbody = \"b\"\nvalue = [1, 0]\nselect = {{ nodes = [0, 97] }}\n\
+         [[command]]\ndo = \"drag\"\nat = 0\nbody = \"b\"\nnode = 96\npath = [[0, 0, 0]]\n"
+    );
+    let found: Vec<(&str, Option<String>)> = errors(&text).into_iter().map(|e| (e.code, e.value)).collect();
+    let expected = [
+        ("scene.range", "-1"),
+        ("scene.length", "[1]"),
+        ("scene.unknown_field", "stifness"),
+        ("scene.range", "99"),
+        ("scene.range", "98"),
+        ("scene.range", "97"),
+        ("scene.range", "96"),
+    ];
+    assert_eq!(found, expected.map(|(code, value)| (code, Some(value.to_string()))));
+    // Where the nodes themselves are in doubt, nothing is said about them.
+    for (good, bad) in [("vertices = 8", "vertices = 2"), ("radius = 1", "radius = -1"), ("mass = -1", "scale = 0")] {
+        let text = text.replace(good, bad);
+        assert!(errors(&text).iter().all(|e| !matches!(e.value.as_deref(), Some("99" | "98" | "97" | "96"))), "{bad}");
+    }
+}
+
+/// What is left of a scene with errors are its parts without errors of their own.
+#[test]
+fn what_is_left_of_a_scene_with_errors() {
+    use opruga_world::blueprint::AnyBlueprint;
+    let load = |body: &str| format!("[[load]]\nkind = \"force\"\nbody = \"{body}\"\nvalue = [1, 0]\n");
+    let wall = |friction: &str| {
+        format!("[[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = {friction}\n")
+    };
+    let text = format!(
+        "{HEAD}{}{}{}{}{}{}{}",
+        BALL.replace("\"ball\"", "\"bad\"").replace("stiffness", "stifness"),
+        BALL,
+        BALL.replace("\"ball\"", "\"many\"") + "copies = { count = [2], spacing = [3] }\n",
+        load("bad"),
+        load("ball"),
+        wall("-1"),
+        wall("0.5"),
+    );
+    let survey =
+        |text: &str| opruga_io::scene::survey(text.as_bytes(), "scene.toml", &catalogue(), &Options::default());
+    let reading = survey(&text);
+    let found: Vec<&str> = reading.errors.iter().map(|e| e.code).collect();
+    assert_eq!(found, ["scene.unknown_field", "scene.length", "scene.range"]);
+    let Some(AnyBlueprint::Plane(rest)) = reading.blueprint else { panic!("something is left") };
+    let names: Vec<&str> = rest.bodies.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names, ["ball"]);
+    assert_eq!(rest.loads.iter().map(|l| l.body).collect::<Vec<_>>(), [0]);
+    assert_eq!(rest.colliders.len(), 1);
+    assert_eq!(rest.colliders[0].values.number("friction"), Some(0.5));
+    // Without time and an integrator there is nothing to build on.
+    for (good, bad) in [("seconds = 1", "seconds = -1"), ("symplectic_euler", "symplectic")] {
+        assert!(survey(&text.replace(good, bad)).blueprint.is_none());
+    }
+    assert!(survey(&format!("{HEAD}{BALL}")).errors.is_empty());
+}
+
 /// Row 18: what is large but fine.
 #[test]
 fn many_bodies() {

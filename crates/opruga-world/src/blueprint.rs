@@ -40,6 +40,30 @@ pub struct Blueprint<const D: usize> {
     pub probes: Vec<ProbeBlueprint<D>>,
 }
 
+impl<const D: usize> Blueprint<D> {
+    /// The same surroundings with other bodies, obstacles and loads, to look at some by themselves.
+    pub(crate) fn part(
+        &self,
+        bodies: Vec<BodyBlueprint<D>>,
+        colliders: Vec<ColliderBlueprint>,
+        loads: Vec<LoadBlueprint<D>>,
+    ) -> Blueprint<D> {
+        Blueprint {
+            name: self.name.clone(),
+            title: self.title.clone(),
+            seed: self.seed,
+            time: self.time,
+            surroundings: self.surroundings,
+            integrator: self.integrator.clone(),
+            bodies,
+            colliders,
+            loads,
+            commands: Vec::new(),
+            probes: Vec::new(),
+        }
+    }
+}
+
 /// How time passes: a frame is divided into substeps of h = frame / substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {

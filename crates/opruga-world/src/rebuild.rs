@@ -1,6 +1,6 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
-use crate::blueprint::{Blueprint, BodyBlueprint};
+use crate::blueprint::BodyBlueprint;
 use crate::build::{BodyState, Builder, build_integrator, group};
 use crate::error::WorldError;
 use crate::island::Island;
@@ -145,19 +145,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError`] where a model refuses the body.
     pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> {
-        let blueprint = Blueprint {
-            name: String::new(),
-            title: String::new(),
-            seed: self.blueprint.seed,
-            time: self.blueprint.time,
-            surroundings: self.blueprint.surroundings,
-            integrator: self.blueprint.integrator.clone(),
-            bodies: vec![body.clone()],
-            colliders: Vec::new(),
-            loads: Vec::new(),
-            commands: Vec::new(),
-            probes: Vec::new(),
-        };
+        let blueprint = self.blueprint.part(vec![body.clone()], Vec::new(), Vec::new());
         let builder =
             Builder { blueprint: &blueprint, registry: &self.registry, simd: self.simd, integrator: &self.integrator };
         let mut island = builder.island(&[0], &[&crate::build::initial_state(body)], self.time())?;

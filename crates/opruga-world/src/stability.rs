@@ -2,6 +2,7 @@
 
 use crate::error::WorldError;
 use crate::island::Island;
+use crate::plausible;
 use crate::world::{Warning, World};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
@@ -84,8 +85,16 @@ impl<const D: usize> World<D> {
                 }
                 _ => {}
             }
+            let body = &self.blueprint.bodies[self.islands[*number].bodies[0]];
+            if let Some(odd) = plausible::sag(body, &self.blueprint.surroundings.gravity, &stability.spectrum) {
+                match warnings.iter_mut().find(|w| w.code == odd.code) {
+                    Some(warning) => warning.count += 1,
+                    None => warnings.push(odd),
+                }
+            }
         }
-        self.warnings.retain(|w| w.code != "step.unstable" && w.code != "step.no_stable_step");
+        let anew = ["step.unstable", "step.no_stable_step", plausible::SAG];
+        self.warnings.retain(|w| !anew.contains(&w.code.as_str()));
         self.warnings.extend(warnings);
         self.stability = estimates.into_iter().map(|(_, name, stability)| (name, stability)).collect();
         Ok(())

@@ -6,17 +6,20 @@
 //! ```
 //! use opruga::{Options, World, blueprint::AnyBlueprint, catalogue, io::scene};
 //!
-//! let text = opruga::scenes::find("ball").unwrap();
-//! let (blueprint, _) = scene::read(text.as_bytes(), "ball.toml", &catalogue(), &scene::Options::default()).unwrap();
-//! let AnyBlueprint::Plane(blueprint) = blueprint else { unreachable!("the ball lives in the plane") };
-//! let mut world = World::new(blueprint, Options::default())?;
-//! for _ in 0..60 {
-//!     world.frame()?; // one sixtieth of a second
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let text = opruga::scenes::find("ball").ok_or("there is no such scene")?;
+//!     let (blueprint, _) = scene::read(text.as_bytes(), "ball.toml", &catalogue(), &scene::Options::default())
+//!         .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
+//!     let AnyBlueprint::Plane(blueprint) = blueprint else { return Err("the scene is not in the plane".into()) };
+//!     let mut world = World::new(blueprint, Options::default())?;
+//!     for _ in 0..60 {
+//!         world.frame()?; // one sixtieth of a second
+//!     }
+//!     let ball = world.body("ball").ok_or("there is no ball")?;
+//!     let top = world.position(ball, 9);
+//!     println!("t = {:.2} s: top at {:.3} m, {:.4} J", world.time(), top[1], world.energy().total());
+//!     Ok(())
 //! }
-//! let ball = world.body("ball").unwrap();
-//! let top = world.position(ball, 9);
-//! println!("t = {:.2} s: top at {:.3} m, {:.4} J", world.time(), top[1], world.energy().total());
-//! # Ok::<(), opruga::WorldError>(())
 //! ```
 
 pub mod pictures;
@@ -38,3 +41,8 @@ pub fn catalogue() -> io::Catalogue {
     let colliders = [collide::all(2), collide::all(3)].concat();
     io::Catalogue { models: registry.models(), integrators: registry.integrators(), colliders }
 }
+
+/// The examples of the README, for the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

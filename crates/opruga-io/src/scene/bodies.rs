@@ -9,7 +9,7 @@ use opruga_core::spec::{Allowed, Value, Values, nearest};
 use opruga_mesh::{Measure, Mesh};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The bodies of a scene, copies written out; behind them those that commands add, in the order of time.
@@ -25,8 +25,10 @@ pub(crate) struct Bodies<const D: usize> {
     copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
     /// What all of them would cost.
     cost: Cost,
-    /// Names of bodies that have errors of their own: a reference to them is no further error.
+    /// Names of bodies that could not be made: a reference to them is no further error.
     broken: Vec<String>,
+    /// Places of bodies that were made, but have errors in their fields.
+    pub(crate) unsound: BTreeSet<usize>,
 }
 
 /// A body as it was read, before its mesh is made.
@@ -43,6 +45,9 @@ struct Draft<'n, const D: usize> {
     models: Vec<Values>,
     pins: Vec<(PinBlueprint<D>, Place, String)>,
     copies: Option<Copies<D>>,
+    /// Whether nothing is wrong with its nodes: what selects them can be checked.
+    shaped: bool,
+    /// Whether nothing is wrong with it at all.
     sound: bool,
 }
 
@@ -78,6 +83,7 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
         copied: BTreeMap::new(),
         cost: Cost::default(),
         broken: Vec::new(),
+        unsound: BTreeSet::new(),
     };
     let affordable = within_limits(reader, &drafts, &mut bodies.cost);
     for (number, draft) in drafts.into_iter().enumerate() {
@@ -85,7 +91,11 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
             bodies.broken.push(draft.name);
             continue;
         };
+        let first = bodies.list.len();
         write_out(&mut bodies, &draft, body, seed, number as u64);
+        if !draft.sound {
+            bodies.unsound.extend(first..bodies.list.len());
+        }
     }
     bodies.initial = bodies.list.len();
     bodies
@@ -182,6 +192,10 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
+    // Its nodes are where the scene wants them if these are right; so are its names.
+    const SHAPING: [&str; 6] = ["name", "shape", "position", "rotation", "scale", "copies"];
+    let shaped =
+        node.get("name").is_some() && SHAPING.iter().all(|field| reader.sound_since(before, &join(&path, field)));
     Some(Draft {
         node,
         path,
@@ -195,6 +209,7 @@ fn draft<'n, const D: usize>(
         models,
         pins,
         copies,
+        shaped,
         sound,
     })
 }
@@ -339,9 +354,9 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
     true
 }
 
-/// Makes the mesh of a body and checks its pins.
+/// Makes the mesh of a body, whatever else may be wrong with it, and checks its pins.
 fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Option<BodyBlueprint<D>> {
-    if !draft.sound {
+    if !draft.shaped {
         return None;
     }
     let shape = draft.shape.as_ref()?;
@@ -390,7 +405,8 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         translation: draft.values.vector("position"),
         velocity: draft.values.vector("velocity"),
         angular_velocity: draft.angular_velocity.clone(),
-        mass: draft.mass?,
+        // A body without a mass has an error, and weighs something only to be looked at further.
+        mass: draft.mass.unwrap_or(Mass::Node(1.0)),
         thickness: draft.values.number("thickness").unwrap_or(1.0),
         integrator: draft.integrator.clone(),
         models: draft.models.clone(),

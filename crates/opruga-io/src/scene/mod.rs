@@ -18,7 +18,9 @@ use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_world::blueprint::{AnyBlueprint, Blueprint, ColliderBlueprint, Surroundings, Time};
+use opruga_world::blueprint::{
+    AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Surroundings, Time,
+};
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
 use reader::Reader;
@@ -67,6 +69,19 @@ pub struct Options {
     pub overrides: Vec<(String, String)>,
 }
 
+/// What the reader made of a scene.
+#[derive(Debug)]
+pub struct Reading {
+    /// The whole scene where there are no errors. Where there are some, what is left of it without the bodies, obstacles
+    /// and loads that have errors of their own, and without pins, commands and probes: enough to find what else is wrong with
+    /// the rest. None where errors leave nothing to build on.
+    pub blueprint: Option<AnyBlueprint>,
+    /// All errors that can be found at once, in the order of their places.
+    pub errors: Vec<SceneError>,
+    /// What is odd.
+    pub notices: Vec<Notice>,
+}
+
 /// Reads a scene from bytes.
 ///
 /// # Errors
@@ -77,23 +92,33 @@ pub fn read(
     catalogue: &Catalogue,
     options: &Options,
 ) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
-    let source = Source::new(file, bytes, &options.limits).map_err(|e| vec![e])?;
+    match survey(bytes, file, catalogue, options) {
+        Reading { blueprint: Some(blueprint), errors, notices } if errors.is_empty() => Ok((blueprint, notices)),
+        Reading { errors, .. } => Err(errors),
+    }
+}
+
+/// Reads as much of a scene as its errors leave, for those who want to go on looking for errors: [`read`] is for all
+/// others.
+pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Reading {
+    let nothing = |errors| Reading { blueprint: None, errors, notices: Vec::new() };
+    let source = match Source::new(file, bytes, &options.limits) {
+        Ok(source) => source,
+        Err(error) => return nothing(vec![error]),
+    };
     let (document, mut errors) = document::parse(&source);
-    let Some(mut document) = document else { return Err(errors) };
+    let Some(mut document) = document else { return nothing(errors) };
     if let Err(mut problems) = overrides::apply_all(&mut document, &options.overrides) {
         errors.append(&mut problems);
     }
     let mut reader = Reader::new(&source, catalogue, options, errors);
-    let result = match reader.format_and_dimension(&document) {
+    let blueprint = match reader.format_and_dimension(&document) {
         Some(2) => scene::<2>(&mut reader, &document).map(AnyBlueprint::Plane),
         Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
         None => None,
     };
     let (errors, notices) = reader.finish();
-    match result {
-        Some(blueprint) if errors.is_empty() => Ok((blueprint, notices)),
-        _ => Err(errors),
-    }
+    Reading { blueprint, errors, notices }
 }
 
 /// Reads a scene from a file. What is no regular file or larger than the limit is refused before it is read.
@@ -113,20 +138,15 @@ pub fn read_file(
 /// The bytes of a regular file no larger than the limit.
 ///
 /// # Errors
-/// `read.failed`, `read.not_regular_file` or `scene.too_large`.
+/// `read.failed`, `read.not_regular_file`, `read.changed` where somebody writes into the file meanwhile, or
+/// `scene.too_large`.
 pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     use std::io::Read as _;
-    let failed = |e: std::io::Error| {
-        let error = SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
-        if e.kind() == std::io::ErrorKind::NotFound {
-            error.hint("`opruga list` shows the scenes that come with the program")
-        } else {
-            error
-        }
-    };
+    let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
-        return Err(SceneError::new("read.not_regular_file", "this is no regular file"));
+        let what = if about.is_dir() { "this is a folder" } else { "this is no regular file" };
+        return Err(SceneError::new("read.not_regular_file", what));
     }
     let too_large = |size: u64| {
         SceneError::new("scene.too_large", format!("the scene has {size} bytes"))
@@ -136,10 +156,36 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     if about.len() > limits.file_bytes {
         return Err(too_large(about.len()));
     }
+    let mut file = std::fs::File::open(path).map_err(failed)?;
+    let before = Stamp::of(&file).map_err(failed)?;
     // One byte more than allowed, in case that the file grows while it is read.
     let mut bytes = Vec::new();
-    std::fs::File::open(path).map_err(failed)?.take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    (&mut file).take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    before.unchanged(&file, bytes.len() as u64)?;
     Ok(bytes)
+}
+
+/// Size and time of change of a file, to tell whether it was changed while it was read.
+#[derive(Debug, PartialEq)]
+struct Stamp {
+    bytes: u64,
+    changed: Option<std::time::SystemTime>,
+}
+
+impl Stamp {
+    fn of(file: &std::fs::File) -> std::io::Result<Stamp> {
+        let about = file.metadata()?;
+        Ok(Stamp { bytes: about.len(), changed: about.modified().ok() })
+    }
+
+    /// Refuses what was read if it may be half old and half new.
+    fn unchanged(&self, file: &std::fs::File, read: u64) -> Result<(), SceneError> {
+        match Stamp::of(file) {
+            Ok(now) if now == *self && read == self.bytes => Ok(()),
+            _ => Err(SceneError::new("read.changed", "the file was changed while it was read")
+                .hint("try again once it is saved")),
+        }
+    }
 }
 
 /// The reason of an error of the system, without its number.
@@ -148,19 +194,23 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Everything below the head of a scene.
+/// Everything below the head of a scene; parts with errors are left out.
 fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Blueprint<D>> {
     let top = reader.fields(root, "", &schema::SCENE, None);
+    let before = reader.count();
     let time = time(reader, root);
     let surroundings = surroundings(reader, root);
     let integrator = reader.integrator(root, "");
-    let colliders = reader.catalogue.colliders.clone();
-    let colliders: Vec<ColliderBlueprint> = reader
-        .list(root, "", "collider")
-        .into_iter()
-        .filter_map(|(node, path)| reader.kind_table(node, &path, "collider", &colliders))
-        .map(|values| ColliderBlueprint { values })
-        .collect();
+    let founded = reader.count() == before && root.get("time").is_some();
+    let known = reader.catalogue.colliders.clone();
+    let mut colliders = Vec::new();
+    let mut sound_colliders = Vec::new();
+    for (node, path) in reader.list(root, "", "collider") {
+        let before = reader.count();
+        let Some(values) = reader.kind_table(node, &path, "collider", &known) else { continue };
+        sound_colliders.extend((reader.count() == before).then(|| ColliderBlueprint { values: values.clone() }));
+        colliders.push(ColliderBlueprint { values });
+    }
     let mut bodies = bodies::all::<D>(reader, root, top.integer("seed").unwrap_or(1) as u64);
     let commands = reader.list(root, "", "command");
     bodies::later(reader, &commands, &mut bodies);
@@ -168,7 +218,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders);
     let probes = actions::probes(reader, root, &bodies);
     bodies.list.truncate(bodies.initial);
-    Some(Blueprint {
+    let whole = Blueprint {
         name: scene_name(reader.source.file),
         title: top.text("title").unwrap_or("").to_string(),
         seed: top.integer("seed").unwrap_or(1) as u64,
@@ -180,6 +230,33 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         loads,
         commands,
         probes,
+    };
+    if reader.count() == 0 {
+        return Some(whole);
+    }
+    // What has no errors of its own; loads go by the place of their body.
+    let mut place = 0;
+    let places: Vec<Option<usize>> = (0..whole.bodies.len())
+        .map(|k| {
+            let sound = !bodies.unsound.contains(&k);
+            place += usize::from(sound);
+            sound.then(|| place - 1)
+        })
+        .collect();
+    let loads = whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: places[load.body]?, ..load }));
+    founded.then(|| Blueprint {
+        // Pins may select what is not there, and hinder no body from being built.
+        bodies: whole
+            .bodies
+            .into_iter()
+            .zip(&places)
+            .filter_map(|(body, place)| place.map(|_| BodyBlueprint { pins: Vec::new(), ..body }))
+            .collect(),
+        colliders: sound_colliders,
+        loads: loads.collect(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+        ..whole
     })
 }
 
@@ -239,4 +316,29 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
 /// The place of a value, or of the table that lacks it.
 pub(crate) fn place_of(node: &Node, key: &str) -> Place {
     node.get(key).map_or(node.place, |n| n.place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write as _;
+
+    /// A file that grows, or is written over, between the first and the last byte that is read is refused.
+    #[test]
+    fn a_file_that_changes_while_it_is_read_is_refused() {
+        let path = std::env::temp_dir().join(format!("opruga-changed-{}", std::process::id()));
+        std::fs::write(&path, b"old text").expect("a file");
+        let file = std::fs::File::open(&path).expect("a file");
+        let stamp = Stamp::of(&file).expect("a stamp");
+        assert_eq!(stamp.unchanged(&file, 8), Ok(()));
+        assert_eq!(stamp.unchanged(&file, 7).map_err(|e| e.code), Err("read.changed"), "cut off meanwhile");
+        std::fs::OpenOptions::new().append(true).open(&path).and_then(|mut f| f.write_all(b"!")).expect("it grows");
+        assert_eq!(stamp.unchanged(&file, 8).map_err(|e| (e.code, e.exit_code())), Err(("read.changed", 4)));
+        let stamp = Stamp::of(&file).expect("a stamp");
+        let later = stamp.changed.expect("a time") + std::time::Duration::from_secs(1);
+        let writer = std::fs::OpenOptions::new().write(true).open(&path).expect("a file");
+        writer.set_modified(later).expect("a time");
+        assert_eq!(stamp.unchanged(&file, 9).map_err(|e| e.code), Err("read.changed"), "written over meanwhile");
+        std::fs::remove_file(&path).expect("the file is there");
+    }
 }

@@ -53,6 +53,14 @@ impl<'a> Reader<'a> {
         self.errors.len() + self.more
     }
 
+    /// Whether nothing was reported about a field, or anything in it, since there were `before` errors.
+    pub(crate) fn sound_since(&self, before: usize, path: &str) -> bool {
+        let about =
+            |e: &SceneError| e.path.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        // Errors that were only counted may be about anything.
+        self.more == 0 && !self.errors.iter().skip(before).any(about)
+    }
+
     /// Adds a notice with its place; with `strict` an error.
     pub(crate) fn notice(&mut self, place: Place, about: SceneError) {
         if self.options.strict {
@@ -77,7 +85,7 @@ impl<'a> Reader<'a> {
             Place::Bytes(start, end) => self.source.mark(error, start, end),
             Place::Override(k) => {
                 let (path, value) = self.options.overrides.get(k).cloned().unwrap_or_default();
-                SceneError { file: format!("--set {path}={value}"), ..error }
+                SceneError { file: crate::overrides::named(&path, &value), ..error }
             }
         }
     }

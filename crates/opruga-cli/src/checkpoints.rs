@@ -1,0 +1,236 @@
+//! Checkpoints of a run: what is in them, when they are written, and which older one stands in for a damaged one.
+
+use crate::failure::Failure;
+use crate::source::{Source, argument};
+use opruga::World;
+use opruga::io::SceneError;
+use opruga::io::checkpoint::{Checkpoint, CheckpointError};
+use opruga::io::safe_write::{OutputFolder, WriteError};
+use opruga::io::scene;
+use opruga::io::tables::{NumberTable, WarningSummary};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The file of the newest checkpoint of a run.
+pub(crate) const NAME: &str = "checkpoint";
+/// The file of the one before it.
+pub(crate) const PREVIOUS: &str = "checkpoint.previous";
+
+/// The form of the payload; another one belongs to another version of the program.
+const FORM: &str = "run 2";
+
+/// How a run was called, as far as going on with it depends on that.
+#[derive(Clone, Default)]
+pub(crate) struct Calling {
+    /// What `--set` and `--seconds` have changed in the scene.
+    pub(crate) overrides: Vec<(String, String)>,
+    /// Whether unknown fields are warnings.
+    pub(crate) lenient: bool,
+    /// Whether a step above the stable limit is a warning.
+    pub(crate) allow_unstable: bool,
+}
+
+/// A checkpoint's payload: the snapshot and how the run was called.
+pub(crate) struct SavedRun {
+    pub(crate) name: String,
+    pub(crate) calling: Calling,
+    /// Frames since the start.
+    pub(crate) frames: u64,
+    /// Simulated time [s].
+    pub(crate) time: f64,
+    pub(crate) snapshot: Vec<u8>,
+}
+
+impl SavedRun {
+    fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        let mut text = |t: &str| {
+            out.extend((t.len() as u64).to_le_bytes());
+            out.extend(t.as_bytes());
+        };
+        text(FORM);
+        text(&self.name);
+        let Calling { overrides, lenient, allow_unstable } = &self.calling;
+        text(&overrides.len().to_string());
+        for (path, value) in overrides {
+            text(path);
+            text(value);
+        }
+        out.extend([u8::from(*lenient), u8::from(*allow_unstable)]);
+        out.extend(self.frames.to_le_bytes());
+        out.extend(self.time.to_le_bytes());
+        out.extend(&self.snapshot);
+        out
+    }
+
+    /// Reads a payload; none if it has another form.
+    fn read(mut bytes: &[u8]) -> Option<SavedRun> {
+        let mut text = || {
+            let (length, rest) = bytes.split_first_chunk::<8>()?;
+            let (text, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+            bytes = rest;
+            String::from_utf8(text.to_vec()).ok()
+        };
+        if text()? != FORM {
+            return None;
+        }
+        let name = text()?;
+        let count: usize = text()?.parse().ok()?;
+        let mut overrides = Vec::new();
+        for _ in 0..count {
+            overrides.push((text()?, text()?));
+        }
+        let ([lenient, allow_unstable], bytes) = bytes.split_first_chunk::<2>()?;
+        let calling = Calling { overrides, lenient: *lenient == 1, allow_unstable: *allow_unstable == 1 };
+        let (frames, bytes) = bytes.split_first_chunk::<8>()?;
+        let (time, snapshot) = bytes.split_first_chunk::<8>()?;
+        let (frames, time) = (u64::from_le_bytes(*frames), f64::from_le_bytes(*time));
+        Some(SavedRun { name, calling, frames, time, snapshot: snapshot.to_vec() })
+    }
+}
+
+/// Reads a checkpoint: how far the run was, and its scene.
+///
+/// A damaged or missing one is an error that names the one before it, if that is whole.
+pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
+    let error = match read(path) {
+        Ok(whole) => return Ok(whole),
+        Err(error) => SceneError { file: path.display().to_string(), ..*error },
+    };
+    let hint = if path.is_dir() {
+        let inside = path.join(NAME);
+        inside.is_file().then(|| format!("did you mean {}?", inside.display()))
+    } else {
+        let older = previous(path);
+        read(&older).ok().map(|(run, _)| {
+            format!(
+                "the checkpoint before it is whole, at t = {} s: --resume {}",
+                run.time,
+                argument(&older.display().to_string())
+            )
+        })
+    };
+    let otherwise = match error.code {
+        "read.failed" => "a run leaves it in the folder of its output, such as out/ball/checkpoint",
+        _ => "try an older checkpoint; there is none beside this one",
+    };
+    Err(Failure::Run(Box::new(error.hint(hint.unwrap_or_else(|| otherwise.into())))))
+}
+
+fn previous(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".previous");
+    PathBuf::from(name)
+}
+
+fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
+    let limits = scene::Limits { file_bytes: 1 << 40, ..scene::Limits::default() };
+    let bytes = scene::bytes_of(path, &limits)?;
+    let checkpoint = Checkpoint::read(&bytes).map_err(|e: CheckpointError| SceneError::from(&e))?;
+    let run = SavedRun::read(&checkpoint.payload).ok_or_else(|| {
+        SceneError::new("checkpoint.version", "the checkpoint belongs to another version of the program")
+    })?;
+    let file = format!("scene {} (in {})", run.name, path.display());
+    let source = Source { name: run.name.clone(), file, bytes: checkpoint.scene.into_bytes() };
+    Ok((run, source))
+}
+
+/// What becomes of the checkpoint that is there when the first one of a run is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Older {
+    /// It is of this run: it is kept as the one before.
+    Keep,
+    /// It is of this run, but the one before it is what the run goes on from: that one stays.
+    Leave,
+    /// It is of another run: neither it nor the one before it stays.
+    Remove,
+}
+
+/// Writes the checkpoints of a run.
+pub(crate) struct Keeper<'a> {
+    folder: &'a OutputFolder,
+    source: &'a Source,
+    calling: Calling,
+    /// None: at the end only.
+    every: Option<Duration>,
+    next: Option<Instant>,
+    older: Older,
+    /// Checkpoints on the way that could not be written, and why the last one could not.
+    failed: Option<(u64, String)>,
+}
+
+impl<'a> Keeper<'a> {
+    /// A keeper that writes every so many seconds of a clock on the wall; 0: at the end only.
+    pub(crate) fn new(
+        folder: &'a OutputFolder,
+        source: &'a Source,
+        calling: Calling,
+        seconds: f64,
+        resumed: Option<&Path>,
+    ) -> Keeper<'a> {
+        let is = |name: &str| {
+            let real = |path: &Path| path.canonicalize().ok();
+            resumed.and_then(real).is_some_and(|path| Some(path) == real(&folder.path(name)))
+        };
+        let older = if is(NAME) {
+            Older::Keep
+        } else if is(PREVIOUS) {
+            Older::Leave
+        } else {
+            Older::Remove
+        };
+        let every = (seconds > 0.0).then(|| Duration::from_secs_f64(seconds));
+        let next = every.map(|every| Instant::now() + every);
+        Keeper { folder, source, calling, every, next, older, failed: None }
+    }
+
+    /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
+    /// run: the next one may succeed.
+    pub(crate) fn on_the_way<const D: usize>(&mut self, world: &mut World<D>, table: &NumberTable) -> Option<String> {
+        let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
+        let written = self.write(world, table);
+        let took = start.elapsed();
+        // Large worlds on slow disks: at least half of the time is the run's.
+        self.next = self.every.map(|every| Instant::now() + every.max(took));
+        let error = written.err()?;
+        let count = self.failed.as_ref().map_or(0, |f| f.0) + 1;
+        self.failed = Some((count, format!("a checkpoint on the way could not be written: {}", error.message)));
+        Some(error.to_string())
+    }
+
+    /// Writes the table so far, then a checkpoint; the one before it is kept under its second name.
+    pub(crate) fn write<const D: usize>(
+        &mut self,
+        world: &mut World<D>,
+        table: &NumberTable,
+    ) -> Result<(), WriteError> {
+        self.folder.write("diagnostics.csv", true, |out| table.write(out))?;
+        let saved = SavedRun {
+            name: self.source.name.clone(),
+            calling: self.calling.clone(),
+            frames: world.frames(),
+            time: world.time(),
+            snapshot: world.snapshot(),
+        };
+        let checkpoint = Checkpoint { scene: self.source.text().into(), payload: saved.to_bytes() };
+        match std::mem::replace(&mut self.older, Older::Keep) {
+            Older::Keep => self.folder.write_keeping(NAME, PREVIOUS, |out| checkpoint.write(out))?,
+            older => {
+                let written = self.folder.write(NAME, true, |out| checkpoint.write(out));
+                if written.is_err() {
+                    self.older = older;
+                } else if older == Older::Remove {
+                    self.folder.remove(PREVIOUS)?;
+                }
+                written?
+            }
+        };
+        Ok(())
+    }
+
+    /// What went wrong on the way, for the summary.
+    pub(crate) fn warning(&self) -> Option<WarningSummary> {
+        let (count, message) = self.failed.clone()?;
+        Some(WarningSummary { code: "checkpoint.failed".into(), message, count })
+    }
+}

@@ -1,0 +1,155 @@
+//! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
+
+use crate::failure::Failure;
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::core::spec::nearest;
+use opruga::io::problem::visible;
+use opruga::io::refusals::in_scene;
+use opruga::io::{Notice, SceneError, scene};
+use opruga::{Options, World, WorldError};
+use std::path::Path;
+
+/// A scene's text and where it came from.
+pub(crate) struct Source {
+    /// The name of the scene: that of its file, without the ending.
+    pub(crate) name: String,
+    /// The place of errors.
+    pub(crate) file: String,
+    /// As it was read; what is no UTF-8 is refused by the reader, with its place.
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Source {
+    /// The text of a scene that the reader has accepted.
+    pub(crate) fn text(&self) -> &str {
+        core::str::from_utf8(&self.bytes).unwrap_or_default()
+    }
+
+    /// Finds a scene: a file, or one that comes with the program.
+    pub(crate) fn find(name: &str) -> Result<Source, Failure> {
+        let path = Path::new(name);
+        let built_in = opruga::scenes::find(name).filter(|_| !path.is_file());
+        if let Some(text) = built_in {
+            return Ok(Source { name: name.into(), file: format!("scene {name} (built in)"), bytes: text.into() });
+        }
+        let file = path.display().to_string();
+        let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
+            let absent = std::fs::metadata(path).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);
+            let error = if absent { missing(name) } else { error };
+            let beside = format!("{}.toml", name.trim_end_matches(['/', '\\']));
+            let error = match path.is_dir() && Path::new(&beside).is_file() {
+                true => error.hint(format!("did you mean `{}`?", visible(&beside))),
+                false => error,
+            };
+            Failure::Scene(vec![SceneError { file: file.clone(), ..error }])
+        })?;
+        let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        Ok(Source { name, file, bytes })
+    }
+
+    /// Reads the scene. All that is wrong with it comes at once: what the reader finds, and what a world of the rest would
+    /// refuse.
+    pub(crate) fn read(
+        &self,
+        options: &scene::Options,
+        world: &Options,
+    ) -> Result<(AnyBlueprint, Vec<Notice>), Failure> {
+        match scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options) {
+            scene::Reading { blueprint: Some(blueprint), errors, notices } if errors.is_empty() => {
+                Ok((blueprint, notices))
+            }
+            reading => Err(self.refused(reading, options, world)),
+        }
+    }
+
+    fn refused(&self, reading: scene::Reading, options: &scene::Options, world: &Options) -> Failure {
+        let refusals = match &reading.blueprint {
+            Some(AnyBlueprint::Plane(rest)) => World::problems(rest, world),
+            Some(AnyBlueprint::Space(rest)) => World::problems(rest, world),
+            None => Vec::new(),
+        };
+        let mut errors = reading.errors;
+        errors.extend(refusals.iter().map(|e| self.place(e, options)));
+        // What is counted only comes last.
+        errors.sort_by_key(|e| (e.code == "scene.more", e.line.unwrap_or(0), e.column.unwrap_or(0)));
+        Failure::Scene(errors)
+    }
+
+    fn place(&self, error: &WorldError, options: &scene::Options) -> SceneError {
+        in_scene(SceneError::from(error), self.text(), &self.file, &options.overrides)
+    }
+
+    /// Builds the world of a scene that was read with these options; everything that it refuses comes at once.
+    pub(crate) fn build<const D: usize>(
+        &self,
+        blueprint: Blueprint<D>,
+        options: &scene::Options,
+        world: &Options,
+    ) -> Result<World<D>, Failure> {
+        let built = World::new(blueprint, world.clone()).map_err(|first| {
+            // The scene is read again rather than kept for the case that its world is refused.
+            let reading = scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options);
+            match self.refused(reading, options, world) {
+                Failure::Scene(all) if !all.is_empty() => Failure::Scene(all),
+                _ => Failure::Scene(vec![self.place(&first, options)]),
+            }
+        })?;
+        let warnings = built.warnings();
+        if options.strict && !warnings.is_empty() {
+            let error = |w| SceneError { file: self.file.clone(), ..SceneError::from(w) };
+            return Err(Failure::Scene(warnings.iter().map(error).collect()));
+        }
+        Ok(built)
+    }
+
+    /// An error that ends a run at a time, such as that of a command; it is not the fault of a line.
+    pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
+        let said = SceneError::from(error);
+        let message = match error {
+            WorldError::Diverged { .. } | WorldError::Snapshot(_) => said.message.clone(),
+            _ => format!("at t = {time} s: {}", said.message),
+        };
+        Failure::Run(Box::new(SceneError { file: self.file.clone(), message, ..said }))
+    }
+}
+
+/// Neither a file nor a scene of the program: what else could be meant.
+fn missing(name: &str) -> SceneError {
+    let path = Path::new(name);
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    let files: Vec<String> = std::fs::read_dir(folder.unwrap_or(Path::new(".")))
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|file| file.ends_with(".toml"))
+        .map(|file| folder.map_or(file.clone(), |folder| folder.join(&file).display().to_string()))
+        .collect();
+    let with_ending = format!("{name}.toml");
+    let near = files.iter().find(|file| **file == with_ending).cloned();
+    let near = near.or_else(|| {
+        let scenes = opruga::scenes::names().map(String::from);
+        let known: Vec<String> = scenes.chain(files).collect();
+        nearest(name, known.iter().map(String::as_str))
+    });
+    let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
+    SceneError::new("read.failed", "there is no such file, and no such scene comes with the program").hint(match near {
+        Some(near) => format!("did you mean `{}`?", visible(&near)),
+        None => format!("scenes that come with the program: {}", scenes()),
+    })
+}
+
+/// The name of a file as it is typed on the command line.
+pub(crate) fn argument(path: &str) -> String {
+    // Else it would be taken for an option.
+    let path = if path.starts_with('-') { format!("./{path}") } else { path.to_string() };
+    if path.chars().all(|c| c.is_alphanumeric() || "._-/\\:".contains(c)) {
+        path
+    } else {
+        format!("'{}'", visible(&path).replace('\'', "'\\''"))
+    }
+}
+
+/// Splits the overrides of a call.
+pub(crate) fn overrides(set: &[String]) -> Result<Vec<(String, String)>, Failure> {
+    set.iter().map(|s| opruga::io::overrides::split(s).map_err(|e| Failure::Scene(vec![e]))).collect()
+}

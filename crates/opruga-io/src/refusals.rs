@@ -1,0 +1,119 @@
+//! What a world refuses, said as errors of the scene: with the place of the part that is meant.
+
+use crate::document::{self, Data, Node, Place};
+use crate::overrides;
+use crate::problem::SceneError;
+use crate::source::Source;
+use opruga_world::{Warning, WorldError};
+
+impl From<&WorldError> for SceneError {
+    /// The same in the words of a scene: what is wrong, what is allowed, what would help. The place is that of the path;
+    /// [`in_scene`] finds its line.
+    fn from(error: &WorldError) -> SceneError {
+        let say = |message: String| SceneError::new(error.code(), message).path(path_of(error));
+        match error {
+            WorldError::UnstableStep { integrator, body, h, limit, omega, damping, substeps } => {
+                let fastest = match damping {
+                    0.0 => format!("its fastest motion: {omega:.4e} rad/s"),
+                    _ => format!("its fastest motion: {omega:.4e} rad/s, damping {damping:.4e} 1/s"),
+                };
+                say(format!("the step h = {h:.6e} s of `{integrator}` is unstable for body `{body}`"))
+                    .value(format!("{h:e}"))
+                    .allowed(format!("h <= {limit:.6e} s ({fastest})"))
+                    .hint(format!(
+                        "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
+                    ))
+            }
+            WorldError::Diverged { body, node, time, last } => say(format!(
+                "body `{body}` diverged: node {node} left the finite numbers in the substep from t = {time} s"
+            ))
+            .value(time.to_string())
+            .hint(format!("the output ends with the last good frame, t = {last} s; more substeps may help")),
+            // The obstacle says itself which one it is.
+            WorldError::Build { place, source } if place == "collider" => split(say(source.to_string())),
+            other => split(say(other.to_string())),
+        }
+    }
+}
+
+/// Messages of models and obstacles may say themselves what is allowed.
+fn split(error: SceneError) -> SceneError {
+    match error.message.split_once("; allowed: ").map(|(m, a)| (m.to_string(), a.to_string())) {
+        Some((message, allowed)) => SceneError { message, ..error }.allowed(allowed),
+        None => error,
+    }
+}
+
+/// The path of the part of the scene that an error is about.
+fn path_of(error: &WorldError) -> String {
+    let body = |place: &str| {
+        let name = place.split('`').nth(1)?;
+        Some(format!("body.{}", name.split('[').next().unwrap_or(name)))
+    };
+    match error {
+        WorldError::Build { place, source } => match body(place) {
+            Some(body) => format!("{body}.models.{}", source.kind),
+            None if place == "collider" => {
+                let number = source.kind.split(' ').nth(1).unwrap_or("0");
+                format!("collider.{number}")
+            }
+            None => place.clone(),
+        },
+        WorldError::UnstableStep { .. } => "time.substeps".into(),
+        WorldError::Step { body, .. } | WorldError::Diverged { body, .. } => {
+            format!("body.{}", body.split('[').next().unwrap_or(body))
+        }
+        WorldError::Path { path, .. } => body(path).unwrap_or_default(),
+        WorldError::Snapshot(_) => String::new(),
+    }
+}
+
+/// A warning of a world as an error, for those who want no warnings.
+impl From<&Warning> for SceneError {
+    fn from(warning: &Warning) -> SceneError {
+        const CODES: [&str; 3] = ["units.sag", "step.no_stable_step", "step.unstable"];
+        let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
+        SceneError::new(code, warning.message.clone()).hint("without --strict this is a warning")
+    }
+}
+
+/// Gives an error its file, and the line of its path in the text of the scene: that of the nearest part around it where
+/// the path itself is not written; or the override that has set it.
+#[must_use]
+pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String, String)]) -> SceneError {
+    let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
+    let error = SceneError { file: file.to_string(), ..error };
+    if error.path.is_empty() {
+        return error;
+    }
+    if let Some((path, value)) = overrides.iter().rev().find(|(path, _)| *path == error.path) {
+        return SceneError { file: overrides::named(path, value), ..error };
+    }
+    match document::parse(&source).0.and_then(|root| place(&root, &error.path)) {
+        Some(Place::Bytes(start, end)) => source.mark(error, start, end),
+        _ => error,
+    }
+}
+
+/// The place of the last part of a path that is written; none where nothing of it is.
+fn place(root: &Node, path: &str) -> Option<Place> {
+    let (mut node, mut place) = (root, None);
+    for part in path.split('.') {
+        let next = match &node.data {
+            Data::Table(_) => node.entry(part).map(|entry| {
+                // A table is shown by its key, a value by itself.
+                let header = matches!(entry.value.data, Data::Table(_) | Data::Array(_));
+                (&entry.value, if header { entry.place } else { entry.value.place })
+            }),
+            Data::Array(items) => {
+                let named = |n: &&Node| ["name", "kind"].iter().any(|k| n.get(k).and_then(Node::text) == Some(part));
+                let found = part.parse::<usize>().ok().and_then(|k| items.get(k)).or_else(|| items.iter().find(named));
+                found.map(|n| (n, n.place))
+            }
+            _ => None,
+        };
+        let Some((next, at)) = next else { break };
+        (node, place) = (next, Some(at));
+    }
+    place
+}

@@ -1,0 +1,58 @@
+//! Everything that a world would refuse, found part by part: what [`World::new`] stops at is only the first of it.
+
+use crate::blueprint::{Blueprint, BodyBlueprint, LoadBlueprint};
+use crate::error::WorldError;
+use crate::world::{Options, World};
+use opruga_core::spec::Values;
+use std::sync::Arc;
+
+/// More problems than this help nobody.
+const MOST_PROBLEMS: usize = 200;
+
+impl<const D: usize> World<D> {
+    /// What building a world of this blueprint would refuse: the integrator, every obstacle, and every kind of body with
+    /// its models, loads and stable step, each by itself. Copies of a body are one kind. Empty where nothing is refused.
+    pub fn problems(blueprint: &Blueprint<D>, options: &Options) -> Vec<WorldError> {
+        let options = Options { threads: 1, ..options.clone() };
+        let part = |bodies, colliders, loads| blueprint.part(bodies, colliders, loads);
+        let refused = |part| World::new(part, options.clone()).err();
+        if let Some(error) = refused(part(Vec::new(), Vec::new(), Vec::new())) {
+            // Without surroundings and an integrator no part can be built.
+            return vec![error];
+        }
+        let mut problems = Vec::new();
+        for (number, collider) in blueprint.colliders.iter().enumerate() {
+            if let Some(mut error) = refused(part(Vec::new(), vec![collider.clone()], Vec::new())) {
+                // Built alone it was number 0.
+                if let WorldError::Build { source, .. } = &mut error {
+                    source.kind = format!("collider {number} ({})", collider.values.kind());
+                }
+                problems.push(error);
+            }
+        }
+        let mut last: Option<(&str, usize, &[Values], Option<&Values>)> = None;
+        for (number, body) in blueprint.bodies.iter().enumerate() {
+            let kind = (
+                body.common_name(),
+                Arc::as_ptr(&body.mesh) as usize,
+                body.models.as_slice(),
+                body.integrator.as_ref(),
+            );
+            // Copies stand one after the other.
+            if last.replace(kind) == Some(kind) || problems.len() >= MOST_PROBLEMS {
+                continue;
+            }
+            let loads = blueprint.loads.iter().filter(|l| l.body == number);
+            let loads = loads.map(|l| LoadBlueprint { body: 0, ..l.clone() }).collect();
+            problems.extend(refused(part(vec![body.clone()], Vec::new(), loads)));
+        }
+        problems
+    }
+}
+
+impl<const D: usize> BodyBlueprint<D> {
+    /// The name in the scene: that of copies without their number, `ball` for `ball[3]`.
+    pub fn common_name(&self) -> &str {
+        self.name.split('[').next().unwrap_or(&self.name)
+    }
+}
