@@ -134,7 +134,7 @@ pub(crate) struct Run {
     /// Unknown fields are warnings
     #[arg(long)]
     pub(crate) lenient: bool,
-    /// Draw forces of the pressure and of the pointer
+    /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long)]
     pub(crate) arrows: bool,
 }

@@ -6,6 +6,7 @@ mod bench;
 mod failure;
 mod outputs;
 mod plots;
+mod recorder;
 mod reports;
 mod run;
 

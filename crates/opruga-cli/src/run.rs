@@ -2,7 +2,8 @@
 
 use crate::arguments::Run;
 use crate::failure::{Failure, print_data};
-use crate::outputs::{Outputs, Recorder};
+use crate::outputs::Outputs;
+use crate::recorder::Recorder;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::{Existing, OutputFolder};
@@ -168,7 +169,14 @@ impl Job<'_> {
         let start = Instant::now();
         let first = world.frames();
         let mut failure = None;
-        recorder.record(&mut world);
+        // Looking at the world is not counted as the time of its steps.
+        let mut looking = std::time::Duration::ZERO;
+        let mut record = |world: &mut World<D>| {
+            let begin = Instant::now();
+            recorder.record(world);
+            looking += begin.elapsed();
+        };
+        record(&mut world);
         while world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
                 failure = Some(Failure::Interrupted);
@@ -178,7 +186,7 @@ impl Job<'_> {
                 failure = Some(world_error(error));
                 break;
             }
-            recorder.record(&mut world);
+            record(&mut world);
             bar.set_position(world.frames());
             let wall = start.elapsed().as_secs_f64();
             if wall > 0.0 {
@@ -186,7 +194,7 @@ impl Job<'_> {
                 bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
             }
         }
-        let wall = start.elapsed().as_secs_f64();
+        let wall = (start.elapsed() - looking).as_secs_f64();
         bar.finish_and_clear();
         let outputs = Outputs {
             folder: &self.folder,

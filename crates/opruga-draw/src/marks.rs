@@ -35,13 +35,26 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
     }
 }
 
-/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point.
+/// The unit of a kind of arrow, where lengths have a unit of their own.
+pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
+    match (kind, length) {
+        (ArrowKind::Pressure, "m") => "Pa".into(),
+        (ArrowKind::Velocity, length) => format!("{length}/s"),
+        (_, "m") => "N".into(),
+        (ArrowKind::Pressure, length) => format!("kg/({length} s²)"),
+        (_, length) => format!("kg {length}/s²"),
+    }
+}
+
+/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point, and `in_sight` says
+/// whether a point of a surface is seen.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
     picture: &Picture,
     view: &View,
     unit: f32,
     project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+    in_sight: &dyn Fn([f64; 3]) -> bool,
 ) {
     for body in &picture.bodies {
         let few = body.pinned.len() <= SUPPORTS;
@@ -54,6 +67,9 @@ pub(crate) fn draw_marks(
     for mark in &picture.arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
+        if !in_sight(mark.from) {
+            continue;
+        }
         if let (Some(from), Some(to)) = (project(mark.from), project(to)) {
             arrow(canvas, [from, to], 1.8 * unit, arrow_colour(mark.kind), true);
         }

@@ -8,6 +8,7 @@ pub mod error;
 mod island;
 pub mod ledger;
 mod loads;
+mod looks;
 pub mod registry;
 pub mod schema;
 pub mod selection;

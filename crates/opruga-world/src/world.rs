@@ -8,10 +8,12 @@ use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
 use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
+use crate::looks::Looks;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::Integrator;
+use opruga_core::potential::Account;
 use opruga_core::stability::{Stability, estimate};
 use opruga_core::state::View;
 use opruga_math::{Simd, WIDTH};
@@ -83,6 +85,7 @@ pub struct World<const D: usize> {
     pub(crate) momentum: Momentum<D>,
     /// Frames since the start.
     pub(crate) frames: u64,
+    pub(crate) looks: Looks,
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
     /// What has changed in the blueprint since the start.
@@ -150,6 +153,7 @@ impl<const D: usize> World<D> {
             energy: Energy::default(),
             momentum: Momentum::default(),
             frames: 0,
+            looks: Looks::default(),
             stability: Vec::new(),
             warnings: Vec::new(),
             changes: Vec::new(),
@@ -303,7 +307,9 @@ impl<const D: usize> World<D> {
             start: self.time(),
             substeps: self.blueprint.time.substeps,
             h: self.h(),
+            look_every: self.looks.every,
         };
+        (self.looks.flows, self.looks.fresh) = (self.flows, false);
         let islands = &mut self.islands;
         let step = |island: &mut Island<D>| island.outcome = island.frame(&plan);
         match &self.pool {
@@ -331,6 +337,7 @@ impl<const D: usize> World<D> {
             });
         }
         self.frames += 1;
+        self.looks.fresh = true;
         for island in &mut self.islands {
             let work = std::mem::take(&mut island.work);
             self.flows.add(&island.system, &work);
@@ -342,7 +349,7 @@ impl<const D: usize> World<D> {
 
     /// The time [s].
     pub fn time(&self) -> f64 {
-        self.frames as f64 * self.blueprint.time.frame
+        self.looks.time.unwrap_or(self.frames as f64 * self.blueprint.time.frame)
     }
     /// Frames since the start.
     pub fn frames(&self) -> u64 {
@@ -515,6 +522,22 @@ impl<const D: usize> World<D> {
             }
         }
         sum.map(|s| s / nodes.len().max(1) as f64)
+    }
+    /// The forces of the models of one account on the nodes of a body [N]; none: of all models, gravity included.
+    ///
+    /// Empty where the body is not there or a model refuses the state.
+    pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let system = &mut self.islands[island].system;
+        let forces = match account {
+            Some(account) => system.forces_of(account),
+            None => system.forces(true),
+        };
+        let Ok(forces) = forces else { return Vec::new() };
+        (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
     }
     /// The sum of the forces that pins exert on nodes [N].
     pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {

@@ -4,10 +4,16 @@
 
 use crate::blueprint::{Action, BodyBlueprint};
 use crate::collide::Picture as Placed;
+use crate::core::potential::Account;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
 use crate::{World, mesh::EdgeSet};
+
+/// The most arrows of a body in a plane and in space, where those at the back are hidden.
+const MOST_ARROWS: [usize; 2] = [40, 320];
+/// Bodies up to which arrows are drawn: those of more could not be told apart.
+const MOST_BODIES: usize = 64;
 
 /// What stays the same from picture to picture: outlines, springs, rest lengths.
 #[derive(Clone, Debug)]
@@ -15,6 +21,7 @@ pub struct Scenery {
     dimension: u8,
     title: String,
     y_down: bool,
+    length_unit: String,
     bodies: Vec<Fixed>,
 }
 
@@ -28,6 +35,8 @@ struct Fixed {
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
+    /// The depth of a body in the plane [m].
+    thickness: f64,
 }
 
 /// What changes from picture to picture, kept small.
@@ -91,6 +100,7 @@ impl Scenery {
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
                 nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
                 pinned,
+                thickness: if D == 2 { blueprint.thickness } else { 1.0 },
             }
         };
         Scenery {
@@ -98,11 +108,18 @@ impl Scenery {
             title: world.blueprint().title.clone(),
             bodies: present.iter().chain(coming).map(fixed).collect(),
             y_down: y_down(world),
+            length_unit: world.blueprint().length_unit.clone(),
         }
     }
 
-    /// Keeps what a world looks like now.
-    pub fn capture<const D: usize>(&self, world: &World<D>, arrows: bool) -> Moment {
+    /// Whether y counts downwards.
+    pub fn y_down(&self) -> bool {
+        self.y_down
+    }
+
+    /// Keeps what a world looks like now; with arrows also pulls, and the pressure on the bodies with gas [Pa] or the
+    /// force on the nodes of the others [N].
+    pub fn capture<const D: usize>(&self, world: &mut World<D>, arrows: bool) -> Moment {
         let mut coordinates = Vec::new();
         let bodies: Vec<usize> = world.bodies().filter(|b| *b < self.bodies.len()).collect();
         for &body in &bodies {
@@ -117,6 +134,9 @@ impl Scenery {
             .collect();
         let mut drawn = Vec::new();
         if arrows {
+            if bodies.len() <= MOST_BODIES {
+                bodies.iter().for_each(|&body| self.push_arrows(world, body, &mut drawn));
+            }
             for (node, _, force) in world.pulls() {
                 drawn.push(ArrowPicture { kind: ArrowKind::Pull, from: three(node), vector: three(force) });
             }
@@ -124,6 +144,31 @@ impl Scenery {
         let colliders =
             world.colliders().map_or_else(Vec::new, |c| c.pictures(world.time()).into_iter().map(collider).collect());
         Moment { time: world.time(), coordinates, bodies, pulls, colliders, arrows: drawn }
+    }
+
+    /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
+    fn push_arrows<const D: usize>(&self, world: &mut World<D>, body: usize, arrows: &mut Vec<ArrowPicture>) {
+        let fixed = &self.bodies[body];
+        let mut forces = world.node_forces(body, Some(Account::Gas));
+        let gas = forces.iter().flatten().any(|force| *force != 0.0);
+        let kind = if gas {
+            // The force on a node over the surface that belongs to it.
+            let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
+            for (force, surface) in forces.iter_mut().zip(surfaces(fixed, &positions)) {
+                *force = if surface > 0.0 { force.map(|f| f / surface) } else { [0.0; D] };
+            }
+            ArrowKind::Pressure
+        } else {
+            forces = world.node_forces(body, None);
+            ArrowKind::Force
+        };
+        let every = forces.len().div_ceil(MOST_ARROWS[D - 2]).max(1);
+        for (node, force) in forces.iter().enumerate().step_by(every) {
+            if force.iter().any(|f| *f != 0.0) {
+                let from = three(world.position(body, node as u32));
+                arrows.push(ArrowPicture { kind, from, vector: three(*force) });
+            }
+        }
     }
 
     /// The picture of a moment, coloured by the mean strain of the edges at each node.
@@ -157,6 +202,7 @@ impl Scenery {
             arrows: moment.arrows.clone(),
             pulls: moment.pulls.clone(),
             y_down: self.y_down,
+            length_unit: self.length_unit.clone(),
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
         }
     }
@@ -221,6 +267,31 @@ fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
             ColliderPicture::Mesh { positions: corners, triangles }
         }
     }
+}
+
+/// The surface that belongs to each node [m²]: half of the edges in a plane, a third of the triangles in space.
+fn surfaces(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
+    let mut out = vec![0.0; fixed.nodes];
+    let arm = |a: u32, b: u32| -> [f64; 3] {
+        std::array::from_fn(|d| positions[b as usize][d] - positions[a as usize][d])
+    };
+    let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match &fixed.facets {
+        Facets::Edges(edges) => {
+            for [a, b] in edges {
+                let share = 0.5 * size(arm(*a, *b)) * fixed.thickness;
+                [a, b].into_iter().for_each(|node| out[*node as usize] += share);
+            }
+        }
+        Facets::Triangles(triangles) => {
+            for [a, b, c] in triangles {
+                let (u, v) = (arm(*a, *b), arm(*a, *c));
+                let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+                [a, b, c].into_iter().for_each(|node| out[*node as usize] += size(area) / 6.0);
+            }
+        }
+    }
+    out
 }
 
 /// Mean elongation of the edges at each node [%].
