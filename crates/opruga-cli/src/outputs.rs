@@ -7,9 +7,7 @@ use opruga::World;
 use opruga::draw;
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::OutputFolder;
-use opruga::io::tables::{
-    EnergySummary, FinalBody, MomentumSummary, Summary, WarningSummary, write_final,
-};
+use opruga::io::tables::{EnergySummary, FinalBody, MomentumSummary, Summary, WarningSummary, write_final};
 use opruga::pictures::{Moment, Scenery};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -217,7 +215,8 @@ impl Outputs<'_> {
             every(&mut |image| writer.push(image))?;
             "video.gif"
         } else {
-            let mut writer = draw::Mp4Writer::new(&mut bytes, [style.width, style.height], rate).map_err(draw_failed)?;
+            let mut writer =
+                draw::Mp4Writer::new(&mut bytes, [style.width, style.height], rate).map_err(draw_failed)?;
             every(&mut |image| writer.push(image))?;
             writer.finish().map_err(draw_failed)?;
             "video.mp4"

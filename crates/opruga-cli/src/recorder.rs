@@ -80,7 +80,7 @@ impl Recorder {
         let frame = world.blueprint().time.frame;
         let wanted = ((1.0 / call.fps / frame).round() as u64).max(1);
         let pictures = frames / wanted + 1;
-        let bytes = pictures * (nodes * D * 4) as u64;
+        let bytes = pictures * (nodes * (D + 1) * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
         if every > wanted {
             eprintln!(

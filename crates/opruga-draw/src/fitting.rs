@@ -250,6 +250,10 @@ fn range_of(scalars: &mut [f64], ends: [f64; 2]) -> (Option<[f64; 2]>, [bool; 2]
     if width.is_nan() || width < 0.0 || scalars.is_empty() {
         return (None, [false; 2]);
     }
+    // Rounding is no data.
+    if width <= 1e-9 * ends[0].abs().max(ends[1].abs()).max(1.0) {
+        return (Some([ends[0]; 2]), [false; 2]);
+    }
     let inner = [quantile(scalars, STRAYS), quantile(scalars, 1.0 - STRAYS)];
     let strays = [inner[0] - ends[0] > width / 6.0, ends[1] - inner[1] > width / 6.0];
     let range = [0, 1].map(|end| if strays[end] { inner[end] } else { ends[end] });
@@ -312,7 +316,8 @@ mod tests {
     #[test]
     fn a_net_with_two_tight_corners_uses_all_colours() {
         // One node in forty is stretched four times as much as any other.
-        let mut scalars: Vec<f64> = (0..400).map(|i| if i % 40 == 0 { 40.0 } else { f64::from(i % 40) * 0.25 }).collect();
+        let mut scalars: Vec<f64> =
+            (0..400).map(|i| if i % 40 == 0 { 40.0 } else { f64::from(i % 40) * 0.25 }).collect();
         let (found, strays) = range_of(&mut scalars, [0.0, 40.0]);
         let [_, high] = found.expect("a range");
         assert!(high < 11.0 && strays == [false, true], "{high} {strays:?}");

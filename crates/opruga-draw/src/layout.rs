@@ -82,14 +82,7 @@ impl Layout {
     }
 
     /// Writes everything around the scene; `scale` is the number of pixels in a metre.
-    pub(crate) fn annotate(
-        &self,
-        canvas: &mut Canvas,
-        picture: &Picture,
-        view: &View,
-        style: &Style,
-        scale: f64,
-    ) {
+    pub(crate) fn annotate(&self, canvas: &mut Canvas, picture: &Picture, view: &View, style: &Style, scale: f64) {
         let [left, top, width, height] = self.scene.map(|value| value as f32);
         let unit = self.unit;
         canvas.frame([left - 1.0, top - 1.0, width + 2.0, height + 2.0], FRAME);
@@ -186,14 +179,21 @@ impl Layout {
             }
             let value = nice_length((f64::from(70.0 * unit) / pixels).min(longest));
             let long = (value * pixels) as f32;
-            let text = format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, &pictures[0].length_unit));
+            let text =
+                format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, &pictures[0].length_unit));
             let start = end - text_width(&text, size) - 8.0 * unit - long;
             if start < from || long < 5.0 * unit {
                 continue;
             }
             canvas.text(&text, [end, base], size, Anchor::End, INK);
             let middle = base - 4.5 * unit;
-            crate::marks::arrow(canvas, [[start, middle], [start + long, middle]], 1.8 * unit, arrow_colour(kind), false);
+            crate::marks::arrow(
+                canvas,
+                [[start, middle], [start + long, middle]],
+                1.8 * unit,
+                arrow_colour(kind),
+                false,
+            );
             end = start - 20.0 * unit;
         }
     }

@@ -104,12 +104,12 @@ impl Grid {
     }
 }
 
-/// The number of panels, of eight to twelve or as many as there are, which makes the best strip of a view.
+/// The number of panels, of nine to twelve or as many as there are, which makes the best strip of a view.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
     let (aspect, room) = (view.aspect(dimension) as f32, style.width as f32);
     let fault = |count: usize| Grid::best(count, aspect, room, 1.0).fault(count, room);
-    (8..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
+    (9..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
 }
 
 /// Draws pictures side by side in rows, with one view, one length scale and one legend for all.
@@ -199,7 +199,8 @@ mod tests {
     #[test]
     fn a_strip_of_few_panels_leaves_nothing_blank() {
         use crate::picture::{BodyPicture, Legend};
-        let body = BodyPicture { positions: vec![[0.0; 3], [1.0, 1.0, 0.0]], scalar: vec![0.0, 1.0], ..Default::default() };
+        let body =
+            BodyPicture { positions: vec![[0.0; 3], [1.0, 1.0, 0.0]], scalar: vec![0.0, 1.0], ..Default::default() };
         let legend = Legend { label: "strain".into(), unit: "%".into(), range: None, map: Default::default() };
         let picture = Picture { bodies: vec![body], legend: Some(legend), ..Default::default() };
         let view = View::fit([&picture]).expect("a view");

@@ -45,7 +45,10 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
         integrator: Values::defaults(registry.integrator("symplectic_euler").expect("an integrator").spec(), 2),
         bodies: (0..count).map(body).collect(),
         colliders: vec![ColliderBlueprint {
-            values: values(floor, &[("point", Value::Numbers(vec![0.0; 2])), ("normal", Value::Numbers(vec![0.0, 1.0]))]),
+            values: values(
+                floor,
+                &[("point", Value::Numbers(vec![0.0; 2])), ("normal", Value::Numbers(vec![0.0, 1.0]))],
+            ),
         }],
         loads: Vec::new(),
         commands: Vec::new(),

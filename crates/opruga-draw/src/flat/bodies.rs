@@ -279,7 +279,7 @@ impl Drawing<'_> {
     fn nodes(&self, canvas: &mut Canvas) {
         let count = self.pixels.len();
         // The distance of neighbours, if they lie around the body.
-        let crowded = 3.0 * self.size < count as f32 * 9.0 * self.unit;
+        let crowded = 3.0 * self.size < count as f32 * 15.0 * self.unit;
         if !self.body.nodes_drawn || crowded || self.size < 24.0 {
             return;
         }

@@ -365,7 +365,8 @@ mod tests {
     #[test]
     fn a_fast_swing_fills_the_height_through_which_it_swings() {
         // Forty swings in each pixel.
-        let swing = |index: u32| Some([f64::from(index) / 160.0, (f64::from(index) * std::f64::consts::FRAC_PI_2).sin()]);
+        let swing =
+            |index: u32| Some([f64::from(index) / 160.0, (f64::from(index) * std::f64::consts::FRAC_PI_2).sin()]);
         for piece in thinned((0..16_000).map(swing)) {
             for pair in piece.windows(6) {
                 let heights = pair.iter().map(|point| point[1]);
@@ -377,7 +378,11 @@ mod tests {
 
     #[test]
     fn a_band_is_drawn_behind_its_line_and_seen_by_the_scale() {
-        let line = Line { points: vec![[0.0, 1.0], [1.0, 1.0]], band: vec![[0.0, -5.0, 9.0], [1.0, 0.0, 2.0]], ..Line::default() };
+        let line = Line {
+            points: vec![[0.0, 1.0], [1.0, 1.0]],
+            band: vec![[0.0, -5.0, 9.0], [1.0, 0.0, 2.0]],
+            ..Line::default()
+        };
         let panel = Panel { lines: vec![line], ..Panel::default() };
         assert!(fit_panel(&panel).low < -5.0 && fit_panel(&panel).high > 9.0);
         let text = Chart { panels: vec![panel], ..Chart::default() }.to_svg().unwrap();
