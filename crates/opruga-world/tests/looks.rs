@@ -134,9 +134,10 @@ fn gas_pushes_every_node_outwards_with_its_pressure() {
     for body in [0, 3, 10] {
         let pressure = world.readings(body).iter().find(|(name, _)| *name == "pressure").expect("a pressure").1;
         let forces = world.node_forces(body, Some(opruga_core::potential::Account::Gas));
-        // P ∂V/∂x of a regular polygon: half of the pressure on both edges, along the radius.
-        let edge = 2.0 * 0.5 * (std::f64::consts::PI / 24.0).sin();
-        let expected = pressure * edge * (std::f64::consts::PI / 24.0).cos();
+        // P ∂V/∂x: the pressure times half of the chord between the neighbours, across it.
+        let (before, after) = (world.position(body, 23), world.position(body, 1));
+        let chord = [after[0] - before[0], after[1] - before[1]];
+        let expected = 0.5 * pressure * (chord[0] * chord[0] + chord[1] * chord[1]).sqrt();
         for force in forces {
             let size = (force[0] * force[0] + force[1] * force[1]).sqrt();
             assert!((size / expected - 1.0).abs() < 1e-9, "{size} {expected}");

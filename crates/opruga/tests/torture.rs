@@ -311,5 +311,5 @@ fn bodies_that_come_later_are_drawn() {
     let bytes = world.snapshot();
     let mut other = built(scene());
     other.restore(&bytes).expect("its own snapshot");
-    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &other), 2);
+    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &mut other), 2);
 }
