@@ -163,7 +163,7 @@ pub(crate) struct Run {
     /// Unknown fields are warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
-    /// Draw forces of the pressure and of the pointer
+    /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
 }

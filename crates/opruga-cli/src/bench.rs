@@ -78,6 +78,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
     Ok(Blueprint {
         name: format!("{bodies} x {vertices}"),
         title: String::new(),
+        length_unit: "m".into(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 },
         surroundings: Surroundings {

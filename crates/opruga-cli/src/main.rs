@@ -7,6 +7,7 @@ mod checkpoints;
 mod failure;
 mod outputs;
 mod plots;
+mod recorder;
 mod reports;
 mod run;
 mod source;

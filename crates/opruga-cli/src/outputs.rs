@@ -1,156 +1,18 @@
 //! What a run leaves behind: tables, checkpoint, strip, video, plots.
 
-use crate::arguments::Run;
 use crate::checkpoints::{Keeper, NAME, PREVIOUS};
 use crate::failure::Failure;
+use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
 use opruga::World;
 use opruga::draw;
 use opruga::io::safe_write::OutputFolder;
-use opruga::io::tables::{
-    EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final,
-};
+use opruga::io::tables::{EnergySummary, FinalBody, MomentumSummary, Summary, WarningSummary, write_final};
 use opruga::pictures::{Moment, Scenery};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The most memory that pictures may wait in [bytes]; longer or larger runs keep fewer of them.
-const PICTURE_BYTES: u64 = 1 << 30;
-
-/// Bodies whose volume and pressure get columns of their own.
-const MOST_BODY_COLUMNS: usize = 64;
-
-/// What is kept of every frame.
-pub(crate) struct Recorder {
-    pub(crate) table: NumberTable,
-    /// Bodies with columns of their own, and how many.
-    bodies: Vec<(String, usize)>,
-    /// The first column of the table that belongs to a probe.
-    first_probe: usize,
-    scenery: Option<Scenery>,
-    moments: Vec<Moment>,
-    /// Frames of the scene between two pictures.
-    every: u64,
-    /// The length of a frame of the scene [s].
-    frame: f64,
-    arrows: bool,
-    gif: bool,
-}
-
-impl Recorder {
-    /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
-    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Result<Recorder, Failure> {
-        let axes = &["x", "y", "z"][..D];
-        let mut columns: Vec<String> =
-            ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
-                .into_iter()
-                .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
-                .map(String::from)
-                .collect();
-        columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
-        columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
-        // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
-        let mut bodies = Vec::new();
-        let mut add = |name: &str, readings: Vec<&'static str>| {
-            columns.extend(readings.iter().map(|what| format!("{name}.{what}")));
-            bodies.push((name.to_string(), readings.len()));
-        };
-        let present = world.blueprint().bodies.len();
-        for body in 0..present.min(MOST_BODY_COLUMNS) {
-            let readings = world.readings(body).into_iter().map(|(what, _)| what).collect();
-            add(&world.blueprint().bodies[body].name, readings);
-        }
-        for body in world.coming_bodies().take(MOST_BODY_COLUMNS.saturating_sub(present)) {
-            // A body for which a model cannot be built is told when it comes.
-            add(&body.name, world.reading_names(body).unwrap_or_default());
-        }
-        let first_probe = columns.len();
-        for probe in 0..world.blueprint().probes.len() {
-            columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
-        }
-        let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
-        let frame = world.blueprint().time.frame;
-        let wanted = ((1.0 / call.fps / frame).round() as u64).max(1);
-        let pictures = frames / wanted + 1;
-        let bytes = pictures * (nodes * D * 4) as u64;
-        let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
-        if every > wanted {
-            eprintln!(
-                "warning: pictures of {nodes} nodes would take {} MiB; every {every}th frame is kept",
-                bytes >> 20
-            );
-        }
-        let rate = film_rate(every, frame);
-        if !call.no_pictures && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
-            return Err(Failure::Call {
-                message: format!(
-                    "no film can have {rate:e} pictures per second: --fps {}, frames of {frame} s",
-                    call.fps
-                ),
-                hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
-            });
-        }
-        Ok(Recorder {
-            table: NumberTable::new(columns),
-            bodies,
-            first_probe,
-            scenery: (!call.no_pictures).then(|| Scenery::new(world)),
-            moments: Vec::new(),
-            every,
-            frame,
-            arrows: call.arrows,
-            gif: call.gif,
-        })
-    }
-
-    /// Keeps what there is to see of the present frame.
-    pub(crate) fn record<const D: usize>(&mut self, world: &mut World<D>) {
-        let e = world.energy();
-        let m = world.momentum();
-        let mut row = vec![
-            world.time(),
-            e.kinetic,
-            e.elastic,
-            e.gas,
-            e.gravity,
-            e.work_user,
-            e.work_gas,
-            e.work_correction,
-            e.loss_damping,
-            e.loss_friction,
-            e.loss_contact,
-            e.loss_integrator,
-            e.closure,
-        ];
-        row.extend(m.linear.0);
-        row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
-        for (name, columns) in &self.bodies {
-            let body = world.body(name);
-            let mut readings: Vec<f64> =
-                body.map_or_else(Vec::new, |b| world.readings(b).iter().map(|(_, x)| *x).collect());
-            // A body that is not there yet, or no longer, leaves its columns empty.
-            readings.resize(*columns, f64::NAN);
-            row.extend(readings);
-        }
-        for probe in 0..world.blueprint().probes.len() {
-            row.extend(world.probe(probe).into_iter().map(|(_, x)| x));
-        }
-        self.table.push(&row);
-        if let Some(scenery) = &self.scenery
-            && world.frames().is_multiple_of(self.every)
-        {
-            self.moments.push(scenery.capture(world, self.arrows));
-        }
-    }
-}
-
-/// Pictures per second of simulated time, if every so manieth frame is kept.
-fn film_rate(every: u64, frame: f64) -> f64 {
-    1.0 / (every as f64 * frame)
-}
-
-fn angular_axes<const D: usize>() -> &'static [&'static str] {
-    if D == 2 { &[""] } else { &[".x", ".y", ".z"] }
-}
+/// The most pictures that the view is fitted to.
+const MOST_FITTED: usize = 120;
 
 /// Where the files go and what they say of the run.
 pub(crate) struct Outputs<'a> {
@@ -254,16 +116,17 @@ impl Outputs<'_> {
     /// Strip, video and plots.
     fn pictures(&self, scenery: &Scenery, recorder: &Recorder, files: &mut Vec<String>) -> Result<(), Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let plots =
-            crate::plots::of_run(&recorder.table, recorder.first_probe, &self.source.name).map_err(draw_failed)?;
+        let plots = crate::plots::of_run(&recorder.seen, &recorder.columns, &self.source.name).map_err(draw_failed)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;
         files.push("plots.svg".into());
         let moments = &recorder.moments;
-        if moments.is_empty() {
+        let Some(first) = moments.first() else {
             return Ok(());
-        }
-        let pictures: Vec<draw::Picture> = draw::spread(moments, 60).into_iter().map(|m| scenery.picture(m)).collect();
-        let view = match draw::View::fit(&pictures) {
+        };
+        let dimension = scenery.picture(first).dimension;
+        let mut fitting = draw::Fitting::default();
+        draw::spread(moments, MOST_FITTED).into_iter().for_each(|m| fitting.add(&scenery.picture(m)));
+        let view = match fitting.finish() {
             Ok(view) => view,
             Err(nothing @ draw::DrawError::Empty(_)) => {
                 eprintln!("note: no strip and no video: {nothing}");
@@ -271,22 +134,30 @@ impl Outputs<'_> {
             }
             Err(error) => return Err(draw_failed(error)),
         };
-        let panels = draw::spread(&pictures, 10);
+        let count = draw::best_count(&view, dimension, moments.len());
+        let pictures: Vec<draw::Picture> =
+            draw::spread(moments, count).into_iter().map(|m| scenery.picture(m)).collect();
+        let panels: Vec<&draw::Picture> = pictures.iter().collect();
         let strip = draw::strip(&panels, &view, &draw::StripStyle::default()).map_err(draw_failed)?;
         let png = strip.to_png().map_err(draw_failed)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
         if !self.stop.load(Ordering::Relaxed) {
-            files.push(self.video(scenery, recorder, &view)?);
+            files.push(self.video(scenery, recorder, &view, dimension)?);
         }
         Ok(())
     }
 
     /// The animation of the run, drawn frame by frame.
-    fn video(&self, scenery: &Scenery, recorder: &Recorder, view: &draw::View) -> Result<String, Failure> {
+    fn video(
+        &self,
+        scenery: &Scenery,
+        recorder: &Recorder,
+        view: &draw::View,
+        dimension: u8,
+    ) -> Result<String, Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
-        let [width, height] = if recorder.gif { [640, 480] } else { [800, 600] };
-        let style = draw::Style { width, height, ..draw::Style::default() };
+        let style = draw::Style::film(view, dimension, if recorder.gif { 640 } else { 960 });
         let draw_moment = |moment: &Moment| draw::draw(&scenery.picture(moment), view, &style).map_err(draw_failed);
         let rate = film_rate(recorder.every, recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
@@ -307,7 +178,8 @@ impl Outputs<'_> {
             every(&mut |image| writer.push(image))?;
             "video.gif"
         } else {
-            let mut writer = draw::Mp4Writer::new(&mut bytes, [width, height], rate).map_err(draw_failed)?;
+            let mut writer =
+                draw::Mp4Writer::new(&mut bytes, [style.width, style.height], rate).map_err(draw_failed)?;
             every(&mut |image| writer.push(image))?;
             writer.finish().map_err(draw_failed)?;
             "video.mp4"

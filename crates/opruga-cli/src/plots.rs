@@ -1,46 +1,35 @@
 //! Plots of a run and of a benchmark.
 
 use crate::bench::Row;
-use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Panel};
+use crate::recorder::Columns;
+use opruga::blueprint::Recorded;
+use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, OKABE_ITO, Panel, format_value};
 use opruga::io::tables::NumberTable;
 
-/// Energy, losses, momentum, volumes, pressures and, from the column `first_probe` on, probes over time.
-pub(crate) fn of_run(table: &NumberTable, first_probe: usize, name: &str) -> Result<String, DrawError> {
-    let columns = table.columns();
-    let line = |place: usize, name: &str| Line {
-        name: name.replace('_', " "),
-        points: table.rows().map(|row| [row[0], row[place]]).collect(),
-        ..Line::default()
-    };
-    let named = |names: &[&str]| -> Vec<Line> {
-        // A channel in which nothing happened says nothing.
-        let moved = |p: usize| table.rows().any(|row| row[p] != 0.0);
-        let mut lines = Vec::new();
-        for name in names {
-            if let Some(place) = columns.iter().position(|c| c == name)
-                && moved(place)
-            {
-                lines.push(line(place, name));
-            }
-        }
-        lines
-    };
-    let ending = |ending: &str| -> Vec<Line> {
-        // Probes have a panel of their own.
-        let columns = &columns[..first_probe];
-        let fits = |c: &&(usize, &String)| c.1.ends_with(ending);
-        let all: Vec<(usize, &String)> = columns.iter().enumerate().collect();
-        all.iter().filter(fits).take(8).map(|(p, c)| line(*p, c.strip_suffix(ending).unwrap_or(c))).collect()
-    };
-    let probes: Vec<Line> = (first_probe..columns.len()).take(8).map(|p| line(p, &columns[p])).collect();
+/// The most lines of a panel; the bodies of a larger number are drawn as their mean and their range.
+const MOST_LINES: usize = 8;
+
+/// A table and what its columns mean.
+struct Run<'a> {
+    table: &'a NumberTable,
+    columns: &'a Columns,
+}
+
+/// Energy, losses, momentum, volumes, pressures and probes over time.
+pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Result<String, DrawError> {
+    let run = Run { table, columns };
+    let length = &columns.length_unit;
+    let metres = length == "m";
+    let energy = if metres { "J".into() } else { format!("kg {length}²/s²") };
+    let force = if metres { "N".into() } else { format!("kg {length}/s²") };
     let panel =
         |label: &str, unit: &str, lines: Vec<Line>| Panel { y: Axis::linear(label, unit), lines, ..Panel::default() };
-    let panels = vec![
-        panel("energy", "J", named(&["kinetic", "elastic", "gas", "gravity"])),
+    let mut panels = vec![
+        panel("energy", &energy, run.energies()),
         panel(
             "work and losses",
-            "J",
-            named(&[
+            &energy,
+            run.named(&[
                 "work_user",
                 "work_gas",
                 "work_correction",
@@ -50,22 +39,136 @@ pub(crate) fn of_run(table: &NumberTable, first_probe: usize, name: &str) -> Res
                 "loss_integrator",
             ]),
         ),
-        panel("momentum", "kg m/s", named(&["momentum.x", "momentum.y", "momentum.z"])),
-        panel("volume", "m³", ending(".volume")),
-        panel("pressure", "Pa", ending(".pressure")),
-        panel("probes", "", probes),
+        panel("momentum", &format!("kg {length}/s"), run.momentum()),
     ];
-    let chart = Chart {
-        title: name.to_string(),
-        x: Axis::linear("time", "s"),
-        panels: panels.into_iter().filter(|p| !p.lines.is_empty()).collect(),
-        ..Chart::default()
-    };
-    if chart.panels.is_empty() {
-        let empty = panel("energy", "J", vec![line(1, "kinetic")]);
-        return Chart { panels: vec![empty], ..chart }.to_svg();
+    // The thesis calls something volume and pressure that is neither.
+    for published in [false, true] {
+        let say = |what: &str| if published { format!("{what} as published") } else { what.to_string() };
+        let (what, power) = if columns.dimension == 2 && !published { ("area", "²") } else { ("volume", "³") };
+        let power = if published { "²" } else { power };
+        let pressure = match (published, metres) {
+            (true, _) => String::new(),
+            (false, true) => "Pa".into(),
+            (false, false) => format!("kg/({length} s²)"),
+        };
+        panels.push(panel(&say(what), &format!("{length}{power}"), run.readings("volume", published)));
+        panels.push(panel(&say("pressure"), &pressure, run.readings("pressure", published)));
     }
-    chart.to_svg()
+    for (what, label, unit) in [
+        (Recorded::Position, "position", length.clone()),
+        (Recorded::Velocity, "velocity", format!("{length}/s")),
+        (Recorded::Reaction, "reaction", force),
+    ] {
+        panels.push(panel(label, &unit, run.probes(what)));
+    }
+    panels.retain(|panel| !panel.lines.is_empty());
+    if panels.is_empty() {
+        panels.push(panel("energy", &energy, vec![run.line(1, "kinetic")]));
+    }
+    Chart { title: name.to_string(), x: Axis::linear("time", "s"), panels, ..Chart::default() }.to_svg()
+}
+
+impl Run<'_> {
+    /// The line of a column.
+    fn line(&self, place: usize, name: &str) -> Line {
+        let points = self.table.rows().map(|row| [row[0], row[place]]).collect();
+        Line { name: name.replace('_', " "), points, ..Line::default() }
+    }
+
+    /// The place of a column.
+    fn place(&self, name: &str) -> Option<usize> {
+        self.table.columns().iter().position(|column| column == name)
+    }
+
+    /// The lines of columns in which something happened: the others say nothing.
+    fn named(&self, names: &[&str]) -> Vec<Line> {
+        let places = names.iter().filter_map(|name| Some((self.place(name)?, name)));
+        places
+            .filter(|(place, _)| self.table.rows().any(|row| row[*place] != 0.0))
+            .map(|(place, name)| self.line(place, name))
+            .collect()
+    }
+
+    /// The largest number of a column.
+    fn largest(&self, place: usize) -> f64 {
+        self.table.rows().map(|row| row[place]).fold(0.0, f64::max)
+    }
+
+    /// The energies. One that hardly changes beside its own size is drawn from its start on: its zero says nothing,
+    /// and would press the others flat.
+    fn energies(&self) -> Vec<Line> {
+        let mut lines = self.named(&["kinetic", "elastic", "gas", "gravity"]);
+        for line in &mut lines {
+            let values = || line.points.iter().map(|point| point[1]).filter(|value| value.is_finite());
+            let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let first = values().next().unwrap_or(0.0);
+            if first.abs() > 3.0 * (high - low) {
+                line.points.iter_mut().for_each(|point| point[1] -= first);
+                let sign = if first < 0.0 { '+' } else { '−' };
+                line.name = format!("{} {sign} {}", line.name, format_value(first.abs()));
+            }
+        }
+        lines
+    }
+
+    /// The momentum along the axes.
+    fn momentum(&self) -> Vec<Line> {
+        let axes = ["x", if self.columns.y_down { "y (downwards)" } else { "y" }, "z"];
+        let mut lines = Vec::new();
+        for (axis, name) in ["x", "y", "z"].iter().zip(axes) {
+            lines.extend(self.place(&format!("momentum.{axis}")).map(|place| self.line(place, name)));
+        }
+        // What rounding leaves where forces cancel is no momentum: beside √(2 E) it is nothing.
+        let kinetic = self.place("kinetic").map_or(0.0, |place| self.largest(place));
+        lines.retain(|line| line.points.iter().any(|point| point[1].abs() > 1e-9 * (2.0 * kinetic).sqrt()));
+        lines
+    }
+
+    /// What the models say of the bodies; in the plane a volume is drawn as the area that it stands on.
+    fn readings(&self, what: &str, published: bool) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for (name, thickness, _) in self.columns.bodies.iter().filter(|body| body.2 == published) {
+            let Some(place) = self.place(&format!("{name}.{what}")) else { continue };
+            let mut line = self.line(place, "");
+            line.name.clone_from(name);
+            if what == "volume" && self.columns.dimension == 2 && !published {
+                line.points.iter_mut().for_each(|point| point[1] /= thickness);
+            }
+            lines.push(line);
+        }
+        if lines.len() > MOST_LINES { vec![mean_and_range(&lines)] } else { lines }
+    }
+
+    /// The probes that record something.
+    fn probes(&self, what: Recorded) -> Vec<Line> {
+        let names = self.table.columns();
+        let first = names.len() - self.columns.probes.len();
+        let fits = self.columns.probes.iter().enumerate().filter(|(_, recorded)| **recorded == what);
+        let mut lines: Vec<Line> = fits.map(|(probe, _)| self.line(first + probe, &names[first + probe])).collect();
+        for (number, line) in lines.iter_mut().enumerate() {
+            line.dashed = number / OKABE_ITO.len() % 2 == 1;
+            if self.columns.y_down && line.name.ends_with('y') {
+                line.name.push_str(" (downwards)");
+            }
+        }
+        lines
+    }
+}
+
+/// The mean of many lines over the same places, with the band between the lowest and the highest.
+fn mean_and_range(lines: &[Line]) -> Line {
+    let mut mean = Line { name: format!("mean of {} bodies, and their range", lines.len()), ..Line::default() };
+    for place in 0..lines[0].points.len() {
+        let values = || lines.iter().map(|line| line.points[place][1]).filter(|value| value.is_finite());
+        let (sum, count) = values().fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let x = lines[0].points[place][0];
+        mean.points.push([x, sum / count]);
+        if count > 0.0 {
+            mean.band.push([x, low, high]);
+        }
+    }
+    mean
 }
 
 /// Frames a second against vertices, with the thesis's 40 FPS: its figure 4.
@@ -74,16 +177,19 @@ pub(crate) fn of_bench(rows: &[Row]) -> Result<String, DrawError> {
         rows.iter().filter(|r| (r.bodies() > 1) == many).map(|r| [r.point().0, r.point().1]).collect()
     };
     let line = |name: &str, points, marker| Line { name: name.into(), points, marker: Some(marker), ..Line::default() };
-    let lines =
-        vec![line("one ring", points(false), Marker::Circle), line("many rings of 36", points(true), Marker::Square)];
+    let lines = vec![
+        line("one ring", points(false), Marker::Circle),
+        line("many rings of 36", points(true), Marker::Square),
+        line("the thesis (2012), displayed", vec![[8.0, 40.0]], Marker::Diamond),
+    ];
     Chart {
         title: "speed against the number of vertices".into(),
         x: Axis::logarithmic("vertices", ""),
         panels: vec![Panel {
             height: 360.0,
-            y: Axis::logarithmic("frames a second (16 steps each)", "1/s"),
+            y: Axis::logarithmic("frames of 16 steps", "1/s"),
             lines: lines.into_iter().filter(|l| !l.points.is_empty()).collect(),
-            levels: vec![Level { value: 40.0, label: "the thesis: 40 FPS at 8 vertices".into() }],
+            levels: vec![Level { value: 40.0, label: "40 FPS".into() }],
         }],
         ..Chart::default()
     }

@@ -3,7 +3,8 @@
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
-use crate::outputs::{Outputs, Recorder, counted};
+use crate::outputs::{Outputs, counted};
+use crate::recorder::Recorder;
 use crate::source::{Source, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::safe_write::{Existing, OutputFolder};
@@ -138,7 +139,8 @@ impl Job<'_> {
         let start = Instant::now();
         let first = world.frames();
         let mut failure = None;
-        recorder.record(&mut world);
+        // Looking at the world is not counted as the time of its steps.
+        let mut looking = recorder.record(&mut world);
         while world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
                 failure = Some(Failure::Interrupted);
@@ -148,7 +150,7 @@ impl Job<'_> {
                 failure = Some(source.run_error(&error, world.time()));
                 break;
             }
-            recorder.record(&mut world);
+            looking += recorder.record(&mut world);
             if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
                 bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", world.time()));
             }
@@ -159,7 +161,7 @@ impl Job<'_> {
                 bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
             }
         }
-        let wall = start.elapsed().as_secs_f64();
+        let wall = (start.elapsed() - looking).as_secs_f64();
         bar.finish_and_clear();
         let outputs = Outputs {
             folder: &folder,

@@ -480,6 +480,36 @@ impl<const D: usize> System<D> {
         state + models + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
     }
 
+    /// The force of the models of one account on every node in the current state [N], laid out in columns.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub fn forces_of(&mut self, account: Account) -> Result<Columns<D>, StepError> {
+        let mut out = Columns::zeros(self.places());
+        self.make_room();
+        self.prepare(Stage::Current, self.time)?;
+        let view = view(&self.state, self.nodes, self.layout, Stage::Current, self.time);
+        for tile in 0..self.plan.len() {
+            let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
+            let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
+            force.iter_mut().for_each(|column| column.fill(0.0));
+            for member in self.members.iter().filter(|member| member.potential.account() == account) {
+                let mut tile = Tile {
+                    range: range.clone(),
+                    force: force.each_mut().map(|f| &mut **f),
+                    power: &mut [0.0; WIDTH],
+                    weight: None,
+                    slots: &mut self.slots,
+                };
+                member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
+            }
+            for d in 0..D {
+                out.0[d][range.clone()].copy_from_slice(&force[d][..range.len()]);
+            }
+        }
+        Ok(out)
+    }
+
     /// The force on every node in the current state [N], gravity included, laid out in columns.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::{FRAME, INK, SOFT_INK};
-use crate::marks::{arrow_colour, arrow_name};
+use crate::marks::{arrow_colour, arrow_name, arrow_unit};
 use crate::picture::{ColliderPicture, Legend, Picture};
 use crate::ticks::{format_tick, format_value, nice_length, nice_ticks};
 use crate::view::View;
@@ -27,6 +27,20 @@ pub struct Style {
 impl Default for Style {
     fn default() -> Style {
         Style { width: 800, height: 600, background: [255; 3], header: true, footer: true, legend: true }
+    }
+}
+
+impl Style {
+    /// The style of a film whose frames have the shape of the view, and the size which viewers like.
+    pub fn film(view: &View, dimension: u8, longest: u32) -> Style {
+        // What stands beside and above a scene takes about as much as this.
+        let (beside, above) = (90.0, 78.0);
+        let (longest, aspect) = (f64::from(longest), view.aspect(dimension));
+        let tall = ((longest - beside) * aspect + above).clamp(0.45 * longest, 0.75 * longest);
+        let wide = ((tall - above) / aspect + beside).clamp(0.6 * longest, longest);
+        // Videos store colours for two pixels together.
+        let even = |side: f64| 2 * (0.5 * side).round() as u32;
+        Style { width: even(wide), height: even(tall), ..Style::default() }
     }
 }
 
@@ -67,15 +81,8 @@ impl Layout {
         (style.width.min(style.height) as f32 / 600.0).clamp(0.7, 8.0)
     }
 
-    /// Writes everything around the scene; `scale` is the number of pixels in a metre, where it is the same everywhere.
-    pub(crate) fn annotate(
-        &self,
-        canvas: &mut Canvas,
-        picture: &Picture,
-        view: &View,
-        style: &Style,
-        scale: Option<f64>,
-    ) {
+    /// Writes everything around the scene; `scale` is the number of pixels in a metre.
+    pub(crate) fn annotate(&self, canvas: &mut Canvas, picture: &Picture, view: &View, style: &Style, scale: f64) {
         let [left, top, width, height] = self.scene.map(|value| value as f32);
         let unit = self.unit;
         canvas.frame([left - 1.0, top - 1.0, width + 2.0, height + 2.0], FRAME);
@@ -90,21 +97,44 @@ impl Layout {
         }
         if style.footer {
             let base = top + height + 26.0 * unit;
-            let end = match scale {
-                Some(scale) => self.scale_bar(canvas, [left, base], width, scale),
-                None => self.squares(canvas, [left, base], picture, view),
-            };
-            self.arrow_names(canvas, &[picture], view, [end + 24.0 * unit, left + width], base);
+            self.foot(canvas, &[picture], view, [left, base], width, [0.24 * width, scale as f32]);
         }
         if let (Some(legend), true) = (&picture.legend, style.legend) {
             self.legend(canvas, legend, view, picture);
         }
     }
 
+    /// Writes what stands below a scene: lengths at the left, arrows at the right; `bar` is the most that the bar of
+    /// lengths may take and the number of pixels in a metre.
+    pub(crate) fn foot(
+        &self,
+        canvas: &mut Canvas,
+        pictures: &[&Picture],
+        view: &View,
+        [left, base]: [f32; 2],
+        width: f32,
+        [bar, scale]: [f32; 2],
+    ) {
+        let first = pictures[0];
+        let mut end = match first.dimension {
+            2 => self.scale_bar(canvas, [left, base], f64::from(bar), f64::from(scale), &first.length_unit),
+            _ => self.squares(canvas, [left, base], first, view),
+        };
+        if view.y_down {
+            let (start, size) = (end + 24.0 * self.unit, 13.0 * self.unit);
+            let text = "y counts downwards";
+            if start + text_width(text, size) < left + width {
+                canvas.text(text, [start, base], size, Anchor::Start, SOFT_INK);
+                end = start + text_width(text, size);
+            }
+        }
+        self.arrow_scales(canvas, pictures, view, [end + 24.0 * self.unit, left + width], base, f64::from(scale));
+    }
+
     /// Draws a bar of a round length, and gives the place where its text ends.
-    pub(crate) fn scale_bar(&self, canvas: &mut Canvas, [left, base]: [f32; 2], width: f32, scale: f64) -> f32 {
+    fn scale_bar(&self, canvas: &mut Canvas, [left, base]: [f32; 2], most: f64, scale: f64, length_unit: &str) -> f32 {
         let unit = self.unit;
-        let length = nice_length(0.24 * f64::from(width) / scale);
+        let length = nice_length(most / scale);
         let bar = (length * scale) as f32;
         let middle = base - 5.0 * unit;
         let thick = (1.5 * unit).max(1.0);
@@ -112,48 +142,59 @@ impl Layout {
         for end in [left, left + bar - thick] {
             canvas.rectangle([end, middle - 4.0 * unit, thick, 8.0 * unit], INK, 1.0);
         }
-        let text = length_text(length);
+        let text = length_text(length, length_unit);
         canvas.text(&text, [left + bar + 8.0 * unit, base], 14.0 * unit, Anchor::Start, INK);
         left + bar + 8.0 * unit + text_width(&text, 14.0 * unit)
     }
 
     /// Writes how large the squares of a floor in three dimensions are, and gives the place where the text ends.
-    pub(crate) fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
+    fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
         if !picture.colliders.iter().any(|collider| matches!(collider, ColliderPicture::HalfSpace { .. })) {
             return left;
         }
         let size = 14.0 * self.unit;
-        let text = format!("squares of {}", length_text(view.square()));
+        let text = format!("squares of {}", length_text(view.square(), &picture.length_unit));
         canvas.text(&text, [left, base], size, Anchor::Start, INK);
         left + text_width(&text, size)
     }
 
-    /// Writes the names of the arrows in the pictures, from the right.
-    pub(crate) fn arrow_names(
+    /// Draws for each kind of arrow one of a round value, from the right.
+    fn arrow_scales(
         &self,
         canvas: &mut Canvas,
         pictures: &[&Picture],
         view: &View,
         [from, to]: [f32; 2],
         base: f32,
+        scale: f64,
     ) {
         let unit = self.unit;
         let size = 13.0 * unit;
         let mut end = to;
-        for (&kind, _) in view.longest.iter().rev() {
-            if !pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind)) {
+        for (&kind, &longest) in view.longest.iter().rev() {
+            let drawn = pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
+            let pixels = view.arrow_scale(kind) * scale;
+            if !drawn || longest <= 0.0 || pixels <= 0.0 {
                 continue;
             }
-            let name = arrow_name(kind);
-            let start = end - text_width(name, size) - 26.0 * unit;
-            if start < from {
-                break;
+            let value = nice_length((f64::from(70.0 * unit) / pixels).min(longest));
+            let long = (value * pixels) as f32;
+            let text =
+                format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, &pictures[0].length_unit));
+            let start = end - text_width(&text, size) - 8.0 * unit - long;
+            if start < from || long < 5.0 * unit {
+                continue;
             }
-            canvas.text(name, [end, base], size, Anchor::End, SOFT_INK);
+            canvas.text(&text, [end, base], size, Anchor::End, INK);
             let middle = base - 4.5 * unit;
-            let points = [[start, middle], [start + 20.0 * unit, middle]];
-            crate::marks::arrow(canvas, points, 1.8 * unit, arrow_colour(kind), false);
-            end = start - 18.0 * unit;
+            crate::marks::arrow(
+                canvas,
+                [[start, middle], [start + long, middle]],
+                1.8 * unit,
+                arrow_colour(kind),
+                false,
+            );
+            end = start - 20.0 * unit;
         }
     }
 
@@ -214,12 +255,46 @@ fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
     values.chain(lines).fold(0.0, f32::max) + 16.0 * unit
 }
 
-/// A time as text.
-pub(crate) fn time_text(time: f64) -> String {
+/// A time as text, with three digits after the point.
+fn time_text(time: f64) -> String {
     if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
-/// A length as text, in metres, or in millimetres where it is small.
-fn length_text(length: f64) -> String {
-    if length < 0.0099 { format!("{} mm", format_value(length * 1e3)) } else { format!("{} m", format_value(length)) }
+/// Times as texts, all with as many digits after the point as the longest needs, but three at most.
+pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
+    let exact = |digits: i32| {
+        let scale = 10_f64.powi(digits);
+        times.iter().all(|time| (time * scale - (time * scale).round()).abs() < 1e-6 * scale)
+    };
+    let digits = (1..3).find(|&digits| exact(digits)).unwrap_or(3) as usize;
+    times.iter().map(|time| format!("t = {time:.digits$} s")).collect()
+}
+
+/// A length as text; small ones in millimetres where the unit is the metre.
+fn length_text(length: f64, unit: &str) -> String {
+    if unit == "m" && length < 0.0099 {
+        format!("{} mm", format_value(length * 1e3))
+    } else {
+        format!("{} {unit}", format_value(length))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_the_digits_they_need() {
+        assert_eq!(time_texts(&[0.0, 0.95, 8.0]), ["t = 0.00 s", "t = 0.95 s", "t = 8.00 s"]);
+        assert_eq!(time_texts(&[0.0, 1.776]), ["t = 0.000 s", "t = 1.776 s"]);
+        assert_eq!(time_texts(&[2.0]), ["t = 2.0 s"]);
+        assert_eq!(time_texts(&[1.0 / 3.0]), ["t = 0.333 s"]);
+    }
+
+    #[test]
+    fn lengths_are_told_in_the_unit_of_the_scene() {
+        assert_eq!(length_text(0.005, "m"), "5 mm");
+        assert_eq!(length_text(100.0, "px"), "100 px");
+        assert_eq!(length_text(0.001, "px"), "0.001 px");
+    }
 }

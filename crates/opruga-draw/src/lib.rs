@@ -9,6 +9,7 @@ mod animation;
 mod canvas;
 mod colour;
 mod error;
+mod fitting;
 mod flat;
 mod image;
 mod layout;
@@ -24,11 +25,12 @@ mod view;
 pub use animation::GifWriter;
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
+pub use fitting::Fitting;
 pub use image::Image;
 pub use layout::Style;
 pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture};
 pub use plot::{Axis, Chart, Level, Line, Marker, Panel};
-pub use strip::{StripStyle, spread, strip};
+pub use strip::{StripStyle, best_count, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
 pub use video::Mp4Writer;
 pub use view::View;
@@ -44,18 +46,17 @@ pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, Draw
     Ok(image)
 }
 
-/// Draws a picture without anything around it, and gives the number of pixels in a metre where it is the same everywhere.
+/// Draws a picture without anything around it, and gives the number of pixels in a metre; in space, at the centre.
 fn scene(
     picture: &Picture,
     view: &View,
     background: [u8; 3],
     size: [u32; 2],
     unit: f32,
-) -> Result<(Image, Option<f64>), DrawError> {
+) -> Result<(Image, f64), DrawError> {
     picture.check()?;
-    if picture.dimension == 3 {
-        return Ok((solid::scene(picture, view, background, size, unit)?, None));
+    match picture.dimension {
+        3 => solid::scene(picture, view, background, size, unit),
+        _ => flat::scene(picture, view, background, size, unit),
     }
-    let (image, scale) = flat::scene(picture, view, background, size, unit)?;
-    Ok((image, Some(scale)))
 }

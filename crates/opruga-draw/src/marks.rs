@@ -9,6 +9,9 @@ use tiny_skia::PathBuilder;
 /// The number of pins of a body up to which each is drawn as a support.
 const SUPPORTS: usize = 40;
 
+/// The number of arrows above which they are drawn thinner.
+const CROWD: usize = 50;
+
 /// The colour of a kind of arrow.
 pub(crate) fn arrow_colour(kind: ArrowKind) -> [u8; 3] {
     match kind {
@@ -35,13 +38,26 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
     }
 }
 
-/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point.
+/// The unit of a kind of arrow, where lengths have a unit of their own.
+pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
+    match (kind, length) {
+        (ArrowKind::Pressure, "m") => "Pa".into(),
+        (ArrowKind::Velocity, length) => format!("{length}/s"),
+        (_, "m") => "N".into(),
+        (ArrowKind::Pressure, length) => format!("kg/({length} s²)"),
+        (_, length) => format!("kg {length}/s²"),
+    }
+}
+
+/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point, and `in_sight` says
+/// whether a point of a surface is seen.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
     picture: &Picture,
     view: &View,
     unit: f32,
     project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+    in_sight: &dyn Fn([f64; 3]) -> bool,
 ) {
     for body in &picture.bodies {
         let few = body.pinned.len() <= SUPPORTS;
@@ -54,11 +70,16 @@ pub(crate) fn draw_marks(
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
         label(canvas, &body.label, body.positions.iter().filter_map(|x| project(*x)), unit);
     }
+    let width = if picture.arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
     for mark in &picture.arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
+        if !in_sight(mark.from) {
+            continue;
+        }
         if let (Some(from), Some(to)) = (project(mark.from), project(to)) {
-            arrow(canvas, [from, to], 1.8 * unit, arrow_colour(mark.kind), true);
+            let long = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
+            arrow(canvas, [from, to], width, arrow_colour(mark.kind), long > 16.0 * unit);
         }
     }
     for pull in &picture.pulls {
@@ -103,7 +124,9 @@ pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, 
     let right = [neck[0] + half * direction[1], neck[1] - half * direction[0]];
     let inner = [neck[0] + 0.2 * head * direction[0], neck[1] + 0.2 * head * direction[1]];
     if rim {
-        canvas.line(&[from, neck], width + 2.4, [255; 3], 0.75);
+        // The rim spares the outline from which the arrow starts.
+        let start = [from[0] + 3.0 * width * direction[0], from[1] + 3.0 * width * direction[1]];
+        canvas.line(&[start, neck], width + 2.0, [255; 3], 0.6);
         canvas.line(&[to, left, right, to], 2.4, [255; 3], 0.75);
     }
     canvas.line(&[from, inner], width.min(0.35 * length), colour, 1.0);

@@ -24,6 +24,8 @@ pub struct Picture {
     pub legend: Option<Legend>,
     /// Whether y counts downwards, as on a screen; only in two dimensions.
     pub y_down: bool,
+    /// The unit of lengths: metres, unless the scene has another.
+    pub length_unit: String,
 }
 
 impl Default for Picture {
@@ -38,6 +40,7 @@ impl Default for Picture {
             pulls: Vec::new(),
             legend: None,
             y_down: false,
+            length_unit: "m".into(),
         }
     }
 }

@@ -1,20 +1,20 @@
 //! A film strip: some frames of a run, side by side, with one scale.
 
-use crate::canvas::{Anchor, Canvas};
+use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::INK;
 use crate::error::DrawError;
 use crate::image::Image;
-use crate::layout::{Layout, time_text};
+use crate::layout::{Layout, time_texts};
 use crate::picture::Picture;
 use crate::view::View;
 
 /// The size and the order of the panels of a film strip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StripStyle {
-    /// The width of the whole strip in pixels.
+    /// The most that the whole strip is wide in pixels; a strip of few panels is narrower.
     pub width: u32,
-    /// The number of panels in a row.
-    pub columns: usize,
+    /// The number of panels in a row; chosen by the shape of the view where this is absent.
+    pub columns: Option<usize>,
     /// The height of a panel divided by its width; the view decides where this is absent.
     pub aspect: Option<f64>,
     /// The colour around and behind the scenes.
@@ -25,7 +25,7 @@ pub struct StripStyle {
 
 impl Default for StripStyle {
     fn default() -> StripStyle {
-        StripStyle { width: 1400, columns: 5, aspect: None, background: [255; 3], legend: true }
+        StripStyle { width: 1400, columns: None, aspect: None, background: [255; 3], legend: true }
     }
 }
 
@@ -43,69 +43,125 @@ pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
         .collect()
 }
 
+/// The height of a strip divided by its width at which it is read best.
+const BEST_SHAPE: f32 = 0.42;
+
+/// How the panels of a strip are laid out, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Grid {
+    /// The panels in a row.
+    columns: usize,
+    /// The rows.
+    rows: usize,
+    /// The width and the height of a panel.
+    panel: [f32; 2],
+    /// The free space between panels.
+    gap: f32,
+    /// The height of the line below a panel.
+    line: f32,
+}
+
+impl Grid {
+    /// The grid of so many panels in so many columns within a width.
+    fn new(count: usize, columns: usize, aspect: f32, room: f32, unit: f32) -> Grid {
+        let columns = columns.clamp(1, count.max(1));
+        let rows = count.div_ceil(columns);
+        // No row is shorter than it must be.
+        let columns = count.div_ceil(rows.max(1)).max(1);
+        let gap = (10.0 * unit).round();
+        let wide = ((room - gap * (columns as f32 - 1.0)) / columns as f32).floor();
+        // Few panels are not larger than can be seen at once.
+        let wide = wide.min((TALLEST * unit / aspect).floor());
+        Grid { columns, rows, panel: [wide, (wide * aspect).round()], gap, line: (26.0 * unit).round() }
+    }
+
+    /// The width and the height of all panels with their lines.
+    fn size(&self) -> [f32; 2] {
+        let (columns, rows) = (self.columns as f32, self.rows as f32);
+        let wide = columns * (self.panel[0] + self.gap) - self.gap;
+        [wide, rows * (self.panel[1] + self.line) + (rows - 1.0) * 0.4 * self.gap]
+    }
+
+    /// How far the grid is from the best: a strip of a good shape without empty places.
+    fn fault(&self, count: usize, room: f32) -> f32 {
+        let [wide, tall] = self.size();
+        let empty = (self.columns * self.rows - count) as f32;
+        (tall / (BEST_SHAPE * wide)).ln().abs() + (room / wide).ln() + 0.2 * empty
+    }
+
+    /// The best grid of so many panels.
+    fn best(count: usize, aspect: f32, room: f32, unit: f32) -> Grid {
+        let grids = (1..=6).map(|columns| Grid::new(count, columns, aspect, room, unit));
+        let best = grids.min_by(|a, b| a.fault(count, room).total_cmp(&b.fault(count, room)));
+        best.unwrap_or(Grid::new(count, 1, aspect, room, unit))
+    }
+
+    /// The left and upper corner of a panel.
+    fn place(&self, index: usize, [left, top]: [f32; 2]) -> [f32; 2] {
+        let (row, column) = (index / self.columns, index % self.columns);
+        let down = row as f32 * (self.panel[1] + self.line + 0.4 * self.gap);
+        [left + column as f32 * (self.panel[0] + self.gap), (top + down).round()]
+    }
+}
+
+/// The number of panels, of nine to twelve or as many as there are, which makes the best strip of a view.
+pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
+    let style = StripStyle::default();
+    let (aspect, room) = (view.aspect(dimension) as f32, style.width as f32);
+    let fault = |count: usize| Grid::best(count, aspect, room, 1.0).fault(count, room);
+    (9..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
+}
+
 /// Draws pictures side by side in rows, with one view, one length scale and one legend for all.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
     let first = pictures.first().ok_or(DrawError::Empty("a film strip needs a picture"))?;
-    let columns = style.columns.clamp(1, pictures.len());
-    let rows = pictures.len().div_ceil(columns);
     let unit = (style.width as f32 / 1400.0).clamp(0.6, 6.0);
     let margin = (16.0 * unit).round();
     let head = if first.title.is_empty() { margin } else { 44.0 * unit };
     let foot = 44.0 * unit;
     let legend = Layout::legend_space(first, view, unit, style.legend);
-    let gap = (10.0 * unit).round();
-    let width = style.width as f32 - 2.0 * margin - legend;
-    let aspect = style.aspect.unwrap_or_else(|| natural_aspect(view, first.dimension)) as f32;
-    let room = ((width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
-    // Few panels are not larger than can be seen at once.
-    let panel = room.min((TALLEST * unit / aspect).floor());
+    let room = style.width as f32 - 2.0 * margin - legend;
+    let aspect = style.aspect.unwrap_or_else(|| view.aspect(first.dimension)) as f32;
+    let grid = match style.columns {
+        Some(columns) => Grid::new(pictures.len(), columns, aspect, room, unit),
+        None => Grid::best(pictures.len(), aspect, room, unit),
+    };
+    let [panel, tall] = grid.panel;
     if panel < 8.0 {
         return Err(DrawError::Size { width: panel.max(0.0) as u32, height: 0 });
     }
-    let tall = (panel * aspect).round();
-    let width = columns as f32 * (panel + gap) - gap;
-    let line = (26.0 * unit).round();
-    let height = head + rows as f32 * (tall + line) + (rows as f32 - 1.0) * 0.4 * gap + foot;
-    let mut image = Image::new(style.width, height.round() as u32, style.background)?;
-    let mut scale = None;
-    let place = |index: usize| {
-        let (row, column) = (index / columns, index % columns);
-        [margin + column as f32 * (panel + gap), (head + row as f32 * (tall + line + 0.4 * gap)).round()]
-    };
+    let [width, height] = grid.size();
+    let title = 18.0 * unit;
+    let needed = (width + legend).max(text_width(&first.title, title)).max(360.0 * unit);
+    let whole = (needed + 2.0 * margin).ceil().min(style.width as f32);
+    let mut image = Image::new(whole as u32, (head + height + foot).round() as u32, style.background)?;
+    let mut scale = 1.0;
     for (index, picture) in pictures.iter().enumerate() {
         let (scene, found) = crate::scene(picture, view, style.background, [panel as u32, tall as u32], 0.9 * unit)?;
-        let [left, top] = place(index);
+        let [left, top] = grid.place(index, [margin, head]);
         image.paste(&scene, left as u32, top as u32);
-        scale = found.or(scale);
+        scale = found;
     }
     let mut canvas = Canvas::new(&mut image);
-    for (index, picture) in pictures.iter().enumerate() {
-        let [left, top] = place(index);
+    let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
+    for (index, time) in time_texts(&times).iter().enumerate() {
+        let [left, top] = grid.place(index, [margin, head]);
         canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
         let point = [left + 0.5 * panel, top + tall + 19.0 * unit];
-        canvas.text(&time_text(picture.time), point, 15.0 * unit, Anchor::Middle, INK);
+        canvas.text(time, point, 15.0 * unit, Anchor::Middle, INK);
     }
-    canvas.text(&first.title, [margin, head - 16.0 * unit], 18.0 * unit, Anchor::Start, INK);
-    let bottom = (head + rows as f32 * (tall + line) + (rows as f32 - 1.0) * 0.4 * gap).round();
-    let layout = Layout { scene: [margin as u32, head as u32, width as u32, (bottom - head - line) as u32], unit };
-    let base = bottom + 26.0 * unit;
-    let end = match scale {
-        Some(scale) => layout.scale_bar(&mut canvas, [margin, base], panel.max(120.0 * unit) * 2.0, scale),
-        None => layout.squares(&mut canvas, [margin, base], first, view),
-    };
-    layout.arrow_names(&mut canvas, pictures, view, [end + 24.0 * unit, margin + width], base);
+    let fits = (whole - 2.0 * margin) / text_width(&first.title, title).max(1.0);
+    canvas.text(&first.title, [margin, head - 16.0 * unit], title * fits.min(1.0), Anchor::Start, INK);
+    let bottom = (head + height).round();
+    let scene = [margin as u32, head as u32, width as u32, (bottom - head - grid.line) as u32];
+    let layout = Layout { scene, unit };
+    let bar = panel.max(120.0 * unit).min(0.45 * (whole - 2.0 * margin));
+    let base = [margin, bottom + 26.0 * unit];
+    layout.foot(&mut canvas, pictures, view, base, whole - 2.0 * margin, [0.48 * bar, scale as f32]);
     if let (Some(legend), true) = (&first.legend, style.legend) {
         layout.legend(&mut canvas, legend, view, first);
     }
     Ok(image)
-}
-
-/// The height of a panel divided by its width which fits the view.
-fn natural_aspect(view: &View, dimension: u8) -> f64 {
-    let border = 0.08 * view.extent();
-    let side = |axis: usize| view.high[axis] - view.low[axis] + border;
-    let wide = if dimension == 3 { (side(0).powi(2) + side(2).powi(2)).sqrt() } else { side(0) };
-    (side(1) / wide.max(1e-12)).clamp(0.4, 2.0)
 }
 
 #[cfg(test)]
@@ -136,6 +192,35 @@ mod tests {
                     .chain((0..height).flat_map(|y| (0..4).map(move |x| [x, y]).chain([[width - 1, y]])));
                 let cut = border.find(|[x, y]| image.pixel(*x, *y) != [255; 3]);
                 assert_eq!(cut, None, "{dimension} {size:?} {count} {width} {height}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_strip_of_few_panels_leaves_nothing_blank() {
+        use crate::picture::{BodyPicture, Legend};
+        let body =
+            BodyPicture { positions: vec![[0.0; 3], [1.0, 1.0, 0.0]], scalar: vec![0.0, 1.0], ..Default::default() };
+        let legend = Legend { label: "strain".into(), unit: "%".into(), range: None, map: Default::default() };
+        let picture = Picture { bodies: vec![body], legend: Some(legend), ..Default::default() };
+        let view = View::fit([&picture]).expect("a view");
+        for count in 1..=12 {
+            let image = strip(&vec![&picture; count], &view, &StripStyle::default()).expect("a strip");
+            let (width, height) = (image.width(), image.height());
+            assert!(width <= StripStyle::default().width);
+            let column = |x: &u32| (0..height).any(|y| image.pixel(*x, y) != [255; 3]);
+            let blank = (0..width).rev().find(column).map_or(width, |last| width - 1 - last);
+            assert!(blank < 60, "{count} panels: {blank} of {width} columns at the right are blank");
+        }
+    }
+
+    #[test]
+    fn no_row_is_shorter_than_it_must_be() {
+        for count in 1..=20 {
+            for columns in 1..=7 {
+                let grid = Grid::new(count, columns, 0.7, 1400.0, 1.0);
+                let places = grid.columns * grid.rows;
+                assert!(places >= count && places - count < grid.rows, "{count} {grid:?}");
             }
         }
     }

@@ -66,7 +66,8 @@ pub fn format_tick(value: f64, step: f64) -> String {
     let magnitude = value.abs();
     // Three digits of a power of ten must be enough to tell neighbours apart.
     let fine = step.abs() < 0.0099 * magnitude && magnitude < 1e12;
-    if magnitude < 1e-3 || magnitude >= 1e6 && !fine {
+    let small = magnitude < 1e-3 && step.abs() < 0.99e-4;
+    if small || magnitude >= 1e6 && !fine {
         return scientific(value);
     }
     let mut digits = 0;
@@ -173,6 +174,7 @@ mod tests {
         assert_eq!(format_tick(27778.0, 1.0), "27\u{a0}778");
         assert_eq!(format_tick(7_960_500.0, 500.0), "7\u{a0}960\u{a0}500");
         assert_eq!(format_tick(2.5e6, 5e5), "2.5×10⁶");
+        assert_eq!(format_tick(0.0005, 0.0005), "0.0005", "as its neighbour 0.0010");
         assert_eq!(format_value(0.5), "0.5");
         assert_eq!(format_value(1234.0), "1234");
         assert_eq!(scientific(2.5e-7), "2.5×10⁻⁷");

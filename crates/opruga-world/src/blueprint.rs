@@ -20,6 +20,8 @@ pub struct Blueprint<const D: usize> {
     pub name: String,
     /// A sentence for lists and pictures.
     pub title: String,
+    /// What pictures and plots call the unit of length: `m`, unless the scene counts in something else, such as pixels.
+    pub length_unit: String,
     /// The seed of everything random.
     pub seed: u64,
     /// How time passes.
@@ -51,6 +53,7 @@ impl<const D: usize> Blueprint<D> {
         Blueprint {
             name: self.name.clone(),
             title: self.title.clone(),
+            length_unit: self.length_unit.clone(),
             seed: self.seed,
             time: self.time,
             surroundings: self.surroundings,

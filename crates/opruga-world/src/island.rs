@@ -25,15 +25,54 @@ pub(crate) struct Island<const D: usize> {
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
+    /// The states at the looks within the last frame.
+    looks: Vec<Saved<D>>,
 }
 
-/// The state at the last good frame.
+/// The state at the last good frame, or within a frame.
 #[derive(Debug)]
 struct Saved<const D: usize> {
     x: Columns<D>,
     v: Columns<D>,
     memory: Vec<Vec<f64>>,
     time: f64,
+    /// What entered and left since the start of the frame.
+    work: Work8,
+}
+
+impl<const D: usize> Saved<D> {
+    fn of(system: &System<D>, time: f64) -> Self {
+        Saved {
+            x: system.state.x.clone(),
+            v: system.state.v.clone(),
+            memory: system.members.iter().map(|m| m.memory.clone()).collect(),
+            time,
+            work: system.work,
+        }
+    }
+
+    /// Takes another state into the same memory.
+    fn take(&mut self, system: &System<D>, time: f64) {
+        for d in 0..D {
+            self.x.0[d].copy_from_slice(&system.state.x.0[d]);
+            self.v.0[d].copy_from_slice(&system.state.v.0[d]);
+        }
+        self.memory.resize(system.members.len(), Vec::new());
+        for (kept, member) in self.memory.iter_mut().zip(&system.members) {
+            kept.clone_from(&member.memory);
+        }
+        (self.time, self.work) = (time, system.work);
+    }
+
+    /// Exchanges the state with that of a system.
+    fn swap(&mut self, system: &mut System<D>) {
+        std::mem::swap(&mut self.x, &mut system.state.x);
+        std::mem::swap(&mut self.v, &mut system.state.v);
+        for (kept, member) in self.memory.iter_mut().zip(&mut system.members) {
+            std::mem::swap(kept, &mut member.memory);
+        }
+        std::mem::swap(&mut self.time, &mut system.time);
+    }
 }
 
 /// What a frame needs to know.
@@ -42,6 +81,8 @@ pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) start: f64,
     pub(crate) substeps: u32,
     pub(crate) h: f64,
+    /// Substeps between two looks within the frame; 0: none.
+    pub(crate) look_every: u32,
 }
 
 impl<const D: usize> Island<D> {
@@ -57,6 +98,7 @@ impl<const D: usize> Island<D> {
             work: Work8::default(),
             outcome: Ok(()),
             last: None,
+            looks: Vec::new(),
         };
         island.stock = take_stock(&mut island.system);
         island
@@ -136,6 +178,10 @@ impl<const D: usize> Island<D> {
         for substep in 0..plan.substeps {
             self.system.time = plan.start + f64::from(substep) * plan.h;
             self.integrator.step(&mut self.system, plan.h)?;
+            let done = substep + 1;
+            if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
+                self.keep_look((done / plan.look_every - 1) as usize);
+            }
         }
         let survey = survey(&self.system);
         if survey.finite {
@@ -176,28 +222,26 @@ impl<const D: usize> Island<D> {
     }
 
     fn save(&mut self, time: f64) {
-        let system = &self.system;
         match &mut self.last {
-            Some(saved) => {
-                for d in 0..D {
-                    saved.x.0[d].copy_from_slice(&system.state.x.0[d]);
-                    saved.v.0[d].copy_from_slice(&system.state.v.0[d]);
-                }
-                saved.time = time;
-                saved.memory.resize(system.members.len(), Vec::new());
-                for (kept, member) in saved.memory.iter_mut().zip(&system.members) {
-                    kept.clone_from(&member.memory);
-                }
-            }
-            None => {
-                self.last = Some(Saved {
-                    x: system.state.x.clone(),
-                    v: system.state.v.clone(),
-                    memory: system.members.iter().map(|m| m.memory.clone()).collect(),
-                    time,
-                });
-            }
+            Some(saved) => saved.take(&self.system, time),
+            None => self.last = Some(Saved::of(&self.system, time)),
         }
+    }
+
+    /// Keeps the state in the middle of a frame.
+    fn keep_look(&mut self, number: usize) {
+        let time = self.system.time;
+        match self.looks.get_mut(number) {
+            Some(look) => look.take(&self.system, time),
+            None => self.looks.push(Saved::of(&self.system, time)),
+        }
+    }
+
+    /// Exchanges the state with that of a look; twice is nothing. Gives what entered and left until the look.
+    pub(crate) fn swap_look(&mut self, number: usize) -> Option<Work8> {
+        let look = self.looks.get_mut(number)?;
+        look.swap(&mut self.system);
+        Some(look.work)
     }
 
     /// Goes back to the last good frame.
@@ -237,7 +281,7 @@ impl<const D: usize> Island<D> {
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        let kept = 2 * D * self.last.as_ref().map_or(0, |s| s.x.0[0].heap_bytes());
+        let kept: usize = self.last.iter().chain(&self.looks).map(|s| 2 * D * s.x.0[0].heap_bytes()).sum();
         self.system.heap_bytes() + kept
     }
 }

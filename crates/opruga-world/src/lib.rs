@@ -8,6 +8,7 @@ pub mod error;
 mod island;
 pub mod ledger;
 mod loads;
+mod looks;
 mod plausible;
 mod population;
 mod problems;

@@ -5,6 +5,7 @@ use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
+use opruga_core::potential::Account;
 use opruga_core::stability::Stability;
 
 impl<const D: usize> World<D> {
@@ -125,6 +126,22 @@ impl<const D: usize> World<D> {
             }
         }
         sum.map(|s| s / nodes.len().max(1) as f64)
+    }
+    /// The forces of the models of one account on the nodes of a body [N]; none: of all models, gravity included.
+    ///
+    /// Empty where the body is not there or a model refuses the state.
+    pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let system = &mut self.islands[island].system;
+        let forces = match account {
+            Some(account) => system.forces_of(account),
+            None => system.forces(true),
+        };
+        let Ok(forces) = forces else { return Vec::new() };
+        (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
     }
     /// The sum of the forces that pins exert on nodes [N].
     pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {

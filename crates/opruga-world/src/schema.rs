@@ -115,6 +115,13 @@ pub const SCENE: Section = Section {
                 "The seed of everything random: the same seed gives the same bits.",
             ),
             Field::new("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
+            Field::new(
+                "length_unit",
+                Allowed::Text,
+                "",
+                Default::Text("m"),
+                "What pictures and plots call the unit of length, for scenes that do not count in metres; no number depends on it.",
+            ),
         ],
     ),
     children: &[

@@ -8,6 +8,7 @@ use crate::error::WorldError;
 use crate::island::{FramePlan, Island};
 use crate::ledger::{Energy, Flows, LARGEST_CLOSURE, Momentum};
 use crate::loads::ForceLaw;
+use crate::looks::Looks;
 use crate::rebuild::Touched;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
@@ -87,6 +88,7 @@ pub struct World<const D: usize> {
     pub(crate) momentum: Momentum<D>,
     /// Frames since the start.
     pub(crate) frames: u64,
+    pub(crate) looks: Looks,
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
     /// What has changed in the blueprint since the start.
@@ -163,6 +165,7 @@ impl<const D: usize> World<D> {
             energy: Energy::default(),
             momentum: Momentum::default(),
             frames: 0,
+            looks: Looks::default(),
             stability: Vec::new(),
             warnings: Vec::new(),
             changes: Vec::new(),
@@ -199,7 +202,9 @@ impl<const D: usize> World<D> {
             start: self.time(),
             substeps: self.blueprint.time.substeps,
             h: self.h(),
+            look_every: self.looks.every,
         };
+        (self.looks.flows, self.looks.fresh) = (self.flows, false);
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
         match &self.pool {
@@ -232,6 +237,7 @@ impl<const D: usize> World<D> {
             });
         }
         self.frames += 1;
+        self.looks.fresh = true;
         for island in &mut self.islands {
             let work = std::mem::take(&mut island.work);
             self.flows.add(&island.system, &work);
@@ -244,7 +250,7 @@ impl<const D: usize> World<D> {
 
     /// The time [s].
     pub fn time(&self) -> f64 {
-        self.frames as f64 * self.blueprint.time.frame
+        self.looks.time.unwrap_or(self.frames as f64 * self.blueprint.time.frame)
     }
     /// Frames since the start.
     pub fn frames(&self) -> u64 {

@@ -108,6 +108,7 @@ fn scene<const D: usize>(
     Blueprint {
         name: "test".into(),
         title: String::new(),
+        length_unit: "m".into(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 48 },
         surroundings: Surroundings {
@@ -128,20 +129,24 @@ fn scene<const D: usize>(
 
 /// Requests of every frame after ten frames.
 fn requests<const D: usize>(name: &str, blueprint: Blueprint<D>) {
-    let mut world = World::new(blueprint, Options::default()).expect("a world");
-    for _ in 0..10 {
-        world.frame().expect("a frame");
+    // Without looks into the frame, and with them.
+    for look_every in [0, 7] {
+        let mut world = World::new(blueprint.clone(), Options::default()).expect("a world");
+        world.keep_looks(look_every);
+        for _ in 0..10 {
+            world.frame().expect("a frame");
+        }
+        for frame in 10..60 {
+            let before = REQUESTS.with(Cell::get);
+            FORBIDDEN.with(|f| f.set(true));
+            let outcome = world.frame();
+            FORBIDDEN.with(|f| f.set(false));
+            let requests = REQUESTS.with(Cell::get) - before;
+            outcome.expect("a frame");
+            assert_eq!(requests, 0, "{name}, frame {frame}: one thread, no memory after ten frames");
+        }
+        assert!(world.energy().loss_contact > 0.0, "{name} has met the floor");
     }
-    for frame in 10..60 {
-        let before = REQUESTS.with(Cell::get);
-        FORBIDDEN.with(|f| f.set(true));
-        let outcome = world.frame();
-        FORBIDDEN.with(|f| f.set(false));
-        let requests = REQUESTS.with(Cell::get) - before;
-        outcome.expect("a frame");
-        assert_eq!(requests, 0, "{name}, frame {frame}: one thread, no memory after ten frames");
-    }
-    assert!(world.energy().loss_contact > 0.0, "{name} has met the floor");
 }
 
 const RULES: [&str; 5] = ["symplectic_euler", "explicit_euler", "heun", "verlet", "runge_kutta"];

@@ -34,6 +34,7 @@ fn body(name: &str, mesh: &Arc<Mesh<2>>, models: Vec<Values>) -> BodyBlueprint<2
         angular_velocity: vec![0.0],
         mass: Mass::Total(1.0),
         thickness: 1.0,
+        integrator: None,
         models,
         pins: Vec::new(),
     }
@@ -44,9 +45,16 @@ fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Bl
     Blueprint {
         name: "test".into(),
         title: String::new(),
+        length_unit: "m".into(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 0.01, substeps: 10 },
-        surroundings: Surroundings { gravity: [0.0, -9.81], drag: 0.0, largest_force: None, largest_velocity: None },
+        surroundings: Surroundings {
+            gravity: [0.0, -9.81],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
         integrator: Values::defaults(verlet, 2),
         bodies,
         colliders,

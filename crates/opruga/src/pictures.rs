@@ -2,12 +2,19 @@
 // Pictures are no physics: a last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
+use crate::World;
 use crate::blueprint::BodyBlueprint;
 use crate::collide::Picture as Placed;
+use crate::core::potential::Account;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
-use crate::{World, mesh::EdgeSet};
+use crate::mesh::{EdgeSet, Mesh};
+
+/// The most arrows of a body in a plane and in space, where those at the back are hidden.
+const MOST_ARROWS: [usize; 2] = [40, 130];
+/// Bodies up to which arrows are drawn: those of more could not be told apart.
+const MOST_BODIES: usize = 64;
 
 /// What stays the same from picture to picture: outlines, springs, rest lengths.
 #[derive(Clone, Debug)]
@@ -15,6 +22,7 @@ pub struct Scenery {
     dimension: u8,
     title: String,
     y_down: bool,
+    length_unit: String,
     bodies: Vec<Fixed>,
 }
 
@@ -29,6 +37,10 @@ struct Fixed {
     pinned: Vec<u32>,
     nodes_drawn: bool,
     label: String,
+    /// The depth of a body in the plane [m].
+    thickness: f64,
+    /// The nodes at which arrows start, evenly spread.
+    arrow_nodes: Vec<u32>,
 }
 
 /// What changes from picture to picture, kept small.
@@ -38,6 +50,8 @@ pub struct Moment {
     pub time: f64,
     /// Coordinates of all nodes of all bodies, body by body [m].
     coordinates: Vec<f32>,
+    /// The mean elongation of the edges at each node [%]: the coordinates are too coarse for it.
+    strains: Vec<f32>,
     /// Bodies that are there.
     bodies: Vec<usize>,
     pulls: Vec<PullPicture>,
@@ -91,6 +105,8 @@ impl Scenery {
                 nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
                 pinned,
                 label: if named { blueprint.name.clone() } else { String::new() },
+                thickness: if D == 2 { blueprint.thickness } else { 1.0 },
+                arrow_nodes: if present.len() <= MOST_BODIES { spread(mesh, MOST_ARROWS[D - 2]) } else { Vec::new() },
             }
         };
         Scenery {
@@ -98,17 +114,25 @@ impl Scenery {
             title: world.blueprint().title.clone(),
             bodies: present.iter().chain(world.coming_bodies()).map(fixed).collect(),
             y_down: y_down(world),
+            length_unit: world.blueprint().length_unit.clone(),
         }
     }
 
-    /// Keeps what a world looks like now.
-    pub fn capture<const D: usize>(&self, world: &World<D>, arrows: bool) -> Moment {
-        let mut coordinates = Vec::new();
+    /// Whether y counts downwards.
+    pub fn y_down(&self) -> bool {
+        self.y_down
+    }
+
+    /// Keeps what a world looks like now; with arrows also pulls, and the pressure on the bodies with gas [Pa] or the
+    /// force on the nodes of the others [N].
+    pub fn capture<const D: usize>(&self, world: &mut World<D>, arrows: bool) -> Moment {
+        let (mut coordinates, mut strains) = (Vec::new(), Vec::new());
         let bodies: Vec<usize> = world.bodies().filter(|b| *b < self.bodies.len()).collect();
         for &body in &bodies {
-            for node in 0..self.bodies[body].nodes as u32 {
-                coordinates.extend(world.position(body, node).map(|c| c as f32));
-            }
+            let fixed = &self.bodies[body];
+            let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
+            coordinates.extend(positions.iter().flat_map(|position| position[..D].iter().map(|c| *c as f32)));
+            strains.extend(strain(fixed, &positions).into_iter().map(|strain| strain as f32));
         }
         let pulls: Vec<PullPicture> = world
             .pulls()
@@ -117,19 +141,45 @@ impl Scenery {
             .collect();
         let mut drawn = Vec::new();
         if arrows {
+            if bodies.len() <= MOST_BODIES {
+                bodies.iter().for_each(|&body| self.push_arrows(world, body, &mut drawn));
+            }
             for (node, _, force) in world.pulls() {
                 drawn.push(ArrowPicture { kind: ArrowKind::Pull, from: three(node), vector: three(force) });
             }
         }
         let colliders =
             world.colliders().map_or_else(Vec::new, |c| c.pictures(world.time()).into_iter().map(collider).collect());
-        Moment { time: world.time(), coordinates, bodies, pulls, colliders, arrows: drawn }
+        Moment { time: world.time(), coordinates, strains, bodies, pulls, colliders, arrows: drawn }
+    }
+
+    /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
+    fn push_arrows<const D: usize>(&self, world: &mut World<D>, body: usize, arrows: &mut Vec<ArrowPicture>) {
+        let fixed = &self.bodies[body];
+        let gas = world.blueprint().bodies[body].models.iter().any(|model| model.kind() == "pressure");
+        let mut forces = world.node_forces(body, gas.then_some(Account::Gas));
+        let kind = if gas {
+            // The force on a node over the surface that belongs to it.
+            let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
+            for (force, surface) in forces.iter_mut().zip(surfaces(fixed, &positions)) {
+                *force = if surface > 0.0 { force.map(|f| f / surface) } else { [0.0; D] };
+            }
+            ArrowKind::Pressure
+        } else {
+            ArrowKind::Force
+        };
+        for &node in &fixed.arrow_nodes {
+            if let Some(force) = forces.get(node as usize).filter(|force| force.iter().any(|f| *f != 0.0)) {
+                arrows.push(ArrowPicture { kind, from: three(world.position(body, node)), vector: three(*force) });
+            }
+        }
     }
 
     /// The picture of a moment, coloured by the mean strain of the edges at each node.
     pub fn picture(&self, moment: &Moment) -> Picture {
         let mut bodies = Vec::new();
         let mut coordinates = moment.coordinates.chunks_exact(usize::from(self.dimension));
+        let mut strains = moment.strains.iter().map(|strain| f64::from(*strain));
         for &body in &moment.bodies {
             let fixed = &self.bodies[body];
             let positions: Vec<[f64; 3]> = coordinates
@@ -138,7 +188,7 @@ impl Scenery {
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
             bodies.push(BodyPicture {
-                scalar: strain(fixed, &positions),
+                scalar: strains.by_ref().take(fixed.nodes).collect(),
                 positions,
                 facets: fixed.facets.clone(),
                 cells: fixed.cells.clone(),
@@ -158,6 +208,7 @@ impl Scenery {
             arrows: moment.arrows.clone(),
             pulls: moment.pulls.clone(),
             y_down: self.y_down,
+            length_unit: self.length_unit.clone(),
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
         }
     }
@@ -222,6 +273,52 @@ fn collider<const D: usize>(placed: Placed<D>) -> ColliderPicture {
             ColliderPicture::Mesh { positions: corners, triangles }
         }
     }
+}
+
+/// Up to so many nodes of a body, each as far as possible from those before it.
+fn spread<const D: usize>(mesh: &Mesh<D>, most: usize) -> Vec<u32> {
+    if mesh.nodes() <= most {
+        return (0..mesh.nodes() as u32).collect();
+    }
+    let mut chosen = vec![0_u32];
+    let mut gaps = vec![f64::INFINITY; mesh.nodes()];
+    while chosen.len() < most {
+        let last = mesh.positions[chosen[chosen.len() - 1] as usize];
+        let mut farthest = 0;
+        for (node, position) in mesh.positions.iter().enumerate() {
+            let gap = position.iter().zip(&last).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+            gaps[node] = gaps[node].min(gap);
+            if gaps[node] > gaps[farthest] {
+                farthest = node;
+            }
+        }
+        chosen.push(farthest as u32);
+    }
+    chosen
+}
+
+/// The surface that belongs to each node [m²]: half of the edges in a plane, a third of the triangles in space.
+fn surfaces(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
+    let mut out = vec![0.0; fixed.nodes];
+    let arm =
+        |a: u32, b: u32| -> [f64; 3] { std::array::from_fn(|d| positions[b as usize][d] - positions[a as usize][d]) };
+    let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match &fixed.facets {
+        Facets::Edges(edges) => {
+            for [a, b] in edges {
+                let share = 0.5 * size(arm(*a, *b)) * fixed.thickness;
+                [a, b].into_iter().for_each(|node| out[*node as usize] += share);
+            }
+        }
+        Facets::Triangles(triangles) => {
+            for [a, b, c] in triangles {
+                let (u, v) = (arm(*a, *b), arm(*a, *c));
+                let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+                [a, b, c].into_iter().for_each(|node| out[*node as usize] += size(area) / 6.0);
+            }
+        }
+    }
+    out
 }
 
 /// Mean elongation of the edges at each node [%].

@@ -398,16 +398,16 @@ fn bodies_that_come_later_are_drawn() {
     let scene = || plane(&ring(32, BALL, late));
     let mut world = built(scene());
     let scenery = opruga::pictures::Scenery::new(&world);
-    let drawn = |scenery: &opruga::pictures::Scenery, world: &World<2>| {
+    let drawn = |scenery: &opruga::pictures::Scenery, world: &mut World<2>| {
         scenery.picture(&scenery.capture(world, false)).bodies.len()
     };
-    assert_eq!(drawn(&scenery, &world), 1);
+    assert_eq!(drawn(&scenery, &mut world), 1);
     frames(&mut world, 6);
-    assert_eq!(drawn(&scenery, &world), 2);
+    assert_eq!(drawn(&scenery, &mut world), 2);
     let bytes = world.snapshot();
     let mut other = built(scene());
     other.restore(&bytes).expect("its own snapshot");
-    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &other), 2);
+    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &mut other), 2);
 }
 
 /// Row 73: while a frame runs nobody can add or take bodies away: a law that wants to is no program

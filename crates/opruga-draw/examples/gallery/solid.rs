@@ -74,7 +74,7 @@ pub(crate) fn balloons(columns: u32) -> Picture {
         arrows: arrows.to_vec(),
         pulls: vec![PullPicture { node: [1.1, 1.18, -0.4], pointer: [1.4, 1.4, -0.4] }],
         legend: legend("stretch", "%"),
-        y_down: false,
+        ..Picture::default()
     }
 }
 
@@ -116,7 +116,6 @@ pub(crate) fn cloth(side: u32, net: bool) -> Picture {
         bodies: vec![body],
         colliders: vec![floor(), ball],
         legend: legend("tension", "N").filter(|_| net),
-        y_down: false,
         ..Picture::default()
     }
 }

@@ -9,6 +9,9 @@ use crate::picture::{BodyPicture, Facets, Picture};
 use crate::view::View;
 use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
 
+/// The length in pixels below which an edge of a coloured outline is joined to the next.
+const SHORT: f32 = 1.2;
+
 /// How the scalars of a picture become colours.
 struct Scalars {
     /// The colour map.
@@ -240,21 +243,25 @@ impl Drawing<'_> {
         let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {
             let count = if chain.closed { chain.nodes.len() } else { chain.nodes.len() - 1 };
-            let mut last = None;
+            let (mut from, mut last) = (self.pixels[chain.nodes[0] as usize], None);
+            let (mut sum, mut edges) = (0.0, 0.0);
             for place in 0..count {
                 let ends = [chain.nodes[place], chain.nodes[(place + 1) % chain.nodes.len()]];
-                let mean = self.scalars.place(Scalars::mean(self.body, ends.into_iter()));
-                let shade = (mean.clamp(0.0, 1.0) * shades).round() / shades;
-                let [from, to] = ends.map(|node| self.pixels[node as usize]);
+                let to = self.pixels[ends[1] as usize];
+                sum += Scalars::mean(self.body, ends.into_iter());
+                edges += 1.0;
+                // Edges too short to be seen are drawn together, in the colour of their mean.
+                if (to[0] - from[0]).abs() + (to[1] - from[1]).abs() < SHORT && place + 1 < count {
+                    continue;
+                }
+                let shade = (self.scalars.place(sum / edges).clamp(0.0, 1.0) * shades).round() / shades;
                 if last != Some(shade) {
                     self.coloured_line(canvas, &mut points, width, last);
                     points.push(from);
                     last = Some(shade);
                 }
-                let before = points[points.len() - 1];
-                if (to[0] - before[0]).abs() + (to[1] - before[1]).abs() > 0.4 {
-                    points.push(to);
-                }
+                points.push(to);
+                (from, sum, edges) = (to, 0.0, 0.0);
             }
             self.coloured_line(canvas, &mut points, width, last);
         }
@@ -272,7 +279,7 @@ impl Drawing<'_> {
     fn nodes(&self, canvas: &mut Canvas) {
         let count = self.pixels.len();
         // The distance of neighbours, if they lie around the body.
-        let crowded = 3.0 * self.size < count as f32 * 9.0 * self.unit;
+        let crowded = 3.0 * self.size < count as f32 * 15.0 * self.unit;
         if !self.body.nodes_drawn || crowded || self.size < 24.0 {
             return;
         }

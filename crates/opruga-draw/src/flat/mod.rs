@@ -67,9 +67,8 @@ pub(crate) fn scene(
         colliders::draw(&mut canvas, collider, &projection, unit);
     }
     bodies::draw(&mut canvas, picture, view, &projection, unit);
-    draw_marks(&mut canvas, picture, view, unit, &|point| {
-        point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point))
-    });
+    let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
+    draw_marks(&mut canvas, picture, view, unit, &project, &|_| true);
     Ok((scene, projection.scale))
 }
 

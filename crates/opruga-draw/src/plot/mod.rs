@@ -75,6 +75,8 @@ pub struct Line {
     pub name: String,
     /// The points; a point which is not finite makes a gap.
     pub points: Vec<[f64; 2]>,
+    /// A band behind the line: places along x, each with the values where the band begins and ends.
+    pub band: Vec<[f64; 3]>,
     /// The sign at each point.
     pub marker: Option<Marker>,
     /// Whether the line has dashes.

@@ -132,7 +132,8 @@ fn tick_count(height: f64) -> usize {
 /// The scale along y of a panel.
 fn fit_panel(panel: &Panel) -> Scale {
     let values = panel.lines.iter().flat_map(|line| &line.points).map(|point| point[1]);
-    Scale::fit(&panel.y, values.chain(panel.levels.iter().map(|level| level.value)), 0.07)
+    let bands = panel.lines.iter().flat_map(|line| &line.band).flat_map(|[_, low, high]| [*low, *high]);
+    Scale::fit(&panel.y, values.chain(bands).chain(panel.levels.iter().map(|level| level.value)), 0.07)
 }
 
 /// Lists the names of the lines above a panel, and gives the number of rows.
@@ -194,6 +195,19 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
         if let Some(place) = y.place(level.value).map(at_y) {
             svg.line([left, place, right, place], SOFT_INK, 1.4, "7 5");
         }
+    }
+    for (number, line) in panel.lines.iter().enumerate().filter(|(_, line)| !line.band.is_empty()) {
+        let edge = |end: usize| {
+            let place = move |point: &[f64; 3]| Some([at_x(x.place(point[0])?), at_y(y.place(point[end])?)]);
+            thinned(line.band.iter().map(place))
+        };
+        // There along the upper ends, and back along the lower ones.
+        let around = edge(2).into_iter().flatten().chain(edge(1).into_iter().flatten().rev());
+        let points: Vec<String> = around.map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        let (points, colour) = (points.join(" "), hex(colour_of(line, number)));
+        svg.add(format_args!(
+            r#"<polygon points="{points}" fill="{colour}" fill-opacity="0.22" clip-path="url(#panel-{index})"/>"#
+        ));
     }
     for (number, line) in panel.lines.iter().enumerate() {
         let colour = colour_of(line, number);
@@ -274,43 +288,51 @@ fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3])
     svg.add(format_args!(r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##));
 }
 
-/// The commands of a path; of many points in the same half pixel only the ends and the extremes are kept.
-fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
-    let mut path = String::new();
+/// The pieces of a line between its gaps; of many points in the same half pixel only the ends and the extremes are
+/// kept, so that a line which swings faster than pixels can show fills the height through which it swings.
+fn thinned(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
+    let mut pieces = vec![Vec::new()];
     let mut column: Vec<[f64; 2]> = Vec::new();
-    let mut pen_down = false;
-    let mut flush = |column: &mut Vec<[f64; 2]>, pen_down: &mut bool| {
+    let flush = |column: &mut Vec<[f64; 2]>, piece: &mut Vec<[f64; 2]>| {
         let last = column.len().saturating_sub(1);
         let by_height = |a: &usize, b: &usize| column[*a][1].total_cmp(&column[*b][1]);
         let low = (0..column.len()).min_by(by_height).unwrap_or(0);
         let high = (0..column.len()).max_by(by_height).unwrap_or(0);
-        let mut kept = [0, low, high, last];
+        let mut kept = vec![0, low, high, last];
         kept.sort_unstable();
-        for (place, &index) in kept.iter().enumerate() {
-            if column.is_empty() || (place > 0 && kept[place - 1] == index) {
-                continue;
-            }
-            let [x, y] = column[index].map(|value| value.clamp(-1e5, 1e5));
-            let _ = write!(path, "{}{x:.1} {y:.1}", if *pen_down { "L" } else { "M" });
-            *pen_down = true;
-        }
+        kept.dedup();
+        piece.extend(kept.iter().filter_map(|&index| column.get(index)).map(|p| p.map(|v| v.clamp(-1e5, 1e5))));
         column.clear();
     };
     for point in points {
+        let place = pieces.len() - 1;
         match point {
             Some(point) => {
                 if column.first().is_some_and(|first| (first[0] - point[0]).abs() > 0.5) {
-                    flush(&mut column, &mut pen_down);
+                    flush(&mut column, &mut pieces[place]);
                 }
                 column.push(point);
             }
             None => {
-                flush(&mut column, &mut pen_down);
-                pen_down = false;
+                flush(&mut column, &mut pieces[place]);
+                pieces.push(Vec::new());
             }
         }
     }
-    flush(&mut column, &mut pen_down);
+    let place = pieces.len() - 1;
+    flush(&mut column, &mut pieces[place]);
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// The commands of a path.
+fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
+    let mut path = String::new();
+    for piece in thinned(points) {
+        for (place, [x, y]) in piece.into_iter().enumerate() {
+            let _ = write!(path, "{}{x:.1} {y:.1}", if place > 0 { "L" } else { "M" });
+        }
+    }
     path
 }
 
@@ -338,5 +360,33 @@ mod tests {
         let points = (0..100_000).map(|index| Some([f64::from(index) * 0.005, f64::from(index % 7)]));
         let commands = path_text(points).matches('L').count();
         assert!(commands > 1000 && commands < 5000, "{commands}");
+    }
+
+    #[test]
+    fn a_fast_swing_fills_the_height_through_which_it_swings() {
+        // Forty swings in each pixel.
+        let swing =
+            |index: u32| Some([f64::from(index) / 160.0, (f64::from(index) * std::f64::consts::FRAC_PI_2).sin()]);
+        for piece in thinned((0..16_000).map(swing)) {
+            for pair in piece.windows(6) {
+                let heights = pair.iter().map(|point| point[1]);
+                let (low, high) = heights.fold((1.0_f64, -1.0_f64), |(l, h), y| (l.min(y), h.max(y)));
+                assert!(low < -0.99 && high > 0.99, "{low} {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_band_is_drawn_behind_its_line_and_seen_by_the_scale() {
+        let line = Line {
+            points: vec![[0.0, 1.0], [1.0, 1.0]],
+            band: vec![[0.0, -5.0, 9.0], [1.0, 0.0, 2.0]],
+            ..Line::default()
+        };
+        let panel = Panel { lines: vec![line], ..Panel::default() };
+        assert!(fit_panel(&panel).low < -5.0 && fit_panel(&panel).high > 9.0);
+        let text = Chart { panels: vec![panel], ..Chart::default() }.to_svg().unwrap();
+        let (band, path) = (text.find("<polygon").expect("a band"), text.find("<path").expect("a line"));
+        assert!(band < path);
     }
 }

@@ -40,6 +40,37 @@ pub(crate) struct Seen {
     pub(crate) near: f32,
 }
 
+/// The directions to the right, upwards and forwards of the camera of a view.
+pub(crate) fn axes(view: &View) -> [[f64; 3]; 3] {
+    let (azimuth, elevation) = (view.azimuth.to_radians(), view.elevation.clamp(-89.0, 89.0).to_radians());
+    let back = [elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos()];
+    let forward = back.map(|value| -value);
+    let right = unit(cross(forward, [0.0, 1.0, 0.0]));
+    [right, cross(right, forward), forward]
+}
+
+/// The points which a camera must see: those that stick out, or the corners of the box of the view.
+fn must_see(view: &View) -> Vec<[f64; 3]> {
+    if !view.points.is_empty() {
+        return view.points.clone();
+    }
+    let end = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { view.low[axis] } else { view.high[axis] };
+    (0..8).map(|corner| std::array::from_fn(|axis| end(corner, axis))).collect()
+}
+
+/// The width and the height of what the camera of a view must see, without perspective [m].
+pub(crate) fn seen_size(view: &View) -> [f64; 2] {
+    let (axes, points) = (axes(view), must_see(view));
+    [0, 1].map(|axis| {
+        let along = |ends: [f64; 2], point: &[f64; 3]| {
+            let place = dot(axes[axis], *point);
+            [ends[0].min(place), ends[1].max(place)]
+        };
+        let [low, high] = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], along);
+        high - low
+    })
+}
+
 /// A camera with a perspective view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Camera {
@@ -56,25 +87,24 @@ pub(crate) struct Camera {
 impl Camera {
     /// The camera which sees the whole view in an image of some pixels.
     pub(crate) fn new(view: &View, width: f64, height: f64) -> Camera {
-        let (azimuth, elevation) = (view.azimuth.to_radians(), view.elevation.clamp(-89.0, 89.0).to_radians());
-        let back = [elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos()];
-        let forward = back.map(|value| -value);
-        let right = unit(cross(forward, [0.0, 1.0, 0.0]));
-        let axes = [right, cross(right, forward), forward];
+        let axes = axes(view);
+        let forward = axes[2];
         let margin = 1.08;
         let slope = [HALF_HEIGHT * width / height / margin, HALF_HEIGHT / margin];
-        let corners: Vec<[f64; 3]> = (0..8)
-            .map(|corner| {
-                std::array::from_fn(|axis| if corner >> axis & 1 == 0 { view.low[axis] } else { view.high[axis] })
-            })
-            .collect();
+        let corners = must_see(view);
         let mut target = view.center();
-        let mut distance = view.extent();
-        for _ in 0..8 {
-            let seen: Vec<[f64; 3]> =
-                corners.iter().map(|&corner| axes.map(|axis| dot(axis, between(target, corner)))).collect();
+        let seen = |target: [f64; 3]| -> Vec<[f64; 3]> {
+            corners.iter().map(|&corner| axes.map(|axis| dot(axis, between(target, corner)))).collect()
+        };
+        let far_enough = |seen: &[[f64; 3]]| {
             let need = |p: &[f64; 3]| (0..2).map(|axis| p[axis].abs() / slope[axis] - p[2]).fold(0.0, f64::max);
-            distance = seen.iter().map(need).fold(1e-9, f64::max);
+            // The camera does not creep up to a point that lies before the middle.
+            let free = |p: &[f64; 3]| 0.8 * view.extent() - p[2];
+            seen.iter().map(|p| need(p).max(free(p))).fold(1e-9, f64::max)
+        };
+        for _ in 0..16 {
+            let seen = seen(target);
+            let distance = far_enough(&seen);
             // Move the target so that both sides have the same free border.
             for axis in 0..2 {
                 let at = |p: &[f64; 3]| p[axis] / (distance + p[2]).max(1e-9);
@@ -83,12 +113,18 @@ impl Camera {
                 target = along(target, axes[axis], 0.5 * (low + high) * distance);
             }
         }
+        let distance = far_enough(&seen(target));
         Camera {
             place: along(target, forward, -distance.max(1e-6)),
             axes,
             focus: 0.5 * height / HALF_HEIGHT,
             middle: [0.5 * width, 0.5 * height],
         }
+    }
+
+    /// The number of pixels in a metre at the distance of a point.
+    pub(crate) fn scale(&self, point: [f64; 3]) -> f64 {
+        self.focus / self.turn(between(self.place, point))[2].max(1e-9)
     }
 
     /// The components of a direction to the right, upwards and forwards.
@@ -119,9 +155,7 @@ mod tests {
         let picture = Picture { dimension: 3, bodies: vec![body], ..Default::default() };
         let view = View::fit([&picture]).unwrap();
         let camera = Camera::new(&view, 800.0, 600.0);
-        for corner in 0..8 {
-            let point =
-                std::array::from_fn(|axis| if corner >> axis & 1 == 0 { view.low[axis] } else { view.high[axis] });
+        for point in [[-1.0, 0.0, -2.0], [3.0, 1.0, 2.0]] {
             let [x, y] = camera.see(point).unwrap().pixel;
             assert!((0.0..800.0).contains(&x) && (0.0..600.0).contains(&y), "{x} {y}");
         }

@@ -13,6 +13,7 @@ use crate::image::Image;
 use crate::marks::draw_marks;
 use crate::picture::{BodyPicture, ColliderPicture, Facets, Picture};
 use crate::view::View;
+pub(crate) use camera::seen_size;
 use camera::{Camera, Seen, between, dot, unit};
 use ground::{Plane, Shadow};
 use raster::{SAMPLES, Screen};
@@ -29,7 +30,7 @@ pub(crate) fn scene(
     background: [u8; 3],
     [width, height]: [u32; 2],
     unit: f32,
-) -> Result<Image, DrawError> {
+) -> Result<(Image, f64), DrawError> {
     let mut screen = Screen::new(width, height, background);
     // The camera counts in samples.
     let camera = Camera::new(view, screen.width as f64, screen.height as f64);
@@ -50,10 +51,21 @@ pub(crate) fn scene(
     }
     let mut image = screen.image()?;
     let mut canvas = Canvas::new(&mut image);
-    draw_marks(&mut canvas, picture, view, unit, &|point| {
-        painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32))
-    });
-    Ok(image)
+    let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
+    draw_marks(&mut canvas, picture, view, unit, &project, &|point| painter.in_sight(&screen, point));
+    Ok((image, painter.camera.scale(view.center()) / SAMPLES as f64))
+}
+
+/// The axes of the camera of a view, and the direction towards the light.
+pub(crate) fn directions_of_view(view: &View) -> ([[f64; 3]; 3], [f64; 3]) {
+    let axes = camera::axes(view);
+    (axes, shade::light_of(&axes))
+}
+
+/// Where the shadow of a point falls on a plane; points below the plane stay where they are.
+pub(crate) fn cast(point: [f64; 3], plane: [f64; 3], normal: [f64; 3], light: [f64; 3]) -> [f64; 3] {
+    let height = dot(normal, between(plane, point)).max(0.0);
+    camera::along(point, light, -height / dot(light, normal))
 }
 
 /// What all parts of a scene need.
@@ -97,6 +109,13 @@ impl Painter<'_> {
         }
         shadow.soften(screen, (2.5 * self.unit) as usize);
         shadow
+    }
+
+    /// Whether nothing on the screen hides a point of a surface.
+    fn in_sight(&self, screen: &Screen, point: [f64; 3]) -> bool {
+        let Some(seen) = self.camera.see(point) else { return false };
+        let [column, row] = seen.pixel.map(|value| value as usize);
+        column >= screen.width || row >= screen.height || screen.near[row * screen.width + column] < seen.near * 1.004
     }
 
     /// Draws a line between two points.

@@ -22,12 +22,16 @@ pub(crate) struct Light {
     half: [f32; 3],
 }
 
+/// The direction towards the light: from above, from the left and a little from behind the camera.
+pub(crate) fn light_of(axes: &[[f64; 3]; 3]) -> [f64; 3] {
+    let flat = unit([axes[2][0], 0.0, axes[2][2]]);
+    unit(std::array::from_fn(|axis| [0.0, 1.0, 0.0][axis] - 0.42 * axes[0][axis] - 0.38 * flat[axis]))
+}
+
 impl Light {
     /// A light from above, from the left and a little from behind the camera.
     pub(crate) fn new(camera: &Camera) -> Light {
-        let flat = unit([camera.axes[2][0], 0.0, camera.axes[2][2]]);
-        let world =
-            unit(std::array::from_fn(|axis| [0.0, 1.0, 0.0][axis] - 0.42 * camera.axes[0][axis] - 0.38 * flat[axis]));
+        let world = light_of(&camera.axes);
         let turned = |direction: [f64; 3]| camera.turn(direction).map(|value| value as f32);
         let towards = camera.turn(world);
         let half = unit([towards[0], towards[1], towards[2] - 1.0]).map(|value| value as f32);
@@ -158,7 +162,7 @@ impl Light {
         gloss *= gloss;
         gloss *= gloss;
         gloss *= gloss;
-        [0.46 + 0.20 * sky + 0.40 * sun, 0.16 * gloss * gloss]
+        [0.56 + 0.18 * sky + 0.34 * sun, 0.16 * gloss * gloss]
     }
 }
 

@@ -221,6 +221,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let whole = Blueprint {
         name: scene_name(reader.source.file),
         title: top.text("title").unwrap_or("").to_string(),
+        length_unit: top.text("length_unit").unwrap_or("m").to_string(),
         seed: top.integer("seed").unwrap_or(1) as u64,
         time,
         surroundings,

@@ -1,0 +1,218 @@
+//! What is kept of a run while it runs: rows of tables, and moments for pictures.
+
+use crate::arguments::Run;
+use crate::failure::Failure;
+use opruga::blueprint::{BodyBlueprint, Recorded};
+use opruga::io::tables::NumberTable;
+use opruga::pictures::{Moment, Scenery};
+use opruga::{World, draw};
+use std::time::{Duration, Instant};
+
+/// The most memory that pictures may wait in [bytes]; longer or larger runs keep fewer of them.
+const PICTURE_BYTES: u64 = 1 << 30;
+
+/// Bodies whose volume and pressure get columns of their own.
+const MOST_BODY_COLUMNS: usize = 64;
+
+/// Nodes looked at within frames, over the whole run: as long as it takes to step a few times as many.
+const LOOKED_AT: u64 = 4_000_000;
+
+/// The most rows that plots are drawn from.
+const MOST_ROWS: u64 = 60_000;
+
+/// What is kept of every frame.
+pub(crate) struct Recorder {
+    /// One row for every frame.
+    pub(crate) table: NumberTable,
+    /// What plots are drawn from: also rows within frames, where the run is small enough.
+    pub(crate) seen: NumberTable,
+    pub(crate) columns: Columns,
+    /// Bodies with columns of their own, and how many.
+    bodies: Vec<(String, usize)>,
+    pub(crate) scenery: Option<Scenery>,
+    pub(crate) moments: Vec<Moment>,
+    /// Frames of the scene between two pictures.
+    pub(crate) every: u64,
+    /// The length of a frame of the scene [s].
+    pub(crate) frame: f64,
+    arrows: bool,
+    pub(crate) gif: bool,
+}
+
+/// What the columns of the table mean.
+pub(crate) struct Columns {
+    /// What each of the last columns has of a probe.
+    pub(crate) probes: Vec<Recorded>,
+    pub(crate) dimension: usize,
+    pub(crate) length_unit: String,
+    /// Whether y counts downwards in pictures.
+    pub(crate) y_down: bool,
+    /// Bodies with columns of their own: their thickness [m], and whether they are those of the thesis, whose volume
+    /// and pressure have other meanings.
+    pub(crate) bodies: Vec<(String, f64, bool)>,
+}
+
+impl Recorder {
+    /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
+    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Result<Recorder, Failure> {
+        let axes = &["x", "y", "z"][..D];
+        let mut columns: Vec<String> =
+            ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
+                .into_iter()
+                .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
+                .map(String::from)
+                .collect();
+        columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
+        columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
+        // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
+        let (mut bodies, mut meanings) = (Vec::new(), Vec::new());
+        let mut add = |body: &BodyBlueprint<D>, readings: Vec<&'static str>| {
+            let published = body.models.iter().any(|model| model.kind() == "as_published");
+            columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name)));
+            meanings.push((body.name.clone(), body.thickness, published));
+            bodies.push((body.name.clone(), readings.len()));
+        };
+        let present = world.blueprint().bodies.len();
+        for body in 0..present.min(MOST_BODY_COLUMNS) {
+            let readings = world.readings(body).into_iter().map(|(what, _)| what).collect();
+            add(&world.blueprint().bodies[body], readings);
+        }
+        for body in world.coming_bodies().take(MOST_BODY_COLUMNS.saturating_sub(present)) {
+            // A body for which a model cannot be built is told when it comes.
+            add(body, world.reading_names(body).unwrap_or_default());
+        }
+        let mut probes = Vec::new();
+        for probe in 0..world.blueprint().probes.len() {
+            columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
+            probes.extend(world.blueprint().probes[probe].record.iter().flat_map(|what| [*what; D]));
+        }
+        let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
+        let frame = world.blueprint().time.frame;
+        let wanted = ((1.0 / call.fps / frame).round() as u64).max(1);
+        let pictures = frames / wanted + 1;
+        let bytes = pictures * (nodes * (D + 1) * 4) as u64;
+        let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
+        if every > wanted {
+            eprintln!(
+                "warning: pictures of {nodes} nodes would take {} MiB; every {every}th frame is kept",
+                bytes >> 20
+            );
+        }
+        let rate = film_rate(every, frame);
+        if !call.no_pictures && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
+            return Err(Failure::Call {
+                message: format!(
+                    "no film can have {rate:e} pictures per second: --fps {}, frames of {frame} s",
+                    call.fps
+                ),
+                hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
+            });
+        }
+        let scenery = (!call.no_pictures).then(|| Scenery::new(world));
+        if scenery.is_some() {
+            world.keep_looks(look_every(frames, world.blueprint().time.substeps, nodes as u64));
+        }
+        Ok(Recorder {
+            table: NumberTable::new(columns.clone()),
+            seen: NumberTable::new(columns),
+            columns: Columns {
+                probes,
+                dimension: D,
+                length_unit: world.blueprint().length_unit.clone(),
+                y_down: scenery.as_ref().is_some_and(Scenery::y_down),
+                bodies: meanings,
+            },
+            bodies,
+            scenery,
+            moments: Vec::new(),
+            every,
+            frame,
+            arrows: call.arrows,
+            gif: call.gif,
+        })
+    }
+
+    /// Keeps what there is to see of the present frame, and of what was within it; says how long that took.
+    pub(crate) fn record<const D: usize>(&mut self, world: &mut World<D>) -> Duration {
+        let begin = Instant::now();
+        let (bodies, seen) = (&self.bodies, &mut self.seen);
+        world.look_within(|world| seen.push(&row(world, bodies)));
+        let row = row(world, bodies);
+        if self.scenery.is_some() {
+            seen.push(&row);
+        }
+        self.table.push(&row);
+        if let Some(scenery) = &self.scenery
+            && world.frames().is_multiple_of(self.every)
+        {
+            self.moments.push(scenery.capture(world, self.arrows));
+        }
+        begin.elapsed()
+    }
+}
+
+/// Pictures per second of simulated time, if every so manieth frame is kept.
+pub(crate) fn film_rate(every: u64, frame: f64) -> f64 {
+    1.0 / (every as f64 * frame)
+}
+
+/// Substeps between two looks within a frame, so that small runs show every swing; 0: none.
+fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
+    let steps = frames * u64::from(substeps);
+    let rows = (LOOKED_AT / nodes.max(1)).min(MOST_ROWS);
+    let every = steps.div_ceil(rows.max(1));
+    if every < u64::from(substeps) { every.max(1) as u32 } else { 0 }
+}
+
+/// The row of a table for the present state.
+fn row<const D: usize>(world: &mut World<D>, bodies: &[(String, usize)]) -> Vec<f64> {
+    let e = world.energy();
+    let m = world.momentum();
+    let mut row = vec![
+        world.time(),
+        e.kinetic,
+        e.elastic,
+        e.gas,
+        e.gravity,
+        e.work_user,
+        e.work_gas,
+        e.work_correction,
+        e.loss_damping,
+        e.loss_friction,
+        e.loss_contact,
+        e.loss_integrator,
+        e.closure,
+    ];
+    row.extend(m.linear.0);
+    row.extend(&m.angular[if D == 2 { 2..3 } else { 0..3 }]);
+    for (name, columns) in bodies {
+        let body = world.body(name);
+        let mut readings: Vec<f64> =
+            body.map_or_else(Vec::new, |b| world.readings(b).iter().map(|(_, x)| *x).collect());
+        // A body that is not there yet, or no longer, leaves its columns empty.
+        readings.resize(*columns, f64::NAN);
+        row.extend(readings);
+    }
+    for probe in 0..world.blueprint().probes.len() {
+        row.extend(world.probe(probe).into_iter().map(|(_, x)| x));
+    }
+    row
+}
+
+fn angular_axes<const D: usize>() -> &'static [&'static str] {
+    if D == 2 { &[""] } else { &[".x", ".y", ".z"] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::look_every;
+
+    #[test]
+    fn small_runs_are_seen_at_every_substep_and_large_ones_only_between_frames() {
+        assert_eq!(look_every(480, 32, 36), 1);
+        assert_eq!(look_every(240, 40, 1926), 5);
+        assert_eq!(look_every(240, 32, 36_000), 0);
+        assert_eq!(look_every(0, 32, 36), 1);
+        assert_eq!(look_every(10, 1, 36), 0);
+    }
+}
