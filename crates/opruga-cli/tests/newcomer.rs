@@ -250,7 +250,9 @@ fn a_run_without_steps_claims_no_speed() {
 fn mixed_units_are_warned_of() {
     let folder = tempfile::tempdir().expect("a folder");
     // A ring of 1 m in millimetres, whose density and gravity are not.
-    let millimetres = scene("").replace("radius = 0.5", "radius = 500.0").replace("mass = 1\n", "density = 1000.0\n");
+    let millimetres = scene("")
+        .replace("radius = 0.5", "radius = 500.0")
+        .replace("mass = 1\n", "density = 1000.0\nthickness = 1.0\n");
     let millimetres = millimetres.replace("substeps = 20", "substeps = 1");
     std::fs::write(folder.path().join("mm.toml"), &millimetres).expect("a file");
     std::fs::write(folder.path().join("m.toml"), scene("")).expect("a file");
