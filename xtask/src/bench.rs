@@ -26,7 +26,7 @@ pub(crate) fn compare() -> Result<(), String> {
     let baseline = Command::new(&program).env("CPUT", "1").output().map_err(|e| e.to_string())?;
     let baseline = baseline_rows(&String::from_utf8_lossy(&baseline.stdout));
     println!("| rings x vertices | instructions | baseline ns | Opruga ns | ratio |\n|---|---|---|---|---|");
-    for simd in ["avx512", "avx2", "scalar"] {
+    for simd in ["avx512", "avx2", "sse2"] {
         let output = Command::new(&opruga)
             .args(["bench", "vertices", "--json"])
             .env("OPRUGA_SIMD", simd)

@@ -95,7 +95,7 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
         Err(_) => Ok(None),
         Ok(name) => match Simd::named(&name) {
             Some(simd) => Ok(Some(simd)),
-            None => Err(Failure::call(format!("OPRUGA_SIMD={name}: allowed are scalar, avx2, avx512"))),
+            None => Err(Failure::call(format!("OPRUGA_SIMD={name}: allowed are sse2, avx2, avx512, scalar"))),
         },
     }
 }

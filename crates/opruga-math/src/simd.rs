@@ -21,6 +21,7 @@ impl Simd {
     /// The name that `OPRUGA_SIMD` and the summaries use.
     pub fn name(self) -> &'static str {
         match self {
+            Simd::Baseline if cfg!(target_arch = "x86_64") => "sse2",
             Simd::Baseline => "scalar",
             Simd::Avx2 => "avx2",
             Simd::Avx512 => "avx512",
@@ -44,10 +45,11 @@ impl Simd {
         }
         Simd::Baseline
     }
-    /// The set of a name (`scalar`, `avx2`, `avx512`), or the best one below it that this processor has.
+    /// The set of a name (`sse2`, `avx2`, `avx512`), or the best one below it that this processor has; `scalar` is what
+    /// every machine of the target has.
     pub fn named(name: &str) -> Option<Simd> {
         let wanted = match name {
-            "scalar" => Simd::Baseline,
+            "scalar" | "sse2" => Simd::Baseline,
             "avx2" => Simd::Avx2,
             "avx512" => Simd::Avx512,
             _ => return None,
@@ -162,6 +164,7 @@ mod tests {
     #[test]
     fn names_are_understood_and_capped_by_the_processor() {
         assert_eq!(Simd::named("scalar"), Some(Simd::Baseline));
+        assert_eq!(Simd::named(Simd::Baseline.name()), Some(Simd::Baseline));
         assert_eq!(Simd::named("avx512"), Some(Simd::best()));
         assert_eq!(Simd::named("neon"), None);
     }

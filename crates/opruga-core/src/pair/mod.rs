@@ -185,6 +185,42 @@ struct Pull {
     ends: [Vec<u32>; 2],
 }
 
+/// Partners of a node that are looked at together.
+const AT_ONCE: usize = 6;
+
+impl Pull {
+    /// The partners of eight places in a slot, and the pairs.
+    #[inline(always)]
+    fn slot(&self, layout: Layout, place: usize, slot: usize) -> (At<'_>, At<'_>) {
+        let pack = place / WIDTH;
+        match layout {
+            Layout::Single => {
+                let at = (pack * self.width + slot) * WIDTH;
+                let (partner, pair) = (&self.partner[at..at + WIDTH], &self.pair[at..at + WIDTH]);
+                if self.together[at / WIDTH] {
+                    (At::Run(partner[0] as usize), At::Run(pair[0] as usize))
+                } else {
+                    (At::Each(partner), At::Each(pair))
+                }
+            }
+            Layout::Batch => {
+                // A pack is one node of eight bodies.
+                let at = (pack / WIDTH * self.width + slot) * WIDTH + pack % WIDTH;
+                (At::Run(self.partner[at] as usize * WIDTH), At::Run(self.pair[at] as usize * WIDTH))
+            }
+        }
+    }
+}
+
+/// The numbers of a column at eight places.
+#[inline(always)]
+fn read<P: Pack>(column: &[f64], at: At) -> P {
+    match at {
+        At::Run(place) => P::load(&column[place..]),
+        At::Each(places) => P::gather(column, places),
+    }
+}
+
 /// The pairs of a body, sorted for evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairTable {
@@ -504,56 +540,25 @@ impl PairTable {
             let x: [P; D] = load(&view.x, place);
             let v: [P; D] = if L::DAMPED { load(&view.v, place) } else { [P::zero(); D] };
             let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][place - tile.range.start..]));
-            match self.layout {
-                Layout::Single => {
-                    for slot in 0..pull.width {
-                        let at = (place / WIDTH * pull.width + slot) * WIDTH;
-                        let partner = &pull.partner[at..at + WIDTH];
-                        let pair = &pull.pair[at..at + WIDTH];
-                        let (mut d, mut rate) = ([P::zero(); D], [P::zero(); D]);
-                        let parameters;
-                        if pull.together[at / WIDTH] {
-                            let from = partner[0] as usize;
-                            d = lanes!(P, i => x[i] - P::load(&view.x[i][from..]));
-                            if L::DAMPED {
-                                rate = lanes!(P, i => v[i] - P::load(&view.v[i][from..]));
-                            }
-                            parameters = law_parameters(&law, At::Run(pair[0] as usize));
-                        } else {
-                            for i in 0..D {
-                                d[i] = x[i] - P::gather(view.x[i], partner);
-                                if L::DAMPED {
-                                    rate[i] = v[i] - P::gather(view.v[i], partner);
-                                }
-                            }
-                            parameters = law_parameters(&law, At::Each(pair));
-                        }
-                        let (f, dissipated) = law.force(parameters, d, rate, law.ahead(d));
-                        for i in 0..D {
-                            force[i] += f[i];
-                        }
-                        if L::DAMPED {
-                            *power += half * dissipated;
-                        }
-                    }
+            for from in (0..pull.width).step_by(AT_ONCE) {
+                let slots = from..(from + AT_ONCE).min(pull.width);
+                // First what takes long, for all partners; meanwhile the rest of the first ones is worked out.
+                let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
+                for slot in slots.clone() {
+                    let (partner, _) = pull.slot(self.layout, place, slot);
+                    d[slot - from] = lanes!(P, i => x[i] - read::<P>(view.x[i], partner));
+                    ahead[slot - from] = law.ahead(d[slot - from]);
                 }
-                Layout::Batch => {
-                    let node = place / WIDTH;
-                    for slot in 0..pull.width {
-                        let at = (node / WIDTH * pull.width + slot) * WIDTH + node % WIDTH;
-                        let partner = pull.partner[at] as usize * WIDTH;
-                        let pair = pull.pair[at] as usize * WIDTH;
-                        let d = lanes!(P, i => x[i] - P::load(&view.x[i][partner..]));
-                        let rate = lanes!(P, i => {
-                            if L::DAMPED { v[i] - P::load(&view.v[i][partner..]) } else { P::zero() }
-                        });
-                        let (f, dissipated) = law.force(law_parameters(&law, At::Run(pair)), d, rate, law.ahead(d));
-                        for i in 0..D {
-                            force[i] += f[i];
-                        }
-                        if L::DAMPED {
-                            *power += half * dissipated;
-                        }
+                for slot in slots {
+                    let (partner, pair) = pull.slot(self.layout, place, slot);
+                    let rate = lanes!(P, i => if L::DAMPED { v[i] - read::<P>(view.v[i], partner) } else { P::zero() });
+                    let (f, dissipated) =
+                        law.force(law_parameters(&law, pair), d[slot - from], rate, ahead[slot - from]);
+                    for i in 0..D {
+                        force[i] += f[i];
+                    }
+                    if L::DAMPED {
+                        *power += half * dissipated;
                     }
                 }
             }

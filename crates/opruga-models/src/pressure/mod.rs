@@ -55,7 +55,7 @@ struct Chamber {
 }
 
 /// Numbers of a chamber in the scratch, before its area vectors.
-const NUMBERS: usize = 3 * WIDTH;
+const NUMBERS: usize = 4 * WIDTH;
 
 /// Memory of a chamber: the fraction of gas that has not leaked, and how often the pressure was limited, per body.
 const MEMORY: usize = 2 * WIDTH;
@@ -120,12 +120,14 @@ impl Chamber {
     fn gas(&self, body: usize) -> &Gas {
         &self.gases[body.min(self.gases.len() - 1)]
     }
-    /// What `prepare` left behind: volume (area), gauge pressure times depth, nRT of each body; and area vectors.
+    /// What `prepare` left behind: volume (area), gauge pressure times depth, nRT of each body, one where its
+    /// pressure was limited; and area vectors.
     fn known<'a>(&self, scratch: &'a [f64]) -> Known<'a> {
         let (numbers, area) = scratch[self.scratch..self.scratch + NUMBERS + self.area_len].split_at(NUMBERS);
         let (volume, rest) = numbers.split_at(WIDTH);
-        let (gauge, amount) = rest.split_at(WIDTH);
-        Known { volume, gauge, amount, area }
+        let (gauge, rest) = rest.split_at(WIDTH);
+        let (amount, limited) = rest.split_at(WIDTH);
+        Known { volume, gauge, amount, limited, area }
     }
 }
 
@@ -133,6 +135,7 @@ struct Known<'a> {
     volume: &'a [f64],
     gauge: &'a [f64],
     amount: &'a [f64],
+    limited: &'a [f64],
     area: &'a [f64],
 }
 
@@ -177,14 +180,15 @@ impl<const D: usize> Potential<D> for Pressure {
                 let gas = chamber.gas(body);
                 let amount =
                     if gas.changes { gas.amount_at(view.time, memory[number * MEMORY + body]) } else { gas.amount };
-                let (pressure, _) = gas.pressure_at(scratch[body] * self.depth, amount);
+                let (pressure, limited) = gas.pressure_at(scratch[body] * self.depth, amount);
                 scratch[WIDTH + body] = (pressure - gas.ambient) * self.depth;
                 scratch[2 * WIDTH + body] = amount;
+                scratch[3 * WIDTH + body] = f64::from(limited);
             }
             if self.layout == Layout::Single {
                 let (gauge, amount) = (scratch[WIDTH], scratch[2 * WIDTH]);
                 scratch[WIDTH..2 * WIDTH].fill(gauge);
-                scratch[2 * WIDTH..].fill(amount);
+                scratch[2 * WIDTH..3 * WIDTH].fill(amount);
             }
         }
         Ok(())
@@ -200,12 +204,7 @@ impl<const D: usize> Potential<D> for Pressure {
         for (number, chamber) in self.chambers.iter().enumerate() {
             let known = chamber.known(scratch);
             for body in 0..self.bodies() {
-                let (gas, volume) = (chamber.gas(body), known.volume[body] * self.depth);
-                // Without a cap only a small volume limits the pressure.
-                let roomy = gas.largest_pressure.is_none() && volume >= gas.smallest_volume * gas.rest_volume;
-                if !roomy && gas.pressure_at(volume, known.amount[body]).1 {
-                    memory[number * MEMORY + WIDTH + body] += 1.0;
-                }
+                memory[number * MEMORY + WIDTH + body] += known.limited[body];
             }
         }
         if !self.changes {
