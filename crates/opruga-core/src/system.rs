@@ -356,7 +356,8 @@ impl<const D: usize> System<D> {
         let force_on = |d: usize, place: usize| force[d][place - range.start];
         self.held.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
         if let Some(limit) = self.stabilisers.largest_force {
-            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit, is_node);
         }
     }
 
@@ -380,7 +381,8 @@ impl<const D: usize> System<D> {
         let range = self.plan.range(tile);
         if let Some(limit) = self.stabilisers.largest_velocity {
             let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
-            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit, is_node);
         }
         if self.contacts.is_none() {
             return;
@@ -524,8 +526,21 @@ impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
     }
 }
 
-/// Shortens vectors longer than a limit; returns how many.
-fn limit_lengths<const D: usize>(columns: &mut [&mut [f64]; D], count: usize, limit: f64) -> u64 {
+/// Whether a place holds a node of a body; the others fill packs up.
+fn is_node(layout: Layout, nodes: usize, bodies: usize, place: usize) -> bool {
+    match layout {
+        Layout::Single => place < nodes,
+        Layout::Batch => place % WIDTH < bodies && place / WIDTH < nodes,
+    }
+}
+
+/// Shortens vectors longer than a limit; returns how many of them belong to nodes.
+fn limit_lengths<const D: usize>(
+    columns: &mut [&mut [f64]; D],
+    count: usize,
+    limit: f64,
+    is_node: impl Fn(usize) -> bool,
+) -> u64 {
     let mut acted = 0;
     for k in 0..count {
         let mut square = 0.0;
@@ -537,7 +552,7 @@ fn limit_lengths<const D: usize>(columns: &mut [&mut [f64]; D], count: usize, li
             for column in columns.iter_mut() {
                 column[k] *= factor;
             }
-            acted += 1;
+            acted += u64::from(is_node(k));
         }
     }
     acted
