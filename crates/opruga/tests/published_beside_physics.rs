@@ -1,4 +1,5 @@
 //! The scene that shows the published ball beside the same ball with its physics mended, as the documents describe it.
+#![allow(clippy::disallowed_methods)] // no physics here
 
 mod common;
 use common::*;
