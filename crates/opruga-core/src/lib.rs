@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod error;
 pub mod integrator;
 pub mod pair;
+mod pins;
 pub mod potential;
 pub mod spec;
 pub mod stability;

@@ -2,11 +2,14 @@
 
 use crate::contacts::{Contacts, Moved};
 use crate::error::StepError;
+use crate::pins::Held;
 use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
 use crate::tile::{TILE, Tile, TilePlan, Weight};
 use core::ops::Range;
 use opruga_math::{Column, Lane, Pack, Simd, WIDTH, Work};
+
+pub use crate::pins::{Pin, along_path};
 
 /// Which columns hold the state in which forces are evaluated, or into which an update writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,50 +31,6 @@ pub struct State<const D: usize> {
     pub work: Vec<[Columns<D>; 2]>,
 }
 
-/// A node held in some axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pin<const D: usize> {
-    /// Where the node lies in the columns.
-    pub place: usize,
-    /// Which axes are held.
-    pub axes: [bool; D],
-    /// Where it is held [m].
-    pub anchor: [f64; D],
-    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty: none.
-    pub motion: std::sync::Arc<Vec<Vec<f64>>>,
-}
-
-impl<const D: usize> Pin<D> {
-    /// The prescribed position and velocity at a time.
-    pub fn target(&self, time: f64) -> ([f64; D], [f64; D]) {
-        let (offset, rate) = along_path::<D>(&self.motion, time);
-        (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
-    }
-}
-
-/// The point and its velocity on a piecewise straight path with rows `[t, x, y(, z)]`, at rest before and after it.
-pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f64; D]) {
-    let point = |row: &Vec<f64>| core::array::from_fn(|d| row[d + 1]);
-    let (Some(first), Some(last)) = (path.first(), path.last()) else {
-        return ([0.0; D], [0.0; D]);
-    };
-    if time < first[0] {
-        return (point(first), [0.0; D]);
-    }
-    for pair in path.windows(2) {
-        if time < pair[1][0] {
-            let span = pair[1][0] - pair[0][0];
-            let s = (time - pair[0][0]) / span;
-            let (a, b): ([f64; D], [f64; D]) = (point(&pair[0]), point(&pair[1]));
-            return (
-                core::array::from_fn(|d| a[d] + s * (b[d] - a[d])),
-                core::array::from_fn(|d| (b[d] - a[d]) / span),
-            );
-        }
-    }
-    (point(last), [0.0; D])
-}
-
 /// Limits of the thesis against instability, off by default; every use is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stabilisers {
@@ -84,7 +43,7 @@ pub struct Stabilisers {
 /// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work8 {
-    /// Work of forces from outside and of moving obstacles.
+    /// Work of forces from outside, of moving obstacles and of pins.
     pub user: [f64; WIDTH],
     /// Energy given to the gas by ramps, heating and leaks.
     pub gas: [f64; WIDTH],
@@ -201,6 +160,8 @@ pub struct System<const D: usize> {
     /// Energy that went in and out.
     pub work: Work8,
     plan: TilePlan,
+    /// What the pins hold.
+    pub(crate) held: Held<D>,
     /// Pairs of columns that the integrator uses within a step.
     stages: usize,
     forces: [Column; D],
@@ -242,6 +203,7 @@ impl<const D: usize> System<D> {
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             plan: TilePlan::new(places, std::iter::empty()),
+            held: Held::default(),
             stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
             before: core::array::from_fn(|_| Column::default()),
@@ -254,7 +216,7 @@ impl<const D: usize> System<D> {
         let scratch = Column::zeros(potential.scratch_len());
         self.members.push(Member { potential, memory, scratch });
     }
-    /// Lays out tiles and buffers after the models or the integrator changed.
+    /// Lays out tiles and buffers after the models, the pins or the integrator changed.
     pub fn plan(&mut self, work_columns: usize) {
         let places = self.layout.places(self.nodes);
         let stride = self.layout.stride();
@@ -273,6 +235,7 @@ impl<const D: usize> System<D> {
         }
         self.plan = TilePlan::new(places, spans.into_iter());
         self.stages = work_columns;
+        self.held = Held::of(&self.pins);
     }
     /// Takes a workspace for its own, or gives it back.
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
@@ -318,6 +281,9 @@ impl<const D: usize> System<D> {
         let now = self.time + time;
         self.make_room();
         self.prepare(evaluate, now)?;
+        if step.is_some() {
+            self.take_held_motion(0..self.places());
+        }
         for tile in 0..self.plan.len() {
             self.add_forces(evaluate, now, weight, tile);
             for k in 0..self.plan.released_after(tile).len() {
@@ -330,6 +296,9 @@ impl<const D: usize> System<D> {
         }
         if !self.pins.is_empty() {
             self.hold_pins(update.writes(), self.time + update.time());
+        }
+        if step.is_some() {
+            self.give_held_motion(0..self.places());
         }
         Ok(())
     }
@@ -383,8 +352,12 @@ impl<const D: usize> System<D> {
                 }
             }
         }
+        // A pin balances the forces of the models, whatever the stabiliser leaves of them.
+        let force_on = |d: usize, place: usize| force[d][place - range.start];
+        self.held.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
         if let Some(limit) = self.stabilisers.largest_force {
-            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit, is_node);
         }
     }
 
@@ -408,10 +381,21 @@ impl<const D: usize> System<D> {
         let range = self.plan.range(tile);
         if let Some(limit) = self.stabilisers.largest_velocity {
             let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
-            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit, is_node);
         }
+        if self.contacts.is_none() {
+            return;
+        }
+        // What an obstacle takes of the motion of a held node its pin gives back.
+        self.give_held_motion(range.clone());
+        self.resolve_contacts(tile, h);
+        self.take_held_motion(range);
+    }
+
+    fn resolve_contacts(&mut self, tile: usize, h: f64) {
         let Some(contacts) = &self.contacts else { return };
-        let buffer = self.plan.buffer(tile);
+        let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
         contacts.resolve(
             self.simd,
             &mut Moved {
@@ -431,26 +415,6 @@ impl<const D: usize> System<D> {
                 work_correction: &mut self.work.correction,
             },
         );
-    }
-
-    /// Puts held nodes where they are prescribed to be.
-    fn hold_pins(&mut self, stage: Stage, time: f64) {
-        let (x, v) = match stage {
-            Stage::Current => (&mut self.state.x, &mut self.state.v),
-            Stage::Work(k) => {
-                let [x, v] = &mut self.state.work[k];
-                (x, v)
-            }
-        };
-        for pin in &self.pins {
-            let (position, velocity) = pin.target(time);
-            for d in 0..D {
-                if pin.axes[d] {
-                    x.0[d][pin.place] = position[d];
-                    v.0[d][pin.place] = velocity[d];
-                }
-            }
-        }
     }
 
     /// Ends a substep: models move their memory on, time passes.
@@ -562,8 +526,21 @@ impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
     }
 }
 
-/// Shortens vectors longer than a limit; returns how many.
-fn limit_lengths<const D: usize>(columns: &mut [&mut [f64]; D], count: usize, limit: f64) -> u64 {
+/// Whether a place holds a node of a body; the others fill packs up.
+fn is_node(layout: Layout, nodes: usize, bodies: usize, place: usize) -> bool {
+    match layout {
+        Layout::Single => place < nodes,
+        Layout::Batch => place % WIDTH < bodies && place / WIDTH < nodes,
+    }
+}
+
+/// Shortens vectors longer than a limit; returns how many of them belong to nodes.
+fn limit_lengths<const D: usize>(
+    columns: &mut [&mut [f64]; D],
+    count: usize,
+    limit: f64,
+    is_node: impl Fn(usize) -> bool,
+) -> u64 {
     let mut acted = 0;
     for k in 0..count {
         let mut square = 0.0;
@@ -575,7 +552,7 @@ fn limit_lengths<const D: usize>(columns: &mut [&mut [f64]; D], count: usize, li
             for column in columns.iter_mut() {
                 column[k] *= factor;
             }
-            acted += 1;
+            acted += u64::from(is_node(k));
         }
     }
     acted

@@ -16,7 +16,7 @@ pub struct Energy {
     pub gas: f64,
     /// Potential energy −Σ m g·x.
     pub gravity: f64,
-    /// Work of loads, pushes, pulls and moving obstacles.
+    /// Work of loads, pushes, pulls, moving obstacles and pins.
     pub work_user: f64,
     /// Energy given to the gas by ramps, heating and leaks.
     pub work_gas: f64,
@@ -29,7 +29,7 @@ pub struct Energy {
     /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
     /// the first order of the depth.
     pub work_correction: f64,
-    /// What the other channels do not explain: the error of the integrator, and the work of pins that move.
+    /// What the other channels do not explain: the error of the integrator.
     pub loss_integrator: f64,
     /// |loss_integrator| relative to the largest energy that was in motion.
     pub closure: f64,

@@ -10,6 +10,7 @@ macro_rules! scenes {
 scenes![
     "ball",
     "ball-as-published",
+    "published-beside-physics",
     "pressures",
     "integrators",
     "thousand-balls",

@@ -336,3 +336,44 @@ fn space_has_no_preferred_direction() {
         assert!(off < 1e-10, "{name}: {off:e}");
     }
 }
+
+/// The scene of a ball on a floor with lengths in units of 1/f metres: what is a length grows by f, gravity and
+/// speeds with it, energies by f². In the plane gas acts on a depth, which grows too.
+fn in_units(f: f64) -> Blueprint<2> {
+    let text = format!(
+        "{}[[body]]\nname = \"ball\"\nmass = 2\nthickness = {f:?}\nposition = [0, {:?}]\nvelocity = [{:?}, {:?}]\nangular_velocity = 2\n\
+         shape = {{ kind = \"ring\", radius = {:?}, vertices = 24 }}\n\
+         models = [{{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5 }}, \
+         {{ kind = \"pressure\", nRT = {:?}, ambient = {:?} }}, {{ kind = \"bending\", stiffness = {:?}, damping = {:?} }}]\n\
+         [[collider]]\nkind = \"half_space\"\npoint = [0, 0]\nnormal = [0, 1]\nfriction = 0.4\nrestitution = 0.3\nrest_speed = {:?}\n\
+         [[command]]\ndo = \"drag\"\nat = 0.25\nbody = \"ball\"\nnode = 4\npath = [[0.25, {f:?}, {f:?}], [1, {:?}, {f:?}]]\n",
+        head(1.0 / 64.0, 64, -9.81 * f, "symplectic_euler"),
+        0.625 * f,
+        1.5 * f,
+        -3.0 * f,
+        0.5 * f,
+        40.0 * f * f,
+        5.0 / f,
+        0.05 * f * f,
+        0.001 * f * f,
+        0.05 * f,
+        2.0 * f,
+    );
+    plane(&text)
+}
+
+/// Metres, about millimetres, about kilometres: by powers of two to the bit, since no number of the engine has a size.
+#[test]
+fn the_unit_of_length_does_not_matter_to_the_bit() {
+    let reference = ran(in_units(1.0), 64);
+    let energy = reference.energy();
+    assert!(energy.loss_contact > 0.01 && energy.loss_friction > 0.01 && energy.work_user.abs() > 0.01, "{energy:?}");
+    for f in [1024.0, 1.0 / 1024.0, 2.0] {
+        let world = ran(in_units(f), 64);
+        for (a, b) in state(&reference).into_iter().zip(state(&world)) {
+            assert_eq!(a.map(|c| f * c), b, "lengths times {f}");
+        }
+        let scaled = world.energy();
+        assert_eq!((f * f * energy.kinetic, f * f * energy.loss_friction), (scaled.kinetic, scaled.loss_friction));
+    }
+}

@@ -92,6 +92,37 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
     }
 }
 
+/// A node that is led along a straight path: the pins' work is in the ledger, which closes at the order of the rule.
+#[test]
+fn the_work_of_pins_is_in_the_ledger() {
+    for (rule, order) in RULES.into_iter().zip([1.0, 1.0, 2.0, 2.0, 4.0]) {
+        let gap = |steps: usize| {
+            let mut system = two_nodes::<2>(0.8);
+            system.gravity = [0.3, -2.0];
+            let (start, speed) = (system.state.x.at(0), [2.0, -0.5]);
+            let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 10.0 * speed[0], 10.0 * speed[1]]]);
+            // The same node twice: it is held once.
+            system.pins.push(Pin { place: 0, axes: [true, true], anchor: start, motion: Arc::clone(&motion) });
+            system.pins.push(Pin { place: 0, axes: [true, false], anchor: start, motion });
+            system.state.v.set(0, speed);
+            let total = |system: &System<2>| {
+                let weight = |node: usize| {
+                    let x = system.state.x.at(node);
+                    system.mass.at(node) * (0.3 * x[0] - 2.0 * x[1])
+                };
+                problems::energy_of_two_nodes(system) - weight(0) - weight(1)
+            };
+            let before = total(&system);
+            run(&mut system, rule, 1.0 / steps as f64, steps);
+            let (damped, given): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
+            assert!(damped > 0.01 && given.abs() > 0.5, "{}: {damped} {given}", rule.name());
+            (total(&system) + damped - given - before).abs()
+        };
+        let observed = libm::log2(gap(200) / gap(1600)) / 3.0;
+        assert!(observed >= order - 0.2, "{}: {observed}", rule.name());
+    }
+}
+
 /// One node or eight bodies, any vector instructions: the same bits.
 #[test]
 fn bits_depend_neither_on_instructions_nor_on_the_layout() {

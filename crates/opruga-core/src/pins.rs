@@ -1,0 +1,141 @@
+//! Nodes that are held or led: where they have to be, and what work that takes.
+
+use crate::system::{Stage, System};
+use core::ops::Range;
+use opruga_math::WIDTH;
+
+/// A node held in some axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pin<const D: usize> {
+    /// Where the node lies in the columns.
+    pub place: usize,
+    /// Which axes are held.
+    pub axes: [bool; D],
+    /// Where it is held [m].
+    pub anchor: [f64; D],
+    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty: none.
+    pub motion: std::sync::Arc<Vec<Vec<f64>>>,
+}
+
+impl<const D: usize> Pin<D> {
+    /// The prescribed position and velocity at a time.
+    pub fn target(&self, time: f64) -> ([f64; D], [f64; D]) {
+        let (offset, rate) = along_path::<D>(&self.motion, time);
+        (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
+    }
+}
+
+/// The point and its velocity on a piecewise straight path with rows `[t, x, y(, z)]`, at rest before and after it.
+pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f64; D]) {
+    let point = |row: &Vec<f64>| core::array::from_fn(|d| row[d + 1]);
+    let (Some(first), Some(last)) = (path.first(), path.last()) else {
+        return ([0.0; D], [0.0; D]);
+    };
+    if time < first[0] {
+        return (point(first), [0.0; D]);
+    }
+    for pair in path.windows(2) {
+        if time < pair[1][0] {
+            let span = pair[1][0] - pair[0][0];
+            let s = (time - pair[0][0]) / span;
+            let (a, b): ([f64; D], [f64; D]) = (point(&pair[0]), point(&pair[1]));
+            return (
+                core::array::from_fn(|d| a[d] + s * (b[d] - a[d])),
+                core::array::from_fn(|d| (b[d] - a[d]) / span),
+            );
+        }
+    }
+    (point(last), [0.0; D])
+}
+
+/// What the pins hold: every place once with its held axes, by place.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Held<const D: usize>(Vec<(usize, [bool; D])>);
+
+impl<const D: usize> Default for Held<D> {
+    fn default() -> Self {
+        Held(Vec::new())
+    }
+}
+
+impl<const D: usize> Held<D> {
+    /// What these pins hold; a place held twice is held once.
+    pub(crate) fn of(pins: &[Pin<D>]) -> Held<D> {
+        let mut held: Vec<(usize, [bool; D])> = pins.iter().map(|pin| (pin.place, pin.axes)).collect();
+        held.sort_by_key(|entry| entry.0);
+        held.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                (0..D).for_each(|d| kept.1[d] |= next.1[d]);
+            }
+            same
+        });
+        Held(held)
+    }
+    /// Held places within a range, and their held axes.
+    fn within(&self, range: &Range<usize>) -> impl Iterator<Item = (usize, usize)> {
+        let first = self.0.partition_point(|entry| entry.0 < range.start);
+        let last = self.0.partition_point(|entry| entry.0 < range.end);
+        self.0[first..last].iter().flat_map(|(place, axes)| (0..D).filter(|d| axes[*d]).map(|d| (*place, d)))
+    }
+    /// Adds the work −F·v dt that pins do against the forces of the models.
+    #[inline]
+    pub(crate) fn add_work_against(
+        &self,
+        range: &Range<usize>,
+        weight: f64,
+        force: impl Fn(usize, usize) -> f64,
+        velocity: [&[f64]; D],
+        work: &mut [f64; WIDTH],
+    ) {
+        if self.0.is_empty() {
+            return;
+        }
+        for (place, d) in self.within(range) {
+            work[place % WIDTH] -= weight * force(d, place) * velocity[d][place];
+        }
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Puts held nodes where they are prescribed to be.
+    pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
+        let (x, v) = match stage {
+            Stage::Current => (&mut self.state.x, &mut self.state.v),
+            Stage::Work(k) => {
+                let [x, v] = &mut self.state.work[k];
+                (x, v)
+            }
+        };
+        for pin in &self.pins {
+            let (position, velocity) = pin.target(time);
+            for d in 0..D {
+                if pin.axes[d] {
+                    x.0[d][pin.place] = position[d];
+                    v.0[d][pin.place] = velocity[d];
+                }
+            }
+        }
+    }
+
+    /// Takes the kinetic energy along held axes from the work of the pins: what they find.
+    pub(crate) fn take_held_motion(&mut self, range: Range<usize>) {
+        self.add_held_motion(range, -0.5);
+    }
+
+    /// Adds the kinetic energy along held axes to the work of the pins: what they leave.
+    pub(crate) fn give_held_motion(&mut self, range: Range<usize>) {
+        self.add_held_motion(range, 0.5);
+    }
+
+    #[inline]
+    fn add_held_motion(&mut self, range: Range<usize>, factor: f64) {
+        if self.pins.is_empty() {
+            return;
+        }
+        for (place, d) in self.held.within(&range) {
+            let velocity = self.state.v.0[d][place];
+            self.work.user[place % WIDTH] += factor * self.mass.at(place) * velocity * velocity;
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Gas that is let in, heated, or leaks: amounts and energies against their closed forms, in bodies that keep their volume.
+#![allow(clippy::disallowed_methods)] // expected values of the tests' own
+
+mod common;
+use common::*;
+use opruga::World;
+
+/// N R² sin(2π/N)/2 for N = 36, R = 0.5 m, a metre deep [m³].
+const VOLUME: f64 = 0.781_416_799_501_186_5;
+
+/// A ring that is held, and gas in it.
+fn held(gas: &str) -> World<2> {
+    built(plane(&format!(
+        "{}[[body]]\nname = \"ring\"\nfixed = true\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 36 }}\n\
+         models = [{{ kind = \"pressure\", {gas} }}]\n",
+        head(0.02, 20, 0.0, "symplectic_euler")
+    )))
+}
+
+fn reading(world: &mut World<2>, name: &str) -> f64 {
+    world.readings(0).into_iter().find(|r| r.0 == name).expect("a reading").1
+}
+
+/// The ramp is linear and ends; what it lets in is the work on the gas: P V/(γ − 1) of an adiabatic one.
+#[test]
+fn a_ramp_lets_the_gas_in_linearly() {
+    let mut world = held("nRT = 80.0, ramp = 0.8");
+    for frame in 1..=50 {
+        frames(&mut world, 1);
+        let expected = 80.0 * (f64::from(frame) * 0.02 / 0.8).min(1.0);
+        assert!((reading(&mut world, "nRT") - expected).abs() < 1e-9, "frame {frame}");
+        assert!((reading(&mut world, "pressure") * VOLUME - expected).abs() < 1e-9, "frame {frame}");
+    }
+    let mut world = held("pressure = 200.0, process = \"adiabatic\", gamma = 1.4, ramp = 0.5");
+    frames(&mut world, 30);
+    let expected = 200.0 * VOLUME / 0.4;
+    assert!((reading(&mut world, "pressure") - 200.0).abs() < 1e-9);
+    assert!((world.energy().work_gas - expected).abs() < 1e-6, "{:?}", world.energy());
+    assert!(world.energy().loss_integrator.abs() < 1e-6, "{:?}", world.energy());
+}
+
+/// d(nRT)/dt = −λ (P − P_a) V at constant V: nRT = P_a V + (nRT₀ − P_a V) e^(−λt).
+#[test]
+fn a_leak_brings_the_pressure_down_to_that_outside() {
+    for ambient in [0.0, 40.0] {
+        let mut world = held(&format!("nRT = 80.0, leak = 1.5, ambient = {ambient:?}"));
+        for frame in 1..=200 {
+            frames(&mut world, 1);
+            let outside = ambient * VOLUME;
+            let expected = outside + (80.0 - outside) * (-1.5 * 0.02 * f64::from(frame)).exp();
+            let found = reading(&mut world, "nRT");
+            assert!((found - expected).abs() < 0.03, "{ambient} Pa, frame {frame}: {found} {expected}");
+        }
+        // After 4 s, six times the time constant.
+        assert!((reading(&mut world, "pressure") - ambient).abs() < 0.3);
+    }
+}
+
+/// T/T₀ is straight between the points of its curve and constant after the last.
+#[test]
+fn temperature_follows_its_curve() {
+    let mut world = held("nRT = 80.0, temperature = [[0, 1], [0.4, 1.5], [0.8, 0.5]]");
+    for (frame, factor) in [(10, 1.25), (20, 1.5), (30, 1.0), (40, 0.5), (50, 0.5)] {
+        while world.frames() < frame {
+            frames(&mut world, 1);
+        }
+        let found = reading(&mut world, "pressure") * VOLUME / 80.0;
+        assert!((found - factor).abs() < 1e-9, "frame {frame}: {found}");
+    }
+}
