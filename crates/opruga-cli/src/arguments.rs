@@ -88,6 +88,9 @@ pub(crate) struct Check {
     /// Unknown fields are warnings
     #[arg(long)]
     pub(crate) lenient: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
 }
 
 #[derive(Args, Debug)]
@@ -134,6 +137,9 @@ pub(crate) struct Run {
     /// Unknown fields are warnings
     #[arg(long)]
     pub(crate) lenient: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
     /// Draw forces of the pressure and of the pointer
     #[arg(long)]
     pub(crate) arrows: bool,

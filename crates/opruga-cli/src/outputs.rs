@@ -11,6 +11,8 @@ use opruga::io::tables::{
     EnergySummary, FinalBody, MomentumSummary, NumberTable, Summary, WarningSummary, write_final,
 };
 use opruga::pictures::{Moment, Scenery};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most memory that pictures may wait in [bytes]; longer or larger runs keep fewer of them.
@@ -40,40 +42,54 @@ pub(crate) struct Recorder {
 pub(crate) struct SavedRun {
     pub(crate) name: String,
     pub(crate) overrides: Vec<(String, String)>,
+    /// The files that the scene names.
+    pub(crate) files: BTreeMap<String, Arc<[u8]>>,
     pub(crate) snapshot: Vec<u8>,
 }
 
 impl SavedRun {
     fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        let mut text = |t: &str| {
-            out.extend((t.len() as u64).to_le_bytes());
-            out.extend(t.as_bytes());
+        let mut part = |bytes: &[u8]| {
+            out.extend((bytes.len() as u64).to_le_bytes());
+            out.extend(bytes);
         };
-        text(&self.name);
-        text(&self.overrides.len().to_string());
+        part(self.name.as_bytes());
+        part(self.overrides.len().to_string().as_bytes());
         for (path, value) in &self.overrides {
-            text(path);
-            text(value);
+            part(path.as_bytes());
+            part(value.as_bytes());
+        }
+        part(self.files.len().to_string().as_bytes());
+        for (name, bytes) in &self.files {
+            part(name.as_bytes());
+            part(bytes);
         }
         out.extend(&self.snapshot);
         out
     }
     /// Reads a payload; none if it has another form.
     pub(crate) fn read(mut bytes: &[u8]) -> Option<SavedRun> {
-        let mut text = || {
+        let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
-            let (text, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+            let (part, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
             bytes = rest;
-            String::from_utf8(text.to_vec()).ok()
+            Some(part)
         };
+        let mut text = || String::from_utf8(part()?.to_vec()).ok();
         let name = text()?;
         let count: usize = text()?.parse().ok()?;
         let mut overrides = Vec::new();
         for _ in 0..count {
             overrides.push((text()?, text()?));
         }
-        Some(SavedRun { name, overrides, snapshot: bytes.to_vec() })
+        let count: usize = text()?.parse().ok()?;
+        let mut files = BTreeMap::new();
+        for _ in 0..count {
+            let name = String::from_utf8(part()?.to_vec()).ok()?;
+            files.insert(name, Arc::from(part()?));
+        }
+        Some(SavedRun { name, overrides, files, snapshot: bytes.to_vec() })
     }
 }
 
@@ -171,6 +187,8 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 pub(crate) struct Outputs<'a> {
     pub(crate) folder: &'a OutputFolder,
     pub(crate) source: &'a Source,
+    /// The files that the scene names.
+    pub(crate) files: &'a BTreeMap<String, Arc<[u8]>>,
     pub(crate) set: &'a [(String, String)],
     pub(crate) wall: f64,
     pub(crate) steps: u64,
@@ -194,8 +212,12 @@ impl Outputs<'_> {
             velocities,
         });
         self.folder.write("final.csv", false, |out| write_final(out, rows))?;
-        let saved =
-            SavedRun { name: self.source.name.clone(), overrides: self.set.to_vec(), snapshot: world.snapshot() };
+        let saved = SavedRun {
+            name: self.source.name.clone(),
+            overrides: self.set.to_vec(),
+            files: self.files.clone(),
+            snapshot: world.snapshot(),
+        };
         let checkpoint = Checkpoint { scene: self.source.text.clone(), payload: saved.to_bytes() };
         self.folder.write("checkpoint", true, |out| checkpoint.write(out))?;
         if let Some(scenery) = &recorder.scenery {

@@ -20,6 +20,7 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
         lenient: call.lenient,
         strict: call.strict,
         overrides: overrides(&call.set)?,
+        files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
     let (blueprint, notices) = scene::read(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;

@@ -4,10 +4,12 @@ use crate::arguments::Run;
 use crate::failure::{Failure, print_data};
 use crate::outputs::{Outputs, Recorder};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::io::Files;
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::scene;
 use opruga::{Options, Simd, World};
+use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,6 +21,8 @@ pub(crate) struct Source {
     pub(crate) name: String,
     pub(crate) file: String,
     pub(crate) text: String,
+    /// Where the files are that it names.
+    pub(crate) files: Files,
 }
 
 /// Finds a scene: a file, or one that comes with the program.
@@ -33,10 +37,16 @@ pub(crate) fn find_scene(name: &str) -> Result<Source, Failure> {
             name: stem,
             file: path.display().to_string(),
             text: String::from_utf8_lossy(&bytes).into_owned(),
+            files: Files::beside(path),
         });
     }
     match opruga::scenes::find(name) {
-        Some(text) => Ok(Source { name: name.into(), file: format!("{name}.toml"), text: text.into() }),
+        Some(text) => Ok(Source {
+            name: name.into(),
+            file: format!("{name}.toml"),
+            text: text.into(),
+            files: opruga::scenes::files(),
+        }),
         None => {
             let hint =
                 opruga::core::spec::nearest(name, opruga::scenes::names()).map(|n| format!("did you mean `{n}`?"));
@@ -87,18 +97,20 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
             })?;
             set.splice(0..0, saved.overrides.clone());
             let name = saved.name.clone();
+            let files = Files::held(saved.files.clone());
             resumed = Some(saved);
-            Source { file: format!("{name}.toml"), name, text: checkpoint.scene }
+            Source { file: format!("{name}.toml"), name, text: checkpoint.scene, files }
         }
     };
     let options = scene::Options {
         lenient: call.lenient,
         strict: call.strict,
         overrides: set.clone(),
+        files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let (blueprint, notices) = scene::read(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;
-    for notice in &notices {
+    let reading = scene::read_whole(source.text.as_bytes(), &source.file, &opruga::catalogue(), &options)?;
+    for notice in &reading.notices {
         eprintln!("{notice}");
     }
     let folder = match &call.out {
@@ -117,8 +129,8 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     let folder = OutputFolder::open(&folder, existing)?;
     let world_options =
         Options { threads: call.threads.into(), simd, allow_unstable: call.allow_unstable, batches: true };
-    let job = Job { call, source: &source, set: &set, folder, world_options, resumed };
-    match blueprint {
+    let job = Job { call, source: &source, files: &reading.files, set: &set, folder, world_options, resumed };
+    match reading.blueprint {
         AnyBlueprint::Plane(blueprint) => job.run(blueprint),
         AnyBlueprint::Space(blueprint) => job.run(blueprint),
     }
@@ -138,6 +150,7 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
 struct Job<'a> {
     call: &'a Run,
     source: &'a Source,
+    files: &'a BTreeMap<String, Arc<[u8]>>,
     set: &'a [(String, String)],
     folder: OutputFolder,
     world_options: Options,
@@ -191,6 +204,7 @@ impl Job<'_> {
         let outputs = Outputs {
             folder: &self.folder,
             source: self.source,
+            files: self.files,
             set: self.set,
             wall,
             steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),

@@ -121,6 +121,11 @@ impl Survey {
         Ok(Survey { component, components, minority, open })
     }
 
+    /// Facets that face against the majority of their component, ascending.
+    pub(crate) fn minority(&self) -> &[u32] {
+        &self.minority
+    }
+
     /// Refuses free boundaries and facets that face against their neighbours.
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
         if !self.open.is_empty() {
@@ -257,7 +262,7 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// The facets with the given indices.
-    fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
+    pub(crate) fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
         facets.iter().map(|&facet| self.facets[facet as usize]).collect()
     }
 }
@@ -268,7 +273,7 @@ impl<const D: usize> Mesh<D> {
 ///
 /// # Source
 /// van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), equation 8.
-fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
+pub(crate) fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
     let o = lift(point);
     let from = |node: u32| subtract(lift(&positions[node as usize]), o);
     let mut total = 0.0;

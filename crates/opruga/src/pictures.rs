@@ -2,12 +2,13 @@
 // Pictures are no physics: a last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
+use crate::World;
 use crate::blueprint::{Action, BodyBlueprint};
 use crate::collide::Picture as Placed;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
-use crate::{World, mesh::EdgeSet};
+use crate::mesh::{EdgeSet, Skin};
 
 /// What stays the same from picture to picture: outlines, springs, rest lengths.
 #[derive(Clone, Debug)]
@@ -28,6 +29,8 @@ struct Fixed {
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
+    /// What is drawn instead of the facets.
+    skin: Option<Skin>,
 }
 
 /// What changes from picture to picture, kept small.
@@ -91,6 +94,7 @@ impl Scenery {
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
                 nodes_drawn: world.blueprint().bodies.len() <= 2 && mesh.nodes() <= 64,
                 pinned,
+                skin: mesh.skin.clone(),
             }
         };
         Scenery {
@@ -137,8 +141,13 @@ impl Scenery {
                 .take(fixed.nodes)
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
+            let scalar = strain(fixed, &positions);
+            if let Some(skin) = &fixed.skin {
+                bodies.push(skinned(skin, &positions, &scalar));
+                continue;
+            }
             bodies.push(BodyPicture {
-                scalar: strain(fixed, &positions),
+                scalar,
                 positions,
                 facets: fixed.facets.clone(),
                 cells: fixed.cells.clone(),
@@ -159,6 +168,20 @@ impl Scenery {
             y_down: self.y_down,
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
         }
+    }
+}
+
+/// The skin that a body carries, coloured as the nodes that carry it.
+fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64]) -> BodyPicture {
+    BodyPicture {
+        scalar: skin.values(scalar),
+        positions: skin.positions(positions),
+        facets: Facets::Triangles(skin.triangles.clone()),
+        cells: Vec::new(),
+        segments: Vec::new(),
+        colour: None,
+        nodes_drawn: false,
+        pinned: Vec::new(),
     }
 }
 

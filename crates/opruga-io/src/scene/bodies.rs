@@ -4,6 +4,7 @@ use super::reader::{Reader, join};
 use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
+use crate::shapes::Loaded;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
@@ -33,6 +34,8 @@ struct Draft<'n, const D: usize> {
     name: String,
     values: Values,
     shape: Option<Values>,
+    /// What the file of the shape holds, if it has one.
+    loaded: Option<Loaded>,
     rotation: Vec<f64>,
     angular_velocity: Vec<f64>,
     mass: Option<Mass>,
@@ -145,6 +148,7 @@ fn draft<'n, const D: usize>(
     let mass = mass(reader, node, &path, &values);
     let shape =
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
+    let loaded = shape.as_ref().and_then(|values| loaded(reader, node, &path, values, reader.count() == before));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let kinds = reader.catalogue.models.clone();
@@ -171,7 +175,42 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
-    Some(Draft { node, path, name, values, shape, rotation, angular_velocity, mass, models, pins, copies, sound })
+    Some(Draft {
+        node,
+        path,
+        name,
+        values,
+        shape,
+        loaded,
+        rotation,
+        angular_velocity,
+        mass,
+        models,
+        pins,
+        copies,
+        sound,
+    })
+}
+
+/// Reads the file of a shape that has one. The file is looked at only where the scene itself has no errors so far.
+fn loaded(reader: &mut Reader<'_>, node: &Node, path: &str, shape: &Values, sound: bool) -> Option<Loaded> {
+    if !shapes::is_from_file(shape.kind()) || !sound {
+        return None;
+    }
+    let (at, here) = (node.get("shape")?, join(path, "shape"));
+    match crate::shapes::load(shape, &mut |name| reader.file(name)) {
+        Ok(loaded) => {
+            for notice in &loaded.notices {
+                reader.notice(at.place, notice.clone().path(&here));
+            }
+            Some(loaded)
+        }
+        Err(problem) => {
+            let field = join(&here, problem.field);
+            reader.report(place_of(at, problem.field), problem.about.path(field));
+            None
+        }
+    }
 }
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
@@ -306,7 +345,11 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
     let (mut bodies, mut nodes, mut bytes) = (0u64, 0u64, 0u64);
     for draft in drafts {
         let copies = draft.copies.map_or(1, |c| c.total());
-        let size = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
+        let size = match (&draft.loaded, &draft.shape) {
+            (Some(loaded), _) => loaded.node_count(),
+            (None, Some(shape)) => shapes::node_count(shape, D),
+            (None, None) => 0,
+        };
         bodies = bodies.saturating_add(copies);
         nodes = nodes.saturating_add(size.saturating_mul(copies));
         // A mesh once, and state, models and description for every copy.
@@ -355,7 +398,13 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let shape = draft.shape.as_ref()?;
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
-    let mesh: Mesh<D> = match shapes::mesh::<D>(shape, &transform) {
+    let made = match &draft.loaded {
+        Some(loaded) => loaded.mesh::<D>(&transform),
+        None => {
+            shapes::mesh::<D>(shape, &transform).map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))
+        }
+    };
+    let mesh: Mesh<D> = match made {
         Ok(made) => {
             if made.flipped {
                 let notice =
@@ -367,9 +416,8 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
             }
             made.mesh
         }
-        Err(refusal) => {
-            let error = SceneError::new("scene.shape", refusal.to_string()).path(join(&draft.path, "shape"));
-            reader.report(place_of(draft.node, "shape"), error);
+        Err(error) => {
+            reader.report(place_of(draft.node, "shape"), error.path(join(&draft.path, "shape")));
             return None;
         }
     };

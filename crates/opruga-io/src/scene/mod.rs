@@ -13,6 +13,7 @@ mod selectors;
 
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};
+use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
@@ -21,13 +22,17 @@ use opruga_world::blueprint::{AnyBlueprint, Blueprint, ColliderBlueprint, Surrou
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
 use reader::Reader;
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What a scene may cost, checked before anything is allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     /// The largest scene file [bytes].
     pub file_bytes: u64,
+    /// The largest file of a shape [bytes].
+    pub shape_bytes: u64,
     /// How deep tables and arrays may be nested.
     pub depth: usize,
     /// The largest number of values in a scene file.
@@ -44,6 +49,7 @@ impl Default for Limits {
     fn default() -> Limits {
         Limits {
             file_bytes: 64 << 20,
+            shape_bytes: 256 << 20,
             depth: 128,
             values: 4 << 20,
             bodies: 4_000_000,
@@ -64,6 +70,19 @@ pub struct Options {
     pub strict: bool,
     /// Overrides of parameters, each a path and a value, as `--set PATH=VALUE` gives them.
     pub overrides: Vec<(String, String)>,
+    /// Where the files are that the scene names; none unless said.
+    pub files: Files,
+}
+
+/// A scene that was read.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The scene, with all its meshes inside.
+    pub blueprint: AnyBlueprint,
+    /// What is odd about it.
+    pub notices: Vec<Notice>,
+    /// The files that it names, by those names: what else is needed to read it again.
+    pub files: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// Reads a scene from bytes.
@@ -76,6 +95,19 @@ pub fn read(
     catalogue: &Catalogue,
     options: &Options,
 ) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
+    read_whole(bytes, file, catalogue, options).map(|reading| (reading.blueprint, reading.notices))
+}
+
+/// As [`read`], and the files that the scene names.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_whole(
+    bytes: &[u8],
+    file: &str,
+    catalogue: &Catalogue,
+    options: &Options,
+) -> Result<Reading, Vec<SceneError>> {
     let source = Source::new(file, bytes, &options.limits).map_err(|e| vec![e])?;
     let (document, mut errors) = document::parse(&source);
     let Some(mut document) = document else { return Err(errors) };
@@ -88,14 +120,16 @@ pub fn read(
         Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
         None => None,
     };
+    let files = std::mem::take(&mut reader.files);
     let (errors, notices) = reader.finish();
     match result {
-        Some(blueprint) if errors.is_empty() => Ok((blueprint, notices)),
+        Some(blueprint) if errors.is_empty() => Ok(Reading { blueprint, notices, files }),
         _ => Err(errors),
     }
 }
 
-/// Reads a scene from a file. What is no regular file or larger than the limit is refused before it is read.
+/// Reads a scene from a file, and the files that it names from beside it, or from where `options` say. What is no
+/// regular file or larger than the limit is refused before it is read.
 ///
 /// # Errors
 /// As [`read`], and `read.failed` where the file cannot be read.
@@ -106,7 +140,11 @@ pub fn read_file(
 ) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
     let file = path.display().to_string();
     let bytes = bytes_of(path, &options.limits).map_err(|e| vec![SceneError { file: file.clone(), ..e }])?;
-    read(&bytes, &file, catalogue, options)
+    let mut options = options.clone();
+    if options.files == Files::default() {
+        options.files = Files::beside(path);
+    }
+    read(&bytes, &file, catalogue, &options)
 }
 
 /// The bytes of a regular file no larger than the limit.
@@ -114,31 +152,36 @@ pub fn read_file(
 /// # Errors
 /// `read.failed`, `read.not_regular_file` or `scene.too_large`.
 pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
+    let bytes = regular_file(path, limits.file_bytes, "scene.too_large", "the scene");
+    bytes.map(|bytes| bytes.to_vec()).map_err(|error| match error.code {
+        "read.failed" if !path.exists() => error.hint("`opruga list` shows the scenes that come with the program"),
+        _ => error,
+    })
+}
+
+/// The bytes of a regular file no larger than a limit.
+pub(crate) fn regular_file(path: &Path, most: u64, code: &'static str, what: &str) -> Result<Arc<[u8]>, SceneError> {
     use std::io::Read as _;
-    let failed = |e: std::io::Error| {
-        let error = SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
-        if e.kind() == std::io::ErrorKind::NotFound {
-            error.hint("`opruga list` shows the scenes that come with the program")
-        } else {
-            error
-        }
-    };
+    let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
         return Err(SceneError::new("read.not_regular_file", "this is no regular file"));
     }
     let too_large = |size: u64| {
-        SceneError::new("scene.too_large", format!("the scene has {size} bytes"))
+        SceneError::new(code, format!("{what} has {size} bytes"))
             .value(size.to_string())
-            .allowed(format!("at most {} bytes", limits.file_bytes))
+            .allowed(format!("at most {most} bytes"))
     };
-    if about.len() > limits.file_bytes {
+    if about.len() > most {
         return Err(too_large(about.len()));
     }
     // One byte more than allowed, in case that the file grows while it is read.
     let mut bytes = Vec::new();
-    std::fs::File::open(path).map_err(failed)?.take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+    std::fs::File::open(path).map_err(failed)?.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > most {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes.into())
 }
 
 /// The reason of an error of the system, without its number.
