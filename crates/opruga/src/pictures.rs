@@ -3,7 +3,7 @@
 #![allow(clippy::disallowed_methods)]
 
 use crate::World;
-use crate::blueprint::{Action, BodyBlueprint};
+use crate::blueprint::{Action, BodyBlueprint, PinBlueprint};
 use crate::collide::Picture as Placed;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
@@ -69,8 +69,10 @@ impl Scenery {
                 let (a, b) = (mesh.positions[e[0] as usize], mesh.positions[e[1] as usize]);
                 a.iter().zip(&b).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
             };
+            // In a crowd the marks of pins would hide the bodies.
+            let pins: &[PinBlueprint<D>] = if many { &[] } else { &blueprint.pins };
             let mut pinned: Vec<u32> =
-                blueprint.pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
+                pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
             pinned.sort_unstable();
             pinned.dedup();
             let surface: Vec<[u32; 3]> = if D == 3 {

@@ -37,7 +37,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let size = shape.number("size").unwrap_or(1.0);
     let extent = drawing.curves.extent();
     if !(extent > 0.0 && extent.is_finite() && extent > 1e-150 && extent < 1e150) {
-        let error = SceneError::new("shape.no_area", "the file holds no closed outline");
+        let error = SceneError::new("shape.no_area", "the file holds no closed outline").value(format!("{extent:e}"));
         return Err(error.allowed("outlines that enclose area, of an extent from 1e-150 to 1e150").into());
     }
     let mut rings = drawing.curves.flatten(TOLERANCE * spacing * extent / size);

@@ -139,6 +139,7 @@ fn text_of<'a>(name: &'a str, bytes: &'a [u8]) -> Result<Source<'a>, SceneError>
             let byte = bytes.get(good.len()).copied().unwrap_or(0);
             let error = SceneError::new("shape.encoding", format!("byte 0x{byte:02x} is no UTF-8"));
             let error = Source { file: name, text: good }.mark(error, good.len(), good.len());
+            let error = error.value(format!("0x{byte:02x}"));
             Err(error.allowed("a text in UTF-8").hint("save it as UTF-8"))
         }
     }

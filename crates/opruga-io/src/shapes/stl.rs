@@ -1,6 +1,6 @@
 //! STL: triangles with corners of their own, as text or as bytes.
 //!
-//! A file is binary where its size is the one that its header promises, else text. The normals of the file are passed over: the corners tell the side.
+//! A file is binary where its size is the one that its header promises, or where it cannot be a text. The normals of the file are passed over: the corners tell the side.
 //! Vertices at the same place are joined, since the format cannot say that triangles share them.
 //!
 //! # Source
@@ -16,9 +16,12 @@ const HEAD: usize = 84;
 /// A normal, three corners, two spare bytes.
 const EACH: usize = 50;
 
-/// Whether the bytes are a binary STL file.
+/// Whether the bytes are a binary STL file, whole or cut off.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
-    promised(bytes).is_some_and(|size| size == bytes.len() as u64) || !bytes.trim_ascii_start().starts_with(b"solid")
+    let head = &bytes[..bytes.len().min(HEAD)];
+    promised(bytes).is_some_and(|size| size == bytes.len() as u64)
+        || !bytes.trim_ascii_start().starts_with(b"solid")
+        || head.contains(&0)
 }
 
 /// The size that the header promises.

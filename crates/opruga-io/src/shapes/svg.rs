@@ -56,7 +56,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>) -> Result<Drawi
     if root.tag_name().name() != "svg" {
         let error =
             SceneError::new("svg.syntax", format!("the file is no drawing but <{}>", visible(root.tag_name().name())));
-        return Err(source.mark(error, root.range().start, root.range().start + 1)
+        return Err(source
+            .mark(error, root.range().start, root.range().start + 1)
             .value(visible(root.tag_name().name()))
             .allowed("<svg>"));
     }
