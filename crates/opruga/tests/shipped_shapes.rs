@@ -61,11 +61,11 @@ fn outlines_have_their_areas_pieces_and_holes() {
         (svg("heart"), 0.03, 1, 0, AREAS[0], 25.0),
         (svg("star"), 0.03, 1, 0, AREAS[1], 25.0),
         (svg("drop"), 0.03, 1, 0, AREAS[2], 25.0),
-        (union(svg("apple")), 0.03, 1, 0, AREAS[3], 10.0),
-        (union(svg("fish")), 0.03, 1, 0, AREAS[4], 15.0),
-        (italy.to_string(), 0.02, 3, 0, AREAS[5], 15.0),
-        (africa.to_string(), 0.03, 1, 1, AREAS[6], 15.0),
-        (word.to_string(), 0.01, 6, 4, AREAS[7], 20.0),
+        (union(svg("apple")), 0.03, 1, 1, AREAS[3], 25.0),
+        (union(svg("fish")), 0.03, 1, 0, AREAS[4], 25.0),
+        (italy.to_string(), 0.02, 3, 0, AREAS[5], 25.0),
+        (africa.to_string(), 0.03, 1, 1, AREAS[6], 25.0),
+        (word.to_string(), 0.01, 6, 4, AREAS[7], 25.0),
     ] {
         let common = format!("{shape}, spacing = {spacing}, size = 1.0");
         let (skin, filled) = (plane(&common), plane(&format!("{common}, filling = \"triangles\"")));
