@@ -1,4 +1,5 @@
 //! Drawings, maps, texts and pictures: what they measure, and what is wrong with bad ones.
+#![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 mod common;
 use common::shapes::{plane, svg};

@@ -1,4 +1,5 @@
 //! Surfaces: the same body from every format, and what is wrong with bad files (torture list, section 2).
+#![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 mod common;
 use common::shapes::{space, surface};

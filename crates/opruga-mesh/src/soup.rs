@@ -125,7 +125,7 @@ impl Mesh<3> {
                 *other != number && (0..3).all(|d| low[d] <= point[d] && point[d] <= high[d]) && {
                     let facets = self.gather(&components[*other].facets);
                     let winding = crate::chambers::winding_number(&facets, &self.positions, &point);
-                    winding > 0.5 || winding < -0.5
+                    winding.abs() > 0.5
                 }
             };
             let cavity = (0..components.len()).filter(around).count() % 2 == 1;

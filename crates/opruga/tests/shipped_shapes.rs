@@ -1,4 +1,5 @@
 //! The shapes that come with the scenes: their areas, volumes, pieces and holes, and the quality of their fillings.
+#![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;

@@ -32,6 +32,16 @@ pub(super) struct Curves {
     part: u32,
 }
 
+/// The smaller of two finite numbers; the first of equal ones, zeros of either sign among them.
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+/// The larger of two finite numbers; the first of equal ones.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 /// x′ = a x + c y + e, y′ = b x + d y + f.
 pub(super) type Affine = [f64; 6];
 
@@ -123,8 +133,8 @@ impl Curves {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let mut add = |p: Point| {
             for a in 0..2 {
-                low[a] = low[a].min(p[a]);
-                high[a] = high[a].max(p[a]);
+                low[a] = smaller(low[a], p[a]);
+                high[a] = larger(high[a], p[a]);
             }
         };
         for contour in &self.contours {
@@ -136,7 +146,7 @@ impl Curves {
                 }
             }
         }
-        (high[0] - low[0]).max(high[1] - low[1])
+        larger(high[0] - low[0], high[1] - low[1])
     }
 
     /// Rings that stay within `tolerance` of the curves. Points that repeat the one before are left out.
@@ -176,8 +186,8 @@ fn pieces([a, p, q, b]: [Point; 4], tolerance: f64) -> u64 {
         let (x, y) = (a[0] - 2.0 * b[0] + c[0], a[1] - 2.0 * b[1] + c[1]);
         (x * x + y * y).sqrt()
     };
-    let n = (0.75 * second(a, p, q).max(second(p, q, b)) / tolerance).sqrt().ceil();
-    if n >= 1.0 { n.min(MOST_PIECES) as u64 } else { 1 }
+    let n = (0.75 * larger(second(a, p, q), second(p, q, b)) / tolerance).sqrt().ceil();
+    if n >= 1.0 { smaller(n, MOST_PIECES) as u64 } else { 1 }
 }
 
 fn on_cubic([a, p, q, b]: [Point; 4], t: f64) -> Point {
@@ -225,7 +235,7 @@ impl Curves {
         } else if !sweep && angle > 0.0 {
             angle -= turn;
         }
-        let pieces = (angle.abs() / core::f64::consts::FRAC_PI_4).ceil().max(1.0);
+        let pieces = larger((angle.abs() / core::f64::consts::FRAC_PI_4).ceil(), 1.0);
         let step = angle / pieces;
         let handle = 4.0 / 3.0 * libm::tan(0.25 * step);
         let place = |c: f64, s: f64| [center[0] + cos * rx * c - sin * ry * s, center[1] + sin * rx * c + cos * ry * s];

@@ -1,6 +1,6 @@
 //! From the curves of a drawing to rings of the wanted size and spacing.
 
-use super::curves::Curves;
+use super::curves::{Curves, larger};
 use super::{Content, Loaded, Problem};
 use crate::problem::SceneError;
 use crate::source::Source;
@@ -92,7 +92,7 @@ fn place(mut rings: Vec<Ring>, drawing: &Drawing<'_>, shape: &Values) -> Result<
     })?;
     let Some((low, high)) = outline::bounds(&rings) else { return Ok(rings) };
     let center: [f64; 2] = shape.vector("center");
-    let factor = shape.number("size").unwrap_or(1.0) / (high[0] - low[0]).max(high[1] - low[1]);
+    let factor = shape.number("size").unwrap_or(1.0) / larger(high[0] - low[0], high[1] - low[1]);
     let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
     let up = if drawing.y_down { -factor } else { factor };
     for ring in &mut rings {

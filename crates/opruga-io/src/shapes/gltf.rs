@@ -6,6 +6,7 @@
 //! # Source
 //! The Khronos Group, glTF 2.0 Specification (2021).
 
+use super::Open;
 use super::json::{Raw, parse, refuse};
 use super::triangles::Triangles;
 use crate::problem::{SceneError, visible};
@@ -168,12 +169,12 @@ pub(super) fn chunks<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Optio
     }
 }
 
-struct Reader<'a, 's, 'o> {
+struct Reader<'a, 's, 'o, 'f> {
     source: &'s Source<'s>,
     root: Root<'a>,
     buffers: Vec<Option<Arc<[u8]>>>,
     binary: Option<&'a [u8]>,
-    open: &'o mut dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError>,
+    open: &'o mut Open<'f>,
     found: Triangles,
     others: usize,
 }
@@ -185,7 +186,7 @@ struct Reader<'a, 's, 'o> {
 pub(super) fn read<'a>(
     source: &'a Source<'a>,
     binary: Option<&'a [u8]>,
-    open: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError>,
+    open: &mut Open<'_>,
 ) -> Result<Triangles, SceneError> {
     let root: Root<'a> = parse(source, source.text)?;
     let asset: Asset = parse(source, root.asset.get())?;
@@ -235,7 +236,7 @@ pub(super) fn read<'a>(
     Ok(reader.found)
 }
 
-impl<'a> Reader<'a, '_, '_> {
+impl<'a> Reader<'a, '_, '_, '_> {
     /// An entry of a list, by number.
     fn entry(&self, list: &[Raw<'a>], index: usize, what: &str) -> Result<Raw<'a>, SceneError> {
         list.get(index).copied().ok_or_else(|| {
@@ -333,7 +334,7 @@ impl<'a> Reader<'a, '_, '_> {
             }
             None => (0..count as u32).collect(),
         };
-        if indices.len() % 3 != 0 || self.found.triangles.len() + indices.len() / 3 > MOST_TRIANGLES {
+        if !indices.len().is_multiple_of(3) || self.found.triangles.len() + indices.len() / 3 > MOST_TRIANGLES {
             let error = SceneError::new("gltf.syntax", format!("a primitive has {} corners", indices.len()));
             let error =
                 error.value(indices.len().to_string()).allowed("three for every triangle, at most 2^26 triangles");

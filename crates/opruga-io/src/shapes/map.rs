@@ -3,7 +3,7 @@
 //! # Source
 //! RFC 7946, The GeoJSON Format; M. Bostock and C. Metcalf, The TopoJSON Format Specification (2013).
 
-use super::curves::{Curves, Point};
+use super::curves::{Curves, Point, larger, smaller};
 use super::drawing::Drawing;
 use super::json::{Raw, parse, refuse, span};
 use crate::problem::{SceneError, visible};
@@ -321,8 +321,8 @@ fn projection(
                 let hint = "`projection = \"none\"` takes coordinates as they are";
                 return Err(refuse(source, raw.get(), error.allowed(allowed).hint(hint)));
             }
-            low = low.min(point[1]);
-            high = high.max(point[1]);
+            low = smaller(low, point[1]);
+            high = larger(high, point[1]);
         }
     }
     let radians = |degrees: f64| degrees / 180.0 * core::f64::consts::PI;

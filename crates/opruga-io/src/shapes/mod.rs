@@ -28,6 +28,9 @@ use opruga_world::shapes::{self, Made, Transform};
 use std::any::Any;
 use std::sync::Arc;
 
+/// Gives the bytes of a file by the name that the scene uses.
+type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
+
 /// The contents of a shape's file, checked, before a mesh is made of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Loaded {
@@ -70,10 +73,7 @@ impl From<SceneError> for Problem {
 ///
 /// # Errors
 /// The first that is found, with its place in the file.
-pub(crate) fn load(
-    shape: &Values,
-    open: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError>,
-) -> Result<Loaded, Problem> {
+pub(crate) fn load(shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let name = shape.text("file").unwrap_or("").to_string();
     let bytes = open(&name)?;
     match shape.kind() {
@@ -96,12 +96,7 @@ pub(crate) fn load(
 }
 
 /// A surface in the format that its contents, or else its ending, tell.
-fn surface(
-    name: &str,
-    bytes: &[u8],
-    shape: &Values,
-    open: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError>,
-) -> Result<Loaded, Problem> {
+fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     let text = || text_of(name, bytes);
     let named = |error: SceneError| SceneError { file: name.to_string(), ..error };

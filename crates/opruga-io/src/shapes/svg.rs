@@ -7,7 +7,7 @@
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.
 
-use super::curves::{Affine, Curves, IDENTITY, Point, after};
+use super::curves::{Affine, Curves, IDENTITY, Point, after, smaller};
 use super::drawing::Drawing;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -364,7 +364,7 @@ impl<'a> Reader<'a, '_> {
         let (rx, ry) = (self.size(node, "rx")?, self.size(node, "ry")?);
         let rx = if node.has_attribute("rx") { rx } else { ry };
         let ry = if node.has_attribute("ry") { ry } else { rx };
-        let (rx, ry) = (rx.min(0.5 * w), ry.min(0.5 * h));
+        let (rx, ry) = (smaller(rx, 0.5 * w), smaller(ry, 0.5 * h));
         if rx == 0.0 || ry == 0.0 {
             curves.polygon(&[[x, y], [x + w, y], [x + w, y + h], [x, y + h]]);
             return Ok(());

@@ -1,5 +1,6 @@
 //! Triangles as a file gives them, and what becomes of them: a closed surface, cloth, or a filled body.
 
+use super::curves::larger;
 use super::{Content, Loaded, Problem};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -230,7 +231,7 @@ fn orient(
     flipped(notices, turned.against, "triangles that face against their neighbours are turned");
     flipped(notices, turned.inside_out, "components that are inside out are turned");
     let (low, high) = mesh.bounds();
-    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, larger);
     let volume = mesh.enclosed_volume();
     if volume <= 1e-12 * extent * extent * extent {
         let error = SceneError::new("mesh.dimension", "the closed surface is flat: it encloses no volume");
@@ -288,7 +289,7 @@ fn place(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
         mesh.positions.iter_mut().for_each(|p| *p = [p[0], p[2], -p[1]]);
     }
     let (low, high) = mesh.bounds();
-    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, larger);
     if !(extent > 1e-150 && extent < 1e150) {
         let error = SceneError::new("mesh.size", "the surface has no extent, or one out of range");
         return Err(error.value(format!("{extent:e}")).allowed("an extent from 1e-150 to 1e150"));

@@ -184,13 +184,7 @@ fn distance_to_segment(point: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
     let square = u[0] * u[0] + u[1] * u[1];
     let t = if square > 0.0 { (u[0] * v[0] + u[1] * v[1]) / square } else { 0.0 };
-    let t = if t < 0.0 {
-        0.0
-    } else if t > 1.0 {
-        1.0
-    } else {
-        t
-    };
+    let t = t.clamp(0.0, 1.0);
     distance(point, [a[0] + t * u[0], a[1] + t * u[1]])
 }
 

@@ -32,7 +32,7 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
 /// One ring, resampled.
 fn resample(ring: &Ring, spacing: f64) -> Ring {
     let curve = Curve::of(ring);
-    if curve.total == 0.0 || !(spacing > 0.0) {
+    if curve.total == 0.0 {
         return ring.clone();
     }
     let corners = curve.corners(spacing);
