@@ -1,6 +1,7 @@
 //! `[[body]]`: shape, mass, models, pins and copies.
 
 use super::reader::{Reader, join};
+use super::shape::{self, ShapePlace};
 use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
@@ -148,7 +149,7 @@ fn draft<'n, const D: usize>(
     let mass = mass(reader, node, &path, &values);
     let shape =
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
-    let loaded = shape.as_ref().and_then(|values| loaded(reader, node, &path, values, reader.count() == before));
+    let loaded = shape.as_ref().and_then(|values| shape::loaded(reader, node, &path, values, reader.count() == before));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let kinds = reader.catalogue.models.clone();
@@ -190,27 +191,6 @@ fn draft<'n, const D: usize>(
         copies,
         sound,
     })
-}
-
-/// Reads the file of a shape that has one. The file is looked at only where the scene itself has no errors so far.
-fn loaded(reader: &mut Reader<'_>, node: &Node, path: &str, shape: &Values, sound: bool) -> Option<Loaded> {
-    if !shapes::is_from_file(shape.kind()) || !sound {
-        return None;
-    }
-    let (at, here) = (node.get("shape")?, join(path, "shape"));
-    match crate::shapes::load(shape, &mut |name| reader.file(name)) {
-        Ok(loaded) => {
-            for notice in &loaded.notices {
-                reader.notice(at.place, notice.clone().path(&here));
-            }
-            Some(loaded)
-        }
-        Err(problem) => {
-            let field = join(&here, problem.field);
-            reader.report(place_of(at, problem.field), problem.about.path(field));
-            None
-        }
-    }
 }
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
@@ -398,36 +378,9 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let shape = draft.shape.as_ref()?;
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
-    let made = match &draft.loaded {
-        Some(loaded) => loaded.mesh::<D>(&transform),
-        None => {
-            shapes::mesh::<D>(shape, &transform).map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))
-        }
-    };
-    let mesh: Mesh<D> = match made {
-        Ok(made) => {
-            if made.flipped {
-                let notice =
-                    SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(&draft.name)));
-                reader.notice(
-                    place_of(draft.node, "shape"),
-                    notice.path(join(&draft.path, "shape")).hint("its edges run against them"),
-                );
-            }
-            made.mesh
-        }
-        Err(error) => {
-            reader.report(place_of(draft.node, "shape"), error.path(join(&draft.path, "shape")));
-            return None;
-        }
-    };
-    // Large factors may leave the range of numbers.
-    if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
-        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}"))
-            .path(join(&draft.path, "shape"));
-        reader.report(place_of(draft.node, "shape"), error.allowed("finite coordinates"));
-        return None;
-    }
+    let place =
+        ShapePlace { name: &draft.name, place: place_of(draft.node, "shape"), path: join(&draft.path, "shape") };
+    let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
     let body = BodyBlueprint {
         name: draft.name.clone(),
         mesh: Arc::new(mesh),

@@ -10,6 +10,7 @@ mod parameters;
 mod plain;
 mod reader;
 mod selectors;
+mod shape;
 
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};

@@ -16,6 +16,7 @@ mod obj;
 mod ply;
 mod stl;
 mod svg;
+mod svg_path;
 mod text;
 mod triangles;
 
