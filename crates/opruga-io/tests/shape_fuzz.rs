@@ -103,4 +103,16 @@ proptest! {
         let bytes = [&good[..keep.min(good.len())], &bytes[..]].concat();
         survives(dimension, shape, name, &bytes);
     }
+
+    /// Other digits: files that are well formed, of shapes that nobody drew.
+    #[test]
+    fn files_with_other_numbers(sample in 0..9usize, changes in proptest::collection::vec((any::<u32>(), b'0'..=b'9'), 1..8)) {
+        let (dimension, shape, name, bytes) = samples()[sample];
+        let mut bytes = bytes.to_vec();
+        let digits: Vec<usize> = (0..bytes.len()).filter(|k| bytes[*k].is_ascii_digit()).collect();
+        for (place, digit) in changes {
+            bytes[digits[place as usize % digits.len()]] = digit;
+        }
+        survives(dimension, shape, name, &bytes);
+    }
 }

@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 /// Lattice points by twice their coordinates: corners of cubes are even in all of them, centres of cubes odd.
 type Key = [i32; 3];
 
+/// The most cubes in the box of a surface: each is looked at.
+const MOST_CUBES: f64 = 8_388_608.0;
+
 /// The four tetrahedra between the centres of two cubes that share the face with corners `face`: each has an edge of the face and both centres.
 fn around(centers: [Key; 2], face: [Key; 4]) -> [[Key; 4]; 4] {
     core::array::from_fn(|k| [centers[0], centers[1], face[k], face[(k + 1) % 4]])
@@ -35,7 +38,8 @@ impl Mesh<3> {
     /// of it, and those around edges where they would else touch, so the body reaches a little beyond the surface; the skin shows the surface itself.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`].
+    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose box is
+    /// too large for the spacing.
     ///
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007), section 3.
@@ -45,8 +49,14 @@ impl Mesh<3> {
         if estimate > MAXIMUM_NODES {
             return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });
         }
-        let inside = Inside::of(self)?;
         let (low, high) = self.bounds();
+        // A slanted needle has few nodes in a large box.
+        let cubes: f64 = (0..3).map(|d| (high[d] - low[d]) / spacing + 3.0).product();
+        if cubes > MOST_CUBES {
+            let nodes = if cubes < 1e18 { 2 * cubes as u64 } else { u64::MAX };
+            return Err(MeshError::TooManyNodes { nodes, most: 2 * MOST_CUBES as u64 });
+        }
+        let inside = Inside::of(self)?;
         // The lattice is centred in the box; coordinates count half cubes.
         let counts: [i32; 3] = core::array::from_fn(|d| ((high[d] - low[d]) / spacing).ceil() as i32 + 2);
         let origin: [f64; 3] =

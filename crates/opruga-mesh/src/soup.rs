@@ -115,7 +115,7 @@ impl Mesh<3> {
             }
         };
         // How many others are around a component: their winding numbers about a node of it, whichever way they face.
-        let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.box_of(&c.facets)).collect();
+        let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.bounds_of(&c.facets)).collect();
         let mut inside_out = 0;
         for (number, component) in components.iter().enumerate() {
             let node = before[component.facets[0] as usize][0];
@@ -137,8 +137,8 @@ impl Mesh<3> {
         Ok(Turned { against, inside_out })
     }
 
-    /// Lowest and highest coordinates of some facets.
-    fn box_of(&self, facets: &[u32]) -> ([f64; 3], [f64; 3]) {
+    /// Lowest and highest coordinates of some facets [m].
+    pub fn bounds_of(&self, facets: &[u32]) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for node in facets.iter().flat_map(|facet| self.facets[*facet as usize]) {
             for d in 0..3 {

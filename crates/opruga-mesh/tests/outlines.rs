@@ -137,6 +137,16 @@ fn a_filling_is_the_same_bits_every_time() {
 }
 
 #[test]
+fn a_thin_slanted_outline_is_filled_in_time_with_its_length() {
+    let (far, wide) = (2e3, 3.0);
+    let strip = Ring { points: vec![[0.0, 0.0], [far, far], [far, far + wide], [0.0, wide]], part: 0 };
+    let rings = outline::resampled(&[strip], 1.0).expect("a strip");
+    let (mesh, quality) = outline::filled(&rings, 1.0).expect("a filling");
+    assert!((mesh.measure().expect("an area").value() / (far * wide) - 1.0).abs() < 1e-9);
+    assert!(quality.smallest_angle > 10.0 / 180.0 * PI, "{quality:?}");
+}
+
+#[test]
 fn joined_parts_cover_what_they_should() {
     let parts = [square(0.0, 2.0, 0), square(1.0, 3.0, 1)];
     let union = outline::joined(&parts, Overlap::Union);

@@ -176,3 +176,13 @@ fn a_skin_follows_its_body() {
         assert!((z - q[2]).abs() < 1e-12, "linear quantities are carried exactly");
     }
 }
+
+#[test]
+fn a_needle_in_a_large_box_is_refused_before_its_box_is_walked_through() {
+    let mut needle = Mesh::icosphere(1.0, 1).expect("a ball");
+    needle.scale([1e6, 1e-3, 1e-3], [0.0; 3]).expect("stretched");
+    needle.rotate([1.0, 1.0, 0.3], 0.8, [0.0; 3]).expect("turned");
+    assert!(matches!(needle.lattice_filling(0.5), Err(MeshError::TooManyNodes { .. })));
+    needle.scale([1e12; 3], [0.0; 3]).expect("stretched");
+    assert!(matches!(needle.lattice_filling(0.5), Err(MeshError::TooManyNodes { .. })));
+}

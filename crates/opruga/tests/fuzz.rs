@@ -49,7 +49,7 @@ fn survives(text: &str, overrides: Vec<(String, String)>) {
 }
 
 /// Scenes small enough for the limits above.
-const SCENES: [&str; 9] = [
+const SCENES: [&str; 14] = [
     "ball",
     "ball-as-published",
     "pressures",
@@ -59,6 +59,11 @@ const SCENES: [&str; 9] = [
     "hanging-net",
     "cloth-over-ball",
     "balloons",
+    "heart",
+    "fish",
+    "torus-tube",
+    "country",
+    "word",
 ];
 
 /// What a number of a scene may become.

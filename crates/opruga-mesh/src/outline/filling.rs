@@ -156,24 +156,36 @@ fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[
     let rows = ((high[1] - low[1]) / height).floor() as i64;
     let first_y = low[1] + 0.5 * ((high[1] - low[1]) - rows as f64 * height);
     let middle = 0.5 * (low[0] + high[0]);
-    let reach = (0.5 * (high[0] - low[0]) / spacing).ceil() as i64 + 1;
+    // A sweep from below: edges come in by their lower end, and go by their upper one.
+    let lower =
+        |edge: &usize| if edges[*edge].0[1] < edges[*edge].1[1] { edges[*edge].0[1] } else { edges[*edge].1[1] };
+    let mut waiting: Vec<usize> = (0..edges.len()).collect();
+    waiting.sort_by(|p, q| lower(q).total_cmp(&lower(p)));
+    let mut active: Vec<usize> = Vec::new();
     let mut points = Vec::new();
     let mut crossings: Vec<f64> = Vec::new();
     for row in 0..=rows {
         let y = first_y + row as f64 * height;
+        while let Some(edge) = waiting.pop_if(|edge| lower(edge) <= y) {
+            active.push(edge);
+        }
+        active.retain(|edge| edges[*edge].0[1] > y || edges[*edge].1[1] > y);
         crossings.clear();
-        for (a, b) in &edges {
+        for edge in &active {
+            let (a, b) = edges[*edge];
             if (a[1] > y) != (b[1] > y) {
                 crossings.push(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
             }
         }
         crossings.sort_by(f64::total_cmp);
         let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
-        for k in -reach..=reach {
-            let x = middle + (k as f64 + shift) * spacing;
-            let inside = crossings.partition_point(|c| *c <= x) % 2 == 1;
-            if inside && clear([x, y]) {
-                points.push([x, y]);
+        for inside in crossings.chunks_exact(2) {
+            let place = |x: f64| ((x - middle) / spacing - shift).floor() as i64;
+            for k in place(inside[0])..=place(inside[1]) + 1 {
+                let x = middle + (k as f64 + shift) * spacing;
+                if inside[0] <= x && x < inside[1] && clear([x, y]) {
+                    points.push([x, y]);
+                }
             }
         }
     }
