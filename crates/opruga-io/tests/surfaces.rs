@@ -457,3 +457,26 @@ fn a_lattice_needs_a_spacing_and_a_closed_surface() {
     assert!(mesh.skin.as_ref().is_some_and(|skin| skin.carriers.len() == 8) && mesh.cells.tetrahedra.len() > 100);
     assert_eq!(of(", spacing = 1e-7").expect_err("too fine")[0].code, "limit.nodes");
 }
+
+/// `cargo test --release -p opruga-io --test surfaces -- --ignored --nocapture` prints how long it takes.
+#[test]
+#[ignore = "a time, which only a quiet machine and a release build make meaningful"]
+fn a_million_triangles_are_read_within_two_seconds() {
+    let torus = Mesh::torus(1.0, 0.4, [1000, 500]).expect("a torus");
+    let mut bytes = vec![0; 80];
+    bytes.extend((torus.facets.len() as u32).to_le_bytes());
+    for facet in &torus.facets {
+        bytes.extend([0; 12]);
+        facet
+            .iter()
+            .flat_map(|node| torus.positions[*node as usize])
+            .for_each(|x| bytes.extend((x as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    let start = std::time::Instant::now();
+    let (mesh, notices) = surface("a.stl", &bytes).expect("a torus");
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{} triangles, {} nodes: {seconds:.2} s", mesh.facets.len(), mesh.nodes());
+    assert_eq!((mesh.nodes(), mesh.euler_characteristic(), notices.len()), (torus.nodes(), 0, 0));
+    assert!(seconds < 2.0, "{seconds} s");
+}
