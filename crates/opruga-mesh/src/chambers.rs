@@ -126,11 +126,18 @@ impl Survey {
         &self.minority
     }
 
+    /// Refuses free boundaries.
+    pub(crate) fn closed(&self) -> Result<(), MeshError> {
+        if self.open.is_empty() {
+            Ok(())
+        } else {
+            Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() })
+        }
+    }
+
     /// Refuses free boundaries and facets that face against their neighbours.
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
-        if !self.open.is_empty() {
-            return Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() });
-        }
+        self.closed()?;
         if !self.minority.is_empty() {
             return Err(MeshError::InconsistentOrientation { facets: self.minority.clone() });
         }
@@ -188,6 +195,11 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
         survey.closed_and_consistent()?;
+        Ok(self.components_of(&survey))
+    }
+
+    /// The components that a survey found, with their volumes.
+    pub(crate) fn components_of(&self, survey: &Survey) -> Vec<Component> {
         let mut components = vec![Component { facets: Vec::new(), signed_volume: 0.0 }; survey.components];
         for (facet, &component) in survey.component.iter().enumerate() {
             components[component as usize].facets.push(facet as u32);
@@ -195,7 +207,7 @@ impl<const D: usize> Mesh<D> {
         for component in &mut components {
             component.signed_volume = signed_volume(&self.gather(&component.facets), &self.positions);
         }
-        Ok(components)
+        components
     }
 
     /// The closed chambers, each as the ascending indices of the facets that enclose it.

@@ -87,13 +87,18 @@ fn near_place(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
 }
 
 /// What an orientation had to turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turned {
     /// Triangles that faced against their neighbours.
     pub against: usize,
     /// Components that were inside out.
     pub inside_out: usize,
+    /// A triangle of the first component that encloses less than 10⁻¹² of its extent cubed, and what it encloses [m³].
+    pub flat: Option<(u32, f64)>,
 }
+
+/// A component that encloses less than this part of its extent cubed is flat.
+const FLAT: f64 = 1e-12;
 
 impl Mesh<3> {
     /// Turns the triangles of every closed component outward, those of cavities (an odd number of components around them) inward.
@@ -101,24 +106,18 @@ impl Mesh<3> {
     /// # Errors
     /// Those of [`Mesh::orient_outward`]. The mesh is then unchanged.
     pub fn orient_components(&mut self) -> Result<Turned, MeshError> {
+        self.validate()?;
         let survey = Survey::of(&self.facets)?;
-        let against = survey.minority().len();
-        let before = self.facets.clone();
+        survey.closed()?;
         for facet in survey.minority() {
             self.facets[*facet as usize].swap(0, 1);
         }
-        let components = match self.components() {
-            Ok(components) => components,
-            Err(error) => {
-                self.facets = before;
-                return Err(error);
-            }
-        };
+        let components = self.components_of(&survey);
         // How many others are around a component: their winding numbers about a node of it, whichever way they face.
         let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.bounds_of(&c.facets)).collect();
-        let mut inside_out = 0;
+        let (mut inside_out, mut flat) = (0, None);
         for (number, component) in components.iter().enumerate() {
-            let node = before[component.facets[0] as usize][0];
+            let node = self.facets[component.facets[0] as usize][0];
             let point = self.positions[node as usize];
             let around = |other: &usize| {
                 let (low, high) = boxes[*other];
@@ -133,12 +132,17 @@ impl Mesh<3> {
                 inside_out += 1;
                 component.facets.iter().for_each(|facet| self.facets[*facet as usize].swap(0, 1));
             }
+            let (low, high) = boxes[number];
+            let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
+            if flat.is_none() && component.signed_volume.abs() <= FLAT * extent * extent * extent {
+                flat = Some((component.facets[0], component.signed_volume));
+            }
         }
-        Ok(Turned { against, inside_out })
+        Ok(Turned { against: survey.minority().len(), inside_out, flat })
     }
 
     /// Lowest and highest coordinates of some facets [m].
-    pub fn bounds_of(&self, facets: &[u32]) -> ([f64; 3], [f64; 3]) {
+    fn bounds_of(&self, facets: &[u32]) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for node in facets.iter().flat_map(|facet| self.facets[*facet as usize]) {
             for d in 0..3 {

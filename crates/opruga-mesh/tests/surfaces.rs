@@ -72,7 +72,7 @@ fn components_are_turned_outward_and_cavities_inward() {
     let n = mesh.facets.len();
     mesh.facets[n - 80..].iter_mut().for_each(|f| f.swap(0, 1));
     mesh.facets[5].swap(0, 1);
-    assert_eq!(mesh.orient_components(), Ok(Turned { against: 1, inside_out: 2 }));
+    assert_eq!(mesh.orient_components(), Ok(Turned { against: 1, inside_out: 2, flat: None }));
     assert!((mesh.enclosed_volume() - wanted).abs() < 1e-12);
     assert_eq!(mesh.chambers().expect("chambers").len(), 2);
     assert_eq!(mesh.orient_components(), Ok(Turned::default()), "nothing is left to turn");

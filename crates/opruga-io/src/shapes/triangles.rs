@@ -230,18 +230,10 @@ fn orient(
     let turned = turned.map_err(|e| refuse(mesh, e))?;
     flipped(notices, turned.against, "triangles that face against their neighbours are turned");
     flipped(notices, turned.inside_out, "components that are inside out are turned");
-    for component in mesh.components().map_err(|e| refuse(mesh, e))? {
-        let (low, high) = mesh.bounds_of(&component.facets);
-        let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, larger);
-        if component.signed_volume.abs() <= 1e-12 * extent * extent * extent {
-            let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
-            let error = error.value(format!("{:e}", component.signed_volume));
-            return Err(found.at(
-                source,
-                component.facets[0],
-                error.allowed("a volume above 1e-12 of its extent cubed"),
-            ));
-        }
+    if let Some((facet, volume)) = turned.flat {
+        let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
+        let error = error.value(format!("{volume:e}")).allowed("a volume above 1e-12 of its extent cubed");
+        return Err(found.at(source, facet, error));
     }
     Ok(())
 }
