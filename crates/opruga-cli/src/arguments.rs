@@ -99,6 +99,9 @@ pub(crate) struct Check {
     /// Unknown fields are warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
 }
 
 #[derive(Args, Debug)]
@@ -163,6 +166,9 @@ pub(crate) struct Run {
     /// Unknown fields are warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,

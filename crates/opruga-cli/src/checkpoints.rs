@@ -3,12 +3,14 @@
 use crate::failure::Failure;
 use crate::source::{Source, argument};
 use opruga::World;
-use opruga::io::SceneError;
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
 use opruga::io::safe_write::{OutputFolder, WriteError};
 use opruga::io::scene;
 use opruga::io::tables::{NumberTable, WarningSummary};
+use opruga::io::{Files, SceneError};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The file of the newest checkpoint of a run.
@@ -17,7 +19,7 @@ pub(crate) const NAME: &str = "checkpoint";
 pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 
 /// The form of the payload; another one belongs to another version of the program.
-const FORM: &str = "run 2";
+const FORM: &str = "run 3";
 
 /// How a run was called, as far as going on with it depends on that.
 #[derive(Clone, Default)]
@@ -28,6 +30,8 @@ pub(crate) struct Calling {
     pub(crate) lenient: bool,
     /// Whether a step above the stable limit is a warning.
     pub(crate) allow_unstable: bool,
+    /// The files that the scene names.
+    pub(crate) files: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// A checkpoint's payload: the snapshot and how the run was called.
@@ -44,17 +48,22 @@ pub(crate) struct SavedRun {
 impl SavedRun {
     fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        let mut text = |t: &str| {
-            out.extend((t.len() as u64).to_le_bytes());
-            out.extend(t.as_bytes());
+        let mut part = |bytes: &[u8]| {
+            out.extend((bytes.len() as u64).to_le_bytes());
+            out.extend(bytes);
         };
-        text(FORM);
-        text(&self.name);
-        let Calling { overrides, lenient, allow_unstable } = &self.calling;
-        text(&overrides.len().to_string());
+        part(FORM.as_bytes());
+        part(self.name.as_bytes());
+        let Calling { overrides, lenient, allow_unstable, files } = &self.calling;
+        part(overrides.len().to_string().as_bytes());
         for (path, value) in overrides {
-            text(path);
-            text(value);
+            part(path.as_bytes());
+            part(value.as_bytes());
+        }
+        part(files.len().to_string().as_bytes());
+        for (name, bytes) in files {
+            part(name.as_bytes());
+            part(bytes);
         }
         out.extend([u8::from(*lenient), u8::from(*allow_unstable)]);
         out.extend(self.frames.to_le_bytes());
@@ -65,23 +74,29 @@ impl SavedRun {
 
     /// Reads a payload; none if it has another form.
     fn read(mut bytes: &[u8]) -> Option<SavedRun> {
-        let mut text = || {
+        let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
-            let (text, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+            let (part, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
             bytes = rest;
-            String::from_utf8(text.to_vec()).ok()
+            Some(part)
         };
-        if text()? != FORM {
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).ok();
+        if part()? != FORM.as_bytes() {
             return None;
         }
-        let name = text()?;
-        let count: usize = text()?.parse().ok()?;
+        let name = text(part()?)?;
+        let count: usize = text(part()?)?.parse().ok()?;
         let mut overrides = Vec::new();
         for _ in 0..count {
-            overrides.push((text()?, text()?));
+            overrides.push((text(part()?)?, text(part()?)?));
+        }
+        let count: usize = text(part()?)?.parse().ok()?;
+        let mut files = BTreeMap::new();
+        for _ in 0..count {
+            files.insert(text(part()?)?, Arc::from(part()?));
         }
         let ([lenient, allow_unstable], bytes) = bytes.split_first_chunk::<2>()?;
-        let calling = Calling { overrides, lenient: *lenient == 1, allow_unstable: *allow_unstable == 1 };
+        let calling = Calling { overrides, lenient: *lenient == 1, allow_unstable: *allow_unstable == 1, files };
         let (frames, bytes) = bytes.split_first_chunk::<8>()?;
         let (time, snapshot) = bytes.split_first_chunk::<8>()?;
         let (frames, time) = (u64::from_le_bytes(*frames), f64::from_le_bytes(*time));
@@ -131,7 +146,8 @@ fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
         SceneError::new("checkpoint.version", "the checkpoint belongs to another version of the program")
     })?;
     let file = format!("scene {} (in {})", run.name, path.display());
-    let source = Source { name: run.name.clone(), file, bytes: checkpoint.scene.into_bytes() };
+    let files = Files::held(run.calling.files.clone());
+    let source = Source { name: run.name.clone(), file, bytes: checkpoint.scene.into_bytes(), files };
     Ok((run, source))
 }
 

@@ -5,7 +5,7 @@ use crate::bench;
 use crate::failure::{Failure, print_data};
 use crate::outputs::counted;
 use crate::run::simd_from_environment;
-use crate::source::{Source, argument, overrides};
+use crate::source::{Source, Whole, argument, overrides};
 use opruga::core::spec::{Spec, nearest};
 use opruga::core::stability::Stability;
 use opruga::draw;
@@ -25,9 +25,10 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
         lenient: call.lenient,
         strict: call.strict,
         overrides: overrides(&call.set)?,
+        files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let (blueprint, notices) = source.read(&reading, &Options::default())?;
+    let Whole { blueprint, notices, .. } = source.read(&reading, &Options::default())?;
     let found = match blueprint {
         AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),
         AnyBlueprint::Space(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),

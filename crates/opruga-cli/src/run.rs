@@ -5,12 +5,13 @@ use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
 use crate::outputs::{Outputs, counted};
 use crate::recorder::Recorder;
-use crate::source::{Source, overrides};
+use crate::source::{Source, Whole, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::{Options, Simd};
+use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -45,9 +46,15 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     let calling = |of: fn(&Calling) -> bool| resumed.as_ref().is_some_and(|saved| of(&saved.calling));
     let lenient = call.lenient || calling(|saved| saved.lenient) && !call.strict;
     let allow_unstable = call.allow_unstable || calling(|saved| saved.allow_unstable);
-    let reading = scene::Options { lenient, strict: call.strict, overrides: set.clone(), ..scene::Options::default() };
+    let reading = scene::Options {
+        lenient,
+        strict: call.strict,
+        overrides: set.clone(),
+        files: source.files.clone().allow_outside(call.allow_outside),
+        ..scene::Options::default()
+    };
     let world = Options { threads: call.threads.into(), simd, allow_unstable, batches: true };
-    let (blueprint, notices) = source.read(&reading, &world)?;
+    let Whole { blueprint, notices, files } = source.read(&reading, &world)?;
     let mut told: Vec<WarningSummary> = notices
         .iter()
         .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.message.clone(), count: n.count as u64 })
@@ -64,7 +71,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         }
         told.push(WarningSummary { code: "threads.above_cores".into(), message, count: 1 });
     }
-    let job = Job { call, source: &source, reading, world, told, resumed };
+    let job = Job { call, source: &source, reading, files, world, told, resumed };
     match blueprint {
         AnyBlueprint::Plane(blueprint) => job.run(blueprint),
         AnyBlueprint::Space(blueprint) => job.run(blueprint),
@@ -104,6 +111,8 @@ struct Job<'a> {
     call: &'a Run,
     source: &'a Source,
     reading: scene::Options,
+    /// The files that the scene names.
+    files: BTreeMap<String, Arc<[u8]>>,
     world: Options,
     /// Warnings so far.
     told: Vec<WarningSummary>,
@@ -129,6 +138,7 @@ impl Job<'_> {
             overrides: self.reading.overrides.clone(),
             lenient: self.reading.lenient,
             allow_unstable: self.world.allow_unstable,
+            files: self.files,
         };
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = Arc::new(AtomicBool::new(false));

@@ -5,9 +5,11 @@ use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::nearest;
 use opruga::io::problem::visible;
 use opruga::io::refusals::in_scene;
-use opruga::io::{Notice, SceneError, scene};
+use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::{Options, World, WorldError};
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scene's text and where it came from.
 pub(crate) struct Source {
@@ -17,6 +19,16 @@ pub(crate) struct Source {
     pub(crate) file: String,
     /// As it was read; what is no UTF-8 is refused by the reader, with its place.
     pub(crate) bytes: Vec<u8>,
+    /// Where the files are that it names.
+    pub(crate) files: Files,
+}
+
+/// A scene without errors.
+pub(crate) struct Whole {
+    pub(crate) blueprint: AnyBlueprint,
+    pub(crate) notices: Vec<Notice>,
+    /// The files that it names.
+    pub(crate) files: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl Source {
@@ -30,7 +42,8 @@ impl Source {
         let path = Path::new(name);
         let built_in = opruga::scenes::find(name).filter(|_| !path.is_file());
         if let Some(text) = built_in {
-            return Ok(Source { name: name.into(), file: format!("scene {name} (built in)"), bytes: text.into() });
+            let (file, files) = (format!("scene {name} (built in)"), opruga::scenes::files());
+            return Ok(Source { name: name.into(), file, bytes: text.into(), files });
         }
         let file = path.display().to_string();
         let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
@@ -44,19 +57,15 @@ impl Source {
             Failure::Scene(vec![SceneError { file: file.clone(), ..error }])
         })?;
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
-        Ok(Source { name, file, bytes })
+        Ok(Source { name, file, bytes, files: Files::beside(path) })
     }
 
     /// Reads the scene. All that is wrong with it comes at once: what the reader finds, and what a world of the rest would
     /// refuse.
-    pub(crate) fn read(
-        &self,
-        options: &scene::Options,
-        world: &Options,
-    ) -> Result<(AnyBlueprint, Vec<Notice>), Failure> {
+    pub(crate) fn read(&self, options: &scene::Options, world: &Options) -> Result<Whole, Failure> {
         match scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options) {
-            scene::Reading { blueprint: Some(blueprint), errors, notices } if errors.is_empty() => {
-                Ok((blueprint, notices))
+            scene::Reading { blueprint: Some(blueprint), errors, notices, files } if errors.is_empty() => {
+                Ok(Whole { blueprint, notices, files })
             }
             reading => Err(self.refused(reading, options, world)),
         }

@@ -6,6 +6,7 @@
 pub mod catalogue;
 pub mod checkpoint;
 mod document;
+pub mod files;
 pub mod overrides;
 pub mod problem;
 pub mod reference;
@@ -13,9 +14,11 @@ pub mod refusals;
 pub mod safe_write;
 pub mod scene;
 pub mod schema;
+pub mod shapes;
 mod source;
 pub mod tables;
 pub mod template;
 
 pub use catalogue::Catalogue;
+pub use files::Files;
 pub use problem::{Notice, SceneError};

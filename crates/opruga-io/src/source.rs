@@ -63,6 +63,19 @@ impl<'a> Source<'a> {
         (before.bytes().filter(|b| *b == b'\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 
+    /// The byte at a line and a column, both from 1; columns count characters. The end of the text where there is none.
+    pub(crate) fn offset(&self, line: usize, column: usize) -> usize {
+        let mut start = 0;
+        for _ in 1..line {
+            match self.text[start..].find('\n') {
+                Some(k) => start += k + 1,
+                None => return self.text.len(),
+            }
+        }
+        let rest = &self.text[start..];
+        start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(k, _)| k)
+    }
+
     /// Adds place and excerpt to an error.
     pub(crate) fn mark(&self, mut error: SceneError, start: usize, end: usize) -> SceneError {
         let start = self.boundary(start);

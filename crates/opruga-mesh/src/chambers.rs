@@ -121,11 +121,23 @@ impl Survey {
         Ok(Survey { component, components, minority, open })
     }
 
+    /// Facets that face against the majority of their component, ascending.
+    pub(crate) fn minority(&self) -> &[u32] {
+        &self.minority
+    }
+
+    /// Refuses free boundaries.
+    pub(crate) fn closed(&self) -> Result<(), MeshError> {
+        if self.open.is_empty() {
+            Ok(())
+        } else {
+            Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() })
+        }
+    }
+
     /// Refuses free boundaries and facets that face against their neighbours.
     pub(crate) fn closed_and_consistent(&self) -> Result<(), MeshError> {
-        if !self.open.is_empty() {
-            return Err(MeshError::Open { loops: self.open.len(), nodes: self.open.clone() });
-        }
+        self.closed()?;
         if !self.minority.is_empty() {
             return Err(MeshError::InconsistentOrientation { facets: self.minority.clone() });
         }
@@ -183,6 +195,11 @@ impl<const D: usize> Mesh<D> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
         survey.closed_and_consistent()?;
+        Ok(self.components_of(&survey))
+    }
+
+    /// The components that a survey found, with their volumes.
+    pub(crate) fn components_of(&self, survey: &Survey) -> Vec<Component> {
         let mut components = vec![Component { facets: Vec::new(), signed_volume: 0.0 }; survey.components];
         for (facet, &component) in survey.component.iter().enumerate() {
             components[component as usize].facets.push(facet as u32);
@@ -190,7 +207,7 @@ impl<const D: usize> Mesh<D> {
         for component in &mut components {
             component.signed_volume = signed_volume(&self.gather(&component.facets), &self.positions);
         }
-        Ok(components)
+        components
     }
 
     /// The closed chambers, each as the ascending indices of the facets that enclose it.
@@ -257,7 +274,7 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// The facets with the given indices.
-    fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
+    pub(crate) fn gather(&self, facets: &[u32]) -> Vec<[u32; D]> {
         facets.iter().map(|&facet| self.facets[facet as usize]).collect()
     }
 }
@@ -268,7 +285,7 @@ impl<const D: usize> Mesh<D> {
 ///
 /// # Source
 /// van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983), equation 8.
-fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
+pub(crate) fn winding_number<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]], point: &[f64; D]) -> f64 {
     let o = lift(point);
     let from = |node: u32| subtract(lift(&positions[node as usize]), o);
     let mut total = 0.0;

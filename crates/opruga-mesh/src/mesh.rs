@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Element, MeshError};
+use crate::{Element, MeshError, Skin};
 
 /// Most nodes that a mesh may have: 2²⁵, so that every index and every doubled index fits `u32` and a mistyped count cannot exhaust the memory.
 pub const MAXIMUM_NODES: u64 = 1 << 25;
@@ -62,6 +62,8 @@ pub struct Mesh<const D: usize> {
     pub cells: Cells,
     /// Named node sets, ascending (`left`, `right`, `bottom`, `top`, `back`, `front` for grids).
     pub groups: BTreeMap<String, Vec<u32>>,
+    /// What is drawn instead of the boundary, in space only.
+    pub skin: Option<Skin>,
 }
 
 /// A row of elements as (kind, index, nodes).

@@ -75,7 +75,7 @@ impl<const D: usize> Mesh<D> {
         self.transform(&rows, about)
     }
 
-    /// Reverses every oriented element: facets, sheets, cells.
+    /// Reverses every oriented element: facets, sheets, cells, the skin.
     fn reverse(&mut self) {
         self.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
         self.sheets.iter_mut().for_each(|triangle| triangle.swap(0, 1));
@@ -84,6 +84,7 @@ impl<const D: usize> Mesh<D> {
         self.cells.quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
         self.cells.tetrahedra.iter_mut().for_each(|cell| cell.swap(0, 1));
         self.cells.hexahedra.iter_mut().for_each(|cell| cell.rotate_left(4));
+        self.skin.iter_mut().flat_map(|skin| &mut skin.triangles).for_each(|triangle| triangle.swap(0, 1));
     }
 }
 

@@ -1,5 +1,9 @@
 //! The shapes that a scene can name: their parameters, how many nodes they have, and their meshes.
 
+mod from_files;
+
+pub use from_files::is_from_file;
+
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
 use std::any::Any;
@@ -177,7 +181,9 @@ static TORUS: Spec = Spec {
 
 /// All shapes.
 pub fn all() -> Vec<&'static Spec> {
-    vec![&RING, &RINGS, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS]
+    let made: [&'static Spec; 11] =
+        [&RING, &RINGS, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS];
+    made.into_iter().chain(from_files::all()).collect()
 }
 
 /// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
@@ -301,11 +307,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
         }
         _ => either(shape)?,
     };
-    scale(&mut mesh, transform)?;
-    match transform.rotation.first() {
-        Some(angle) if *angle != 0.0 => mesh.rotate(*angle, [0.0; 2])?,
-        _ => {}
-    }
+    place(&mut mesh, transform)?;
     Ok(Made { mesh, flipped })
 }
 
@@ -322,13 +324,7 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
         }
         _ => either(shape)?,
     };
-    scale(&mut mesh, transform)?;
-    if let [x, y, z] = transform.rotation {
-        let angle = (x * x + y * y + z * z).sqrt();
-        if angle > 0.0 {
-            mesh.rotate([*x, *y, *z], angle, [0.0; 3])?;
-        }
-    }
+    place(&mut mesh, transform)?;
     Ok(Made { mesh, flipped: false })
 }
 
@@ -346,9 +342,27 @@ fn moved(mut mesh: Mesh<3>, by: [f64; 3]) -> Mesh<3> {
     mesh
 }
 
-fn scale<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> Result<(), MeshError> {
+/// Scales a mesh and turns it about the origin of its own coordinates.
+///
+/// # Errors
+/// Factors and angles that are not finite.
+pub fn place<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform<'_>) -> Result<(), MeshError> {
     if transform.scale != 1.0 {
         mesh.scale([transform.scale; D], [0.0; D])?;
+    }
+    let any: &mut dyn Any = mesh;
+    if let Some(plane) = any.downcast_mut::<Mesh<2>>() {
+        match transform.rotation.first() {
+            Some(angle) if *angle != 0.0 => plane.rotate(*angle, [0.0; 2])?,
+            _ => {}
+        }
+    } else if let Some(space) = any.downcast_mut::<Mesh<3>>()
+        && let [x, y, z] = transform.rotation
+    {
+        let angle = (x * x + y * y + z * z).sqrt();
+        if angle > 0.0 {
+            space.rotate([*x, *y, *z], angle, [0.0; 3])?;
+        }
     }
     Ok(())
 }

@@ -3,13 +3,13 @@
 #![allow(clippy::disallowed_methods)]
 
 use crate::World;
-use crate::blueprint::BodyBlueprint;
+use crate::blueprint::{BodyBlueprint, PinBlueprint};
 use crate::collide::Picture as Placed;
 use crate::core::potential::Account;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
-use crate::mesh::{EdgeSet, Mesh};
+use crate::mesh::{EdgeSet, Mesh, Skin};
 
 /// The most arrows of a body in a plane and in space, where those at the back are hidden.
 const MOST_ARROWS: [usize; 2] = [40, 130];
@@ -41,6 +41,8 @@ struct Fixed {
     thickness: f64,
     /// The nodes at which arrows start, evenly spread.
     arrow_nodes: Vec<u32>,
+    /// What is drawn instead of the facets.
+    skin: Option<Skin>,
 }
 
 /// What changes from picture to picture, kept small.
@@ -79,8 +81,10 @@ impl Scenery {
                 let (a, b) = (mesh.positions[e[0] as usize], mesh.positions[e[1] as usize]);
                 a.iter().zip(&b).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
             };
+            // In a crowd the marks of pins would hide the bodies.
+            let pins: &[PinBlueprint<D>] = if many { &[] } else { &blueprint.pins };
             let mut pinned: Vec<u32> =
-                blueprint.pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
+                pins.iter().flat_map(|p| p.select.resolve(mesh, &blueprint.translation)).collect();
             pinned.sort_unstable();
             pinned.dedup();
             let surface: Vec<[u32; 3]> = if D == 3 {
@@ -107,6 +111,7 @@ impl Scenery {
                 label: if named { blueprint.name.clone() } else { String::new() },
                 thickness: if D == 2 { blueprint.thickness } else { 1.0 },
                 arrow_nodes: if present.len() <= MOST_BODIES { spread(mesh, MOST_ARROWS[D - 2]) } else { Vec::new() },
+                skin: mesh.skin.clone(),
             }
         };
         Scenery {
@@ -187,8 +192,13 @@ impl Scenery {
                 .take(fixed.nodes)
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
+            let scalar: Vec<f64> = strains.by_ref().take(fixed.nodes).collect();
+            if let Some(skin) = &fixed.skin {
+                bodies.push(skinned(skin, &positions, &scalar, &fixed.label));
+                continue;
+            }
             bodies.push(BodyPicture {
-                scalar: strains.by_ref().take(fixed.nodes).collect(),
+                scalar,
                 positions,
                 facets: fixed.facets.clone(),
                 cells: fixed.cells.clone(),
@@ -211,6 +221,21 @@ impl Scenery {
             length_unit: self.length_unit.clone(),
             legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
         }
+    }
+}
+
+/// The skin that a body carries, coloured as the nodes that carry it.
+fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> BodyPicture {
+    BodyPicture {
+        scalar: skin.values(scalar),
+        positions: skin.positions(positions),
+        facets: Facets::Triangles(skin.triangles.clone()),
+        cells: Vec::new(),
+        segments: Vec::new(),
+        colour: None,
+        nodes_drawn: false,
+        pinned: Vec::new(),
+        label: label.into(),
     }
 }
 

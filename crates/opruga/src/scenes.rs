@@ -1,4 +1,7 @@
-//! The scenes that come with the library.
+//! The scenes that come with the library, and the shapes in them.
+
+use crate::io::Files;
+use std::sync::Arc;
 
 macro_rules! scenes {
     ($($name:literal),* $(,)?) => {
@@ -21,7 +24,40 @@ scenes![
     "hanging-net",
     "cloth-over-ball",
     "balloons",
+    "heart",
+    "fish",
+    "spot",
+    "torus-tube",
+    "country",
+    "word",
+    "emoji",
 ];
+
+macro_rules! shapes {
+    ($($name:literal),* $(,)?) => {
+        const SHAPES: &[(&str, &[u8])] = &[$((
+            concat!("shapes/", $name),
+            include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/", $name)),
+        )),*];
+    };
+}
+
+shapes![
+    "heart.svg",
+    "fish.svg",
+    "apple.svg",
+    "drop.svg",
+    "star.svg",
+    "spot.obj",
+    "torus.obj",
+    "countries-110m.json",
+    "inter-black-subset.otf",
+];
+
+/// The files that these scenes name.
+pub fn files() -> Files {
+    Files::held(SHAPES.iter().map(|(name, bytes)| (name.to_string(), Arc::from(*bytes))))
+}
 
 /// The names of the scenes, in the order of the documentation.
 pub fn names() -> impl Iterator<Item = &'static str> {

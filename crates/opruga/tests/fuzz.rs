@@ -36,7 +36,12 @@ fn runs<const D: usize>(mut blueprint: Blueprint<D>) {
 
 fn survives(text: &str, overrides: Vec<(String, String)>) {
     let limits = Limits { nodes: 3_000, bodies: 200, memory_bytes: 32 << 20, ..Limits::default() };
-    match read(text.as_bytes(), "fuzz.toml", &catalogue(), &Reading { limits, overrides, ..Reading::default() }) {
+    match read(
+        text.as_bytes(),
+        "fuzz.toml",
+        &catalogue(),
+        &Reading { limits, overrides, files: scenes::files(), ..Reading::default() },
+    ) {
         Ok((AnyBlueprint::Plane(blueprint), _)) => runs(blueprint),
         Ok((AnyBlueprint::Space(blueprint), _)) => runs(blueprint),
         Err(errors) => assert!(!errors.is_empty()),
@@ -44,7 +49,7 @@ fn survives(text: &str, overrides: Vec<(String, String)>) {
 }
 
 /// Scenes small enough for the limits above.
-const SCENES: [&str; 9] = [
+const SCENES: [&str; 14] = [
     "ball",
     "ball-as-published",
     "pressures",
@@ -54,6 +59,11 @@ const SCENES: [&str; 9] = [
     "hanging-net",
     "cloth-over-ball",
     "balloons",
+    "heart",
+    "fish",
+    "torus-tube",
+    "country",
+    "word",
 ];
 
 /// What a number of a scene may become.

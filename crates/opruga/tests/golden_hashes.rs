@@ -74,7 +74,8 @@ fn every_scene_ends_with_its_golden_hash() {
         let known = golden.iter().find(|g| g.scene == name);
         let frames = known.map_or(FRAMES, |g| g.frames);
         let source = scenes::find(name).expect("a scene of the library");
-        let read = scene::read(source.as_bytes(), &format!("{name}.toml"), &catalogue(), &scene::Options::default());
+        let reading = scene::Options { files: scenes::files(), ..scene::Options::default() };
+        let read = scene::read(source.as_bytes(), &format!("{name}.toml"), &catalogue(), &reading);
         let (blueprint, notices) = read.unwrap_or_else(|errors| panic!("{}", errors[0]));
         assert!(notices.is_empty(), "{name}: {}", notices[0]);
         let start = std::time::Instant::now();

@@ -2,9 +2,11 @@
 
 use super::cost::Cost;
 use super::reader::{Reader, join};
+use super::shape::{self, ShapePlace};
 use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
+use crate::shapes::Loaded;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
 use opruga_mesh::{Measure, Mesh};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
@@ -38,6 +40,8 @@ struct Draft<'n, const D: usize> {
     name: String,
     values: Values,
     shape: Option<Values>,
+    /// What the file of the shape holds, if it has one.
+    loaded: Option<Loaded>,
     rotation: Vec<f64>,
     angular_velocity: Vec<f64>,
     mass: Option<Mass>,
@@ -165,6 +169,7 @@ fn draft<'n, const D: usize>(
     let mass = mass(reader, node, &path, &values);
     let shape =
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
+    let loaded = shape.as_ref().and_then(|values| shape::loaded(reader, node, &path, values, reader.count() == before));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let integrator = reader.integrator(node, &path);
@@ -202,6 +207,7 @@ fn draft<'n, const D: usize>(
         name,
         values,
         shape,
+        loaded,
         rotation,
         angular_velocity,
         mass,
@@ -343,7 +349,11 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
 /// Adds what bodies would cost to that of those before them; whether that is within the limits.
 fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>], cost: &mut Cost) -> bool {
     for draft in drafts {
-        let nodes = draft.shape.as_ref().map_or(0, |shape| shapes::node_count(shape, D));
+        let nodes = match (&draft.loaded, &draft.shape) {
+            (Some(loaded), _) => loaded.node_count(),
+            (None, Some(shape)) => shapes::node_count(shape, D),
+            (None, None) => 0,
+        };
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
@@ -361,31 +371,9 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let shape = draft.shape.as_ref()?;
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
-    let mesh: Mesh<D> = match shapes::mesh::<D>(shape, &transform) {
-        Ok(made) => {
-            if made.flipped {
-                let notice =
-                    SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(&draft.name)));
-                reader.notice(
-                    place_of(draft.node, "shape"),
-                    notice.path(join(&draft.path, "shape")).hint("its edges run against them"),
-                );
-            }
-            made.mesh
-        }
-        Err(refusal) => {
-            let error = SceneError::new("scene.shape", refusal.to_string()).path(join(&draft.path, "shape"));
-            reader.report(place_of(draft.node, "shape"), error);
-            return None;
-        }
-    };
-    // Large factors may leave the range of numbers.
-    if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
-        let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}"))
-            .path(join(&draft.path, "shape"));
-        reader.report(place_of(draft.node, "shape"), error.allowed("finite coordinates"));
-        return None;
-    }
+    let place =
+        ShapePlace { name: &draft.name, place: place_of(draft.node, "shape"), path: join(&draft.path, "shape") };
+    let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
     // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
     let thin = match mesh.measure() {
         Ok(Measure::Length(_)) => Some("of a wire needs its width, here"),

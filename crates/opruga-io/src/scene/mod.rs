@@ -11,9 +11,11 @@ mod parameters;
 mod plain;
 mod reader;
 mod selectors;
+mod shape;
 
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};
+use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
@@ -24,13 +26,17 @@ use opruga_world::blueprint::{
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
 use reader::Reader;
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What a scene may cost, checked before anything is allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     /// The largest scene file [bytes].
     pub file_bytes: u64,
+    /// The largest file of a shape [bytes].
+    pub shape_bytes: u64,
     /// How deep tables and arrays may be nested.
     pub depth: usize,
     /// The largest number of values in a scene file.
@@ -47,6 +53,7 @@ impl Default for Limits {
     fn default() -> Limits {
         Limits {
             file_bytes: 64 << 20,
+            shape_bytes: 256 << 20,
             depth: 128,
             values: 4 << 20,
             bodies: 4_000_000,
@@ -67,6 +74,8 @@ pub struct Options {
     pub strict: bool,
     /// Overrides of parameters, each a path and a value, as `--set PATH=VALUE` gives them.
     pub overrides: Vec<(String, String)>,
+    /// Where the files are that the scene names; none unless said.
+    pub files: Files,
 }
 
 /// What the reader made of a scene.
@@ -80,6 +89,8 @@ pub struct Reading {
     pub errors: Vec<SceneError>,
     /// What is odd.
     pub notices: Vec<Notice>,
+    /// The files that it names, by those names: what else is needed to read it again.
+    pub files: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// Reads a scene from bytes.
@@ -93,7 +104,7 @@ pub fn read(
     options: &Options,
 ) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
     match survey(bytes, file, catalogue, options) {
-        Reading { blueprint: Some(blueprint), errors, notices } if errors.is_empty() => Ok((blueprint, notices)),
+        Reading { blueprint: Some(blueprint), errors, notices, .. } if errors.is_empty() => Ok((blueprint, notices)),
         Reading { errors, .. } => Err(errors),
     }
 }
@@ -101,7 +112,7 @@ pub fn read(
 /// Reads as much of a scene as its errors leave, for those who want to go on looking for errors: [`read`] is for all
 /// others.
 pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Reading {
-    let nothing = |errors| Reading { blueprint: None, errors, notices: Vec::new() };
+    let nothing = |errors| Reading { blueprint: None, errors, notices: Vec::new(), files: BTreeMap::new() };
     let source = match Source::new(file, bytes, &options.limits) {
         Ok(source) => source,
         Err(error) => return nothing(vec![error]),
@@ -117,11 +128,13 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
         Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
         None => None,
     };
+    let files = std::mem::take(&mut reader.files);
     let (errors, notices) = reader.finish();
-    Reading { blueprint, errors, notices }
+    Reading { blueprint, errors, notices, files }
 }
 
-/// Reads a scene from a file. What is no regular file or larger than the limit is refused before it is read.
+/// Reads a scene from a file, and the files that it names from beside it, or from where `options` say. What is no
+/// regular file or larger than the limit is refused before it is read.
 ///
 /// # Errors
 /// As [`read`], and `read.failed` where the file cannot be read.
@@ -132,7 +145,11 @@ pub fn read_file(
 ) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
     let file = path.display().to_string();
     let bytes = bytes_of(path, &options.limits).map_err(|e| vec![SceneError { file: file.clone(), ..e }])?;
-    read(&bytes, &file, catalogue, options)
+    let mut options = options.clone();
+    if options.files == Files::default() {
+        options.files = Files::beside(path);
+    }
+    read(&bytes, &file, catalogue, &options)
 }
 
 /// The bytes of a regular file no larger than the limit.
@@ -141,6 +158,15 @@ pub fn read_file(
 /// `read.failed`, `read.not_regular_file`, `read.changed` where somebody writes into the file meanwhile, or
 /// `scene.too_large`.
 pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
+    let bytes = regular_file(path, limits.file_bytes, "scene.too_large", "the scene");
+    bytes.map(|bytes| bytes.to_vec()).map_err(|error| match error.code {
+        "read.failed" if !path.exists() => error.hint("`opruga list` shows the scenes that come with the program"),
+        _ => error,
+    })
+}
+
+/// The bytes of a regular file no larger than a limit.
+pub(crate) fn regular_file(path: &Path, most: u64, code: &'static str, what: &str) -> Result<Arc<[u8]>, SceneError> {
     use std::io::Read as _;
     let failed = |e: std::io::Error| SceneError::new("read.failed", format!("the file cannot be read: {}", reason(&e)));
     let about = std::fs::metadata(path).map_err(failed)?;
@@ -149,20 +175,23 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
         return Err(SceneError::new("read.not_regular_file", what));
     }
     let too_large = |size: u64| {
-        SceneError::new("scene.too_large", format!("the scene has {size} bytes"))
+        SceneError::new(code, format!("{what} has {size} bytes"))
             .value(size.to_string())
-            .allowed(format!("at most {} bytes", limits.file_bytes))
+            .allowed(format!("at most {most} bytes"))
     };
-    if about.len() > limits.file_bytes {
+    if about.len() > most {
         return Err(too_large(about.len()));
     }
     let mut file = std::fs::File::open(path).map_err(failed)?;
     let before = Stamp::of(&file).map_err(failed)?;
     // One byte more than allowed, in case that the file grows while it is read.
     let mut bytes = Vec::new();
-    (&mut file).take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    (&mut file).take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
     before.unchanged(&file, bytes.len() as u64)?;
-    Ok(bytes)
+    if bytes.len() as u64 > most {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes.into())
 }
 
 /// Size and time of change of a file, to tell whether it was changed while it was read.

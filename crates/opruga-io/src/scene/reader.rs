@@ -7,6 +7,8 @@ use crate::problem::{Notice, SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Default, Spec, Values, nearest};
 use opruga_world::schema::{self, Child, Section};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// More errors than this are counted, not listed: finding a place takes time.
 pub(crate) const MOST_ERRORS: usize = 200;
@@ -21,6 +23,8 @@ pub(crate) struct Reader<'a> {
     /// Errors that were counted only.
     more: usize,
     notices: Vec<Notice>,
+    /// The files that shapes have named so far.
+    pub(crate) files: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// `a.b`, or `b` at the top.
@@ -35,7 +39,16 @@ impl<'a> Reader<'a> {
         options: &'a Options,
         errors: Vec<SceneError>,
     ) -> Reader<'a> {
-        Reader { source, catalogue, options, dimension: 2, errors, more: 0, notices: Vec::new() }
+        Reader {
+            source,
+            catalogue,
+            options,
+            dimension: 2,
+            errors,
+            more: 0,
+            notices: Vec::new(),
+            files: BTreeMap::new(),
+        }
     }
 
     /// Adds an error with its place.
@@ -46,6 +59,16 @@ impl<'a> Reader<'a> {
         }
         let error = self.placed(place, error);
         self.errors.push(error);
+    }
+
+    /// The bytes of a file that the scene names.
+    pub(crate) fn file(&mut self, name: &str) -> Result<Arc<[u8]>, SceneError> {
+        if let Some(bytes) = self.files.get(name) {
+            return Ok(Arc::clone(bytes));
+        }
+        let bytes = self.options.files.read(name, self.options.limits.shape_bytes)?;
+        self.files.insert(name.to_string(), Arc::clone(&bytes));
+        Ok(bytes)
     }
 
     /// How many errors there are so far.
@@ -81,6 +104,9 @@ impl<'a> Reader<'a> {
     }
 
     fn placed(&self, place: Place, error: SceneError) -> SceneError {
+        if !error.file.is_empty() {
+            return error; // it has a place in another file
+        }
         match place {
             Place::Bytes(start, end) => self.source.mark(error, start, end),
             Place::Override(k) => {

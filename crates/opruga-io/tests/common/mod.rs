@@ -1,6 +1,8 @@
 //! A catalogue and a full scene for the tests of the reader.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub(crate) mod shapes;
+
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 use opruga_io::scene::{Options, read};
 use opruga_io::{Catalogue, Notice, SceneError};

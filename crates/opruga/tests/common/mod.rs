@@ -7,7 +7,8 @@ use opruga::{Options, World, WorldError, catalogue};
 
 /// Reads a scene.
 pub(crate) fn read(text: &str) -> Result<AnyBlueprint, Vec<SceneError>> {
-    scene::read(text.as_bytes(), "test.toml", &catalogue(), &scene::Options::default()).map(|r| r.0)
+    let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
+    scene::read(text.as_bytes(), "test.toml", &catalogue(), &options).map(|r| r.0)
 }
 
 /// A scene in the plane.

@@ -1,0 +1,104 @@
+//! The files that a scene names: looked up beside it, or held in memory.
+
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::nearest;
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+/// Where the files of a scene are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Files {
+    /// Files by the name that the scene uses, such as those that come with the program.
+    held: BTreeMap<String, Arc<[u8]>>,
+    /// The folder of the scene.
+    folder: Option<PathBuf>,
+    /// Whether files may lie outside of that folder.
+    outside: bool,
+}
+
+impl Files {
+    /// Files in the folder of the scene.
+    pub fn in_folder(folder: impl Into<PathBuf>) -> Files {
+        Files { folder: Some(folder.into()), ..Files::default() }
+    }
+
+    /// Files beside a scene file.
+    pub fn beside(scene: &Path) -> Files {
+        let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Files::in_folder(folder)
+    }
+
+    /// Files that are held in memory, by the name that the scene uses.
+    pub fn held(files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
+        Files { held: files.into_iter().collect(), ..Files::default() }
+    }
+
+    /// The same, but files may lie anywhere.
+    #[must_use]
+    pub fn allow_outside(mut self, allow: bool) -> Files {
+        self.outside = allow;
+        self
+    }
+
+    /// The bytes of a file that a scene names.
+    ///
+    /// # Errors
+    /// `shape.outside` for a name that leads out of the folder of the scene; `read.failed` with the nearest name; `read.not_regular_file`;
+    /// `shape.too_large`, before anything is read.
+    pub(crate) fn read(&self, name: &str, most_bytes: u64) -> Result<Arc<[u8]>, SceneError> {
+        if let Some(bytes) = self.held.get(name) {
+            return Ok(Arc::clone(bytes));
+        }
+        let Some(folder) = &self.folder else {
+            let error = SceneError::new("read.failed", format!("there is no file `{}`", visible(name)));
+            return Err(error
+                .value(visible(name))
+                .nearest(nearest(name, self.held.keys().map(String::as_str)))
+                .allowed(match self.held.len() {
+                    0 => "a scene without a folder names no files".into(),
+                    _ => self.held.keys().cloned().collect::<Vec<_>>().join(", "),
+                }));
+        };
+        let path = folder.join(name);
+        self.check_place(folder, &path, name)?;
+        crate::scene::regular_file(&path, most_bytes, "shape.too_large", "the file").map_err(|error| {
+            let error = error.value(visible(name));
+            if path.exists() { error } else { self.missing(folder, name, error) }
+        })
+    }
+
+    /// Refuses names that lead out of the folder, by words or by links.
+    fn check_place(&self, folder: &Path, path: &Path, name: &str) -> Result<(), SceneError> {
+        if self.outside {
+            return Ok(());
+        }
+        let plain = Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+        let foreign = name.contains('\\') || name.contains('\0') || name.as_bytes().get(1) == Some(&b':');
+        // A link is followed before its goal is compared.
+        let inside = match (folder.canonicalize(), path.canonicalize()) {
+            (Ok(folder), Ok(path)) => path.starts_with(folder),
+            _ => true,
+        };
+        if plain && !foreign && !name.is_empty() && inside {
+            return Ok(());
+        }
+        Err(SceneError::new("shape.outside", format!("`{}` leads out of the folder of the scene", visible(name)))
+            .value(visible(name))
+            .allowed("a file in the folder of the scene or below it, named with /")
+            .hint("`--allow-outside` lets a scene read files from anywhere"))
+    }
+
+    /// Adds the nearest name that exists in the same folder.
+    fn missing(&self, folder: &Path, name: &str, error: SceneError) -> SceneError {
+        let (before, last) = name.rsplit_once('/').map_or(("", name), |(before, last)| (before, last));
+        let entries = std::fs::read_dir(folder.join(before)).into_iter().flatten().flatten();
+        let mut names: Vec<String> = entries.take(10_000).filter_map(|e| e.file_name().into_string().ok()).collect();
+        names.sort();
+        let near = nearest(last, names.iter().map(String::as_str));
+        let whole = near.map(|n| if before.is_empty() { n } else { format!("{before}/{n}") });
+        let hint = format!("files are looked up in `{}`", visible(&folder.display().to_string()));
+        let error = SceneError { message: format!("the file `{}` is not there", visible(name)), ..error }.hint(hint);
+        error.nearest(whole)
+    }
+}

@@ -1,0 +1,249 @@
+//! Lines and curves before they are cut into points.
+
+use opruga_mesh::outline::Ring;
+
+pub(super) type Point = [f64; 2];
+
+/// The most points that one curve is cut into.
+const MOST_PIECES: f64 = 10_000.0;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Segment {
+    Line(Point),
+    /// A cubic Bézier curve by its two control points and its end.
+    Cubic(Point, Point, Point),
+}
+
+/// A curve from its start through its segments and straight back.
+#[derive(Clone, Debug, PartialEq)]
+struct Contour {
+    start: Point,
+    segments: Vec<Segment>,
+    part: u32,
+}
+
+/// The closed curves of a drawing, drawn as with a pen.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Curves {
+    contours: Vec<Contour>,
+    /// Where the pen is.
+    at: Point,
+    /// The part that is drawn now.
+    part: u32,
+}
+
+/// The smaller of two finite numbers; the first of equal ones, zeros of either sign among them.
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+/// The larger of two finite numbers; the first of equal ones.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// x′ = a x + c y + e, y′ = b x + d y + f.
+pub(super) type Affine = [f64; 6];
+
+/// The map that leaves every point where it is.
+pub(super) const IDENTITY: Affine = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+
+/// First `inner`, then `outer`.
+pub(super) fn after(outer: &Affine, inner: &Affine) -> Affine {
+    let [a, b, c, d, e, f] = *outer;
+    let [p, q, r, s, t, u] = *inner;
+    [a * p + c * q, b * p + d * q, a * r + c * s, b * r + d * s, a * t + c * u + e, b * t + d * u + f]
+}
+
+/// A point under a map.
+pub(super) fn mapped(map: &Affine, [x, y]: Point) -> Point {
+    [map[0] * x + map[2] * y + map[4], map[1] * x + map[3] * y + map[5]]
+}
+
+impl Curves {
+    /// Nothing yet, to be drawn for a part.
+    pub(super) fn of_part(part: u32) -> Curves {
+        Curves { part, ..Curves::default() }
+    }
+
+    /// Begins a new contour.
+    pub(super) fn move_to(&mut self, to: Point) {
+        self.contours.push(Contour { start: to, segments: Vec::new(), part: self.part });
+        self.at = to;
+    }
+
+    /// A straight line.
+    pub(super) fn line_to(&mut self, to: Point) {
+        self.push(Segment::Line(to), to);
+    }
+
+    /// A cubic Bézier curve.
+    pub(super) fn cubic_to(&mut self, first: Point, second: Point, to: Point) {
+        self.push(Segment::Cubic(first, second, to), to);
+    }
+
+    /// A quadratic Bézier curve, raised to a cubic one.
+    pub(super) fn quadratic_to(&mut self, control: Point, to: Point) {
+        let third = |p: Point, q: Point| [p[0] + (q[0] - p[0]) * 2.0 / 3.0, p[1] + (q[1] - p[1]) * 2.0 / 3.0];
+        self.cubic_to(third(self.at, control), third(to, control), to);
+    }
+
+    /// A whole polygon.
+    pub(super) fn polygon(&mut self, points: &[Point]) {
+        let Some((first, rest)) = points.split_first() else { return };
+        self.move_to(*first);
+        rest.iter().for_each(|point| self.line_to(*point));
+    }
+
+    fn push(&mut self, segment: Segment, to: Point) {
+        if self.contours.is_empty() {
+            self.move_to(self.at);
+        }
+        if let Some(contour) = self.contours.last_mut() {
+            contour.segments.push(segment);
+        }
+        self.at = to;
+    }
+
+    /// Where the present contour began.
+    pub(super) fn start(&self) -> Point {
+        self.contours.last().map_or([0.0; 2], |contour| contour.start)
+    }
+
+    /// Adds curves under a map.
+    pub(super) fn append(&mut self, other: Curves, map: &Affine) {
+        self.contours.extend(other.contours.into_iter().map(|contour| {
+            Contour {
+                start: mapped(map, contour.start),
+                segments: contour
+                    .segments
+                    .into_iter()
+                    .map(|segment| match segment {
+                        Segment::Line(to) => Segment::Line(mapped(map, to)),
+                        Segment::Cubic(p, q, to) => Segment::Cubic(mapped(map, p), mapped(map, q), mapped(map, to)),
+                    })
+                    .collect(),
+                part: contour.part,
+            }
+        }));
+    }
+
+    /// The larger side of the box around all points and control points.
+    pub(super) fn extent(&self) -> f64 {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let mut add = |p: Point| {
+            for a in 0..2 {
+                low[a] = smaller(low[a], p[a]);
+                high[a] = larger(high[a], p[a]);
+            }
+        };
+        for contour in &self.contours {
+            add(contour.start);
+            for segment in &contour.segments {
+                match segment {
+                    Segment::Line(to) => add(*to),
+                    Segment::Cubic(p, q, to) => [*p, *q, *to].into_iter().for_each(&mut add),
+                }
+            }
+        }
+        larger(high[0] - low[0], high[1] - low[1])
+    }
+
+    /// Rings that stay within `tolerance` of the curves. Points that repeat the one before are left out.
+    pub(super) fn flatten(&self, tolerance: f64) -> Vec<Ring> {
+        let flat = |contour: &Contour| {
+            let mut points = vec![contour.start];
+            let mut at = contour.start;
+            for segment in &contour.segments {
+                match *segment {
+                    Segment::Line(to) => {
+                        points.push(to);
+                        at = to;
+                    }
+                    Segment::Cubic(p, q, to) => {
+                        let pieces = pieces([at, p, q, to], tolerance);
+                        for k in 1..pieces {
+                            points.push(on_cubic([at, p, q, to], k as f64 / pieces as f64));
+                        }
+                        points.push(to);
+                        at = to;
+                    }
+                }
+            }
+            points.dedup();
+            while points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            Ring { points, part: contour.part }
+        };
+        self.contours.iter().filter(|contour| !contour.segments.is_empty()).map(flat).collect()
+    }
+}
+
+/// How many lines follow a cubic curve within a tolerance: n² = ¾ max|second difference| / tolerance.
+fn pieces([a, p, q, b]: [Point; 4], tolerance: f64) -> u64 {
+    let second = |a: Point, b: Point, c: Point| {
+        let (x, y) = (a[0] - 2.0 * b[0] + c[0], a[1] - 2.0 * b[1] + c[1]);
+        (x * x + y * y).sqrt()
+    };
+    let n = (0.75 * larger(second(a, p, q), second(p, q, b)) / tolerance).sqrt().ceil();
+    if n >= 1.0 { smaller(n, MOST_PIECES) as u64 } else { 1 }
+}
+
+fn on_cubic([a, p, q, b]: [Point; 4], t: f64) -> Point {
+    let s = 1.0 - t;
+    let (wa, wp, wq, wb) = (s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t);
+    core::array::from_fn(|k| wa * a[k] + wp * p[k] + wq * q[k] + wb * b[k])
+}
+
+impl Curves {
+    /// An elliptical arc of the SVG path language from the present point; radii that are too small are enlarged, as its standard says.
+    ///
+    /// Pieces of at most 45° become cubic curves, which differ from the arc by less than 5·10⁻⁶ of its radius.
+    ///
+    /// # Source
+    /// W3C, Scalable Vector Graphics 1.1, appendix F.6.
+    pub(super) fn arc_to(&mut self, radii: Point, rotation: f64, large: bool, sweep: bool, to: Point) {
+        let from = self.at;
+        let (mut rx, mut ry) = (radii[0].abs(), radii[1].abs());
+        if from == to {
+            return;
+        }
+        if rx == 0.0 || ry == 0.0 {
+            return self.line_to(to);
+        }
+        let (sin, cos) = (libm::sin(rotation), libm::cos(rotation));
+        // From the middle of the chord, along the axes of the ellipse.
+        let (hx, hy) = (0.5 * (from[0] - to[0]), 0.5 * (from[1] - to[1]));
+        let (x, y) = (cos * hx + sin * hy, cos * hy - sin * hx);
+        let stretch = (x / rx) * (x / rx) + (y / ry) * (y / ry);
+        if stretch > 1.0 {
+            rx *= stretch.sqrt();
+            ry *= stretch.sqrt();
+        }
+        let (u, v) = (rx * y, ry * x);
+        let rest = ((rx * ry) * (rx * ry) - u * u - v * v) / (u * u + v * v);
+        let factor = if rest > 0.0 { rest.sqrt() } else { 0.0 } * if large == sweep { -1.0 } else { 1.0 };
+        let (cx, cy) = (factor * rx * y / ry, -factor * ry * x / rx);
+        let center = [cos * cx - sin * cy + 0.5 * (from[0] + to[0]), sin * cx + cos * cy + 0.5 * (from[1] + to[1])];
+        let first = libm::atan2((y - cy) / ry, (x - cx) / rx);
+        let last = libm::atan2((-y - cy) / ry, (-x - cx) / rx);
+        let turn = core::f64::consts::TAU;
+        let mut angle = last - first;
+        if sweep && angle < 0.0 {
+            angle += turn;
+        } else if !sweep && angle > 0.0 {
+            angle -= turn;
+        }
+        let pieces = larger((angle.abs() / core::f64::consts::FRAC_PI_4).ceil(), 1.0);
+        let step = angle / pieces;
+        let handle = 4.0 / 3.0 * libm::tan(0.25 * step);
+        let place = |c: f64, s: f64| [center[0] + cos * rx * c - sin * ry * s, center[1] + sin * rx * c + cos * ry * s];
+        for k in 0..pieces as u32 {
+            let (a, b) = (first + f64::from(k) * step, first + f64::from(k + 1) * step);
+            let (ca, sa, cb, sb) = (libm::cos(a), libm::sin(a), libm::cos(b), libm::sin(b));
+            let end = if f64::from(k + 1) == pieces { to } else { place(cb, sb) };
+            self.cubic_to(place(ca - handle * sa, sa + handle * ca), place(cb + handle * sb, sb - handle * cb), end);
+        }
+    }
+}

@@ -1,0 +1,485 @@
+//! glTF 2.0: the triangles of a scene, as .gltf with its buffers or as one .glb.
+//!
+//! Read are meshes of triangles with positions in 32-bit numbers, through the tree of nodes with their transforms. Materials, normals, skins, cameras and
+//! animations carry nothing for a body; compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
+//!
+//! # Source
+//! The Khronos Group, glTF 2.0 Specification (2021).
+
+use super::Open;
+use super::json::{Raw, parse, refuse};
+use super::triangles::Triangles;
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use serde::Deserialize;
+use std::sync::Arc;
+
+/// Nodes may be nested this deep.
+const DEEPEST: usize = 128;
+
+/// The largest number of triangles: nodes may draw one mesh many times.
+const MOST_TRIANGLES: usize = 1 << 26;
+
+#[derive(Deserialize)]
+struct Root<'a> {
+    #[serde(borrow)]
+    asset: Raw<'a>,
+    scene: Option<usize>,
+    #[serde(default)]
+    scenes: Vec<Scene>,
+    #[serde(borrow, default)]
+    nodes: Vec<Raw<'a>>,
+    #[serde(borrow, default)]
+    meshes: Vec<Raw<'a>>,
+    #[serde(borrow, default)]
+    accessors: Vec<Raw<'a>>,
+    #[serde(borrow, default, rename = "bufferViews")]
+    views: Vec<Raw<'a>>,
+    #[serde(borrow, default)]
+    buffers: Vec<Raw<'a>>,
+    #[serde(default, rename = "extensionsRequired")]
+    extensions: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: String,
+}
+
+#[derive(Deserialize)]
+struct Scene {
+    #[serde(default)]
+    nodes: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+struct Node {
+    name: Option<String>,
+    mesh: Option<usize>,
+    #[serde(default)]
+    children: Vec<usize>,
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+struct Mesh<'a> {
+    name: Option<String>,
+    #[serde(borrow)]
+    primitives: Vec<Raw<'a>>,
+}
+
+#[derive(Deserialize)]
+struct Primitive {
+    attributes: std::collections::BTreeMap<String, usize>,
+    indices: Option<usize>,
+    mode: Option<u32>,
+}
+
+#[derive(Deserialize)]
+struct Accessor<'a> {
+    #[serde(rename = "bufferView")]
+    view: Option<usize>,
+    #[serde(default, rename = "byteOffset")]
+    offset: u64,
+    #[serde(rename = "componentType")]
+    component: u32,
+    count: u64,
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(borrow)]
+    sparse: Option<Raw<'a>>,
+}
+
+#[derive(Deserialize)]
+struct View {
+    buffer: usize,
+    #[serde(default, rename = "byteOffset")]
+    offset: u64,
+    #[serde(rename = "byteLength")]
+    length: u64,
+    #[serde(rename = "byteStride")]
+    stride: Option<u64>,
+}
+
+#[derive(Deserialize)]
+struct Buffer {
+    uri: Option<String>,
+    #[serde(rename = "byteLength")]
+    length: u64,
+}
+
+/// A row-major map of space: x′ = A x + b.
+type Map = [[f64; 4]; 3];
+
+const IDENTITY: Map = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+fn after(outer: &Map, inner: &Map) -> Map {
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let moved = if j == 3 { outer[i][3] } else { 0.0 };
+            (0..3).map(|k| outer[i][k] * inner[k][j]).sum::<f64>() + moved
+        })
+    })
+}
+
+/// The JSON of a file, and the binary chunk of a .glb.
+pub(super) fn chunks<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((bytes, None));
+    }
+    let named = |error: SceneError| SceneError { file: file.to_string(), ..error };
+    let word = |at: usize| bytes.get(at..at + 4).map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
+    let size = |what: &str, value: u64| {
+        named(SceneError::new("gltf.size", format!("{what}: {value}, but the file has {} bytes", bytes.len())))
+            .value(value.to_string())
+            .hint("the file is cut off")
+    };
+    match (word(4), word(8)) {
+        (Some(2), Some(length)) if length == bytes.len() as u64 => {}
+        (Some(2), Some(length)) => return Err(size("at byte 8, the length of the file", length)),
+        (version, _) => {
+            let version = version.unwrap_or(0);
+            let error = SceneError::new("gltf.version", format!("at byte 4, version {version}"));
+            return Err(named(error.value(version.to_string()).allowed("2")));
+        }
+    }
+    let (mut at, mut json, mut binary) = (12usize, None, None);
+    while at < bytes.len() {
+        let (Some(length), Some(kind)) = (word(at), word(at + 4)) else {
+            return Err(size("a chunk begins at byte", at as u64));
+        };
+        let Some(chunk) = usize::try_from(length).ok().and_then(|n| bytes.get(at + 8..(at + 8).checked_add(n)?)) else {
+            return Err(size(&format!("at byte {at}, the length of a chunk"), length));
+        };
+        match kind {
+            0x4E4F_534A if json.is_none() => json = Some(chunk),
+            0x004E_4942 if binary.is_none() => binary = Some(chunk),
+            _ => {}
+        }
+        at += 8 + chunk.len();
+    }
+    match json {
+        Some(json) => Ok((json, binary)),
+        None => Err(named(
+            SceneError::new("gltf.size", "the file has no JSON chunk").value("0").allowed("a chunk `JSON` at byte 12"),
+        )),
+    }
+}
+
+struct Reader<'a, 's, 'o, 'f> {
+    source: &'s Source<'s>,
+    root: Root<'a>,
+    buffers: Vec<Option<Arc<[u8]>>>,
+    binary: Option<&'a [u8]>,
+    open: &'o mut Open<'f>,
+    found: Triangles,
+    others: usize,
+}
+
+/// Reads the triangles of the default scene, or of all meshes where there is no scene.
+///
+/// # Errors
+/// `json.syntax`, `gltf.syntax`, `gltf.index`, `gltf.size`, `gltf.unsupported` with the place in the JSON; `mesh.index`; `scene.not_finite`.
+pub(super) fn read<'a>(
+    source: &'a Source<'a>,
+    binary: Option<&'a [u8]>,
+    open: &mut Open<'_>,
+) -> Result<Triangles, SceneError> {
+    let root: Root<'a> = parse(source, source.text)?;
+    let asset: Asset = parse(source, root.asset.get())?;
+    if asset.version != "2.0" {
+        let error = SceneError::new("gltf.version", format!("version {}", visible(&asset.version)));
+        return Err(refuse(source, root.asset.get(), error.value(visible(&asset.version)).allowed("2.0")));
+    }
+    if let Some(extension) =
+        root.extensions.iter().find(|e| !e.starts_with("KHR_materials") && *e != "KHR_texture_transform")
+    {
+        let error = SceneError::new("gltf.unsupported", format!("the file needs `{}`", visible(extension)));
+        let error = error.value(visible(extension)).allowed("no compression and no other required extension");
+        return Err(refuse(source, root.asset.get(), error.hint("export without compression")));
+    }
+    let buffers = vec![None; root.buffers.len()];
+    let (nodes, meshes) = (root.nodes.len(), root.meshes.len());
+    let start = match (root.scene, root.scenes.first()) {
+        (Some(k), _) => root.scenes.get(k).map(|s| s.nodes.clone()),
+        (None, Some(first)) => Some(first.nodes.clone()),
+        (None, None) => None,
+    };
+    let mut reader = Reader { source, root, buffers, binary, open, found: Triangles::default(), others: 0 };
+    match start {
+        Some(start) => {
+            for node in start {
+                reader.node(node, &IDENTITY, 0)?;
+            }
+        }
+        None if nodes > 0 => {
+            let asset = reader.root.asset.get();
+            return Err(refuse(
+                source,
+                asset,
+                SceneError::new("gltf.syntax", "the file names no scene").allowed("`scenes` with `nodes`"),
+            ));
+        }
+        None => {
+            for mesh in 0..meshes {
+                reader.mesh(mesh, None, &IDENTITY)?;
+            }
+        }
+    }
+    if reader.others > 0 {
+        let message = format!("{} lines and points are left out", reader.others);
+        reader.found.notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
+    }
+    Ok(reader.found)
+}
+
+impl<'a> Reader<'a, '_, '_, '_> {
+    /// An entry of a list, by number.
+    fn entry(&self, list: &[Raw<'a>], index: usize, what: &str) -> Result<Raw<'a>, SceneError> {
+        list.get(index).copied().ok_or_else(|| {
+            let error = SceneError::new("gltf.index", format!("there is no {what} {index}")).value(index.to_string());
+            let error = error.allowed(format!("below {}", list.len()));
+            refuse(self.source, self.root.asset.get(), error)
+        })
+    }
+
+    fn node(&mut self, index: usize, map: &Map, depth: usize) -> Result<(), SceneError> {
+        let raw = self.entry(&self.root.nodes, index, "node")?;
+        if depth > DEEPEST {
+            let error = SceneError::new(
+                "gltf.depth",
+                format!("nodes are nested more than {DEEPEST} deep, or contain themselves"),
+            );
+            return Err(refuse(
+                self.source,
+                raw.get(),
+                error.value(index.to_string()).allowed(format!("at most {DEEPEST} levels")),
+            ));
+        }
+        let node: Node = parse(self.source, raw.get())?;
+        let own = match node.matrix {
+            // Matrices stand column by column.
+            Some(m) => core::array::from_fn(|i| core::array::from_fn(|j| m[4 * j + i])),
+            None => {
+                let t = node.translation.unwrap_or([0.0; 3]);
+                let s = node.scale.unwrap_or([1.0; 3]);
+                let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+                let r = [
+                    [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+                    [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+                    [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+                ];
+                core::array::from_fn(|i| core::array::from_fn(|j| if j == 3 { t[i] } else { r[i][j] * s[j] }))
+            }
+        };
+        let map = after(map, &own);
+        if let Some(mesh) = node.mesh {
+            self.mesh(mesh, node.name.as_deref(), &map)?;
+        }
+        for child in node.children {
+            self.node(child, &map, depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn mesh(&mut self, index: usize, name: Option<&str>, map: &Map) -> Result<(), SceneError> {
+        let raw = self.entry(&self.root.meshes, index, "mesh")?;
+        let mesh: Mesh<'a> = parse(self.source, raw.get())?;
+        let first = self.found.positions.len() as u32;
+        for raw in mesh.primitives {
+            self.primitive(raw, map)?;
+        }
+        let nodes = first..self.found.positions.len() as u32;
+        if let Some(name) = name.or(mesh.name.as_deref()).filter(|_| !nodes.is_empty()) {
+            self.found.groups.entry(name.to_string()).or_default().extend(nodes);
+        }
+        Ok(())
+    }
+
+    fn primitive(&mut self, raw: Raw<'a>, map: &Map) -> Result<(), SceneError> {
+        let primitive: Primitive = parse(self.source, raw.get())?;
+        match primitive.mode {
+            None | Some(4) => {}
+            Some(0..=3) => {
+                self.others += 1;
+                return Ok(());
+            }
+            Some(mode) => {
+                let error = SceneError::new("gltf.unsupported", format!("primitives of mode {mode} cannot be read"));
+                return Err(refuse(self.source, raw.get(), error.value(mode.to_string()).allowed("4 (triangles)")));
+            }
+        }
+        let Some(place) = primitive.attributes.get("POSITION") else {
+            let error = SceneError::new("gltf.syntax", "a primitive has no POSITION");
+            return Err(refuse(self.source, raw.get(), error.allowed("an attribute POSITION")));
+        };
+        let first = self.found.positions.len();
+        for row in self.accessor(*place, "VEC3", &[5126])? {
+            let p = [row[0], row[1], row[2]];
+            let q = core::array::from_fn(|i| (0..3).map(|k| map[i][k] * p[k]).sum::<f64>() + map[i][3]);
+            if q.iter().any(|x: &f64| !x.is_finite()) {
+                let message = format!("a coordinate of vertex {} is not finite", self.found.positions.len() - first);
+                let error = SceneError::new("scene.not_finite", message).value(format!("{q:?}"));
+                return Err(refuse(self.source, raw.get(), error.allowed("finite numbers")));
+            }
+            self.found.positions.push(q);
+        }
+        let count = self.found.positions.len() - first;
+        let indices: Vec<u32> = match primitive.indices {
+            Some(place) => {
+                self.accessor(place, "SCALAR", &[5121, 5123, 5125])?.into_iter().map(|row| row[0] as u32).collect()
+            }
+            None => (0..count as u32).collect(),
+        };
+        if !indices.len().is_multiple_of(3) || self.found.triangles.len() + indices.len() / 3 > MOST_TRIANGLES {
+            let error = SceneError::new("gltf.syntax", format!("a primitive has {} corners", indices.len()));
+            let error =
+                error.value(indices.len().to_string()).allowed("three for every triangle, at most 2^26 triangles");
+            return Err(refuse(self.source, raw.get(), error));
+        }
+        // A map that mirrors turns triangles inside out.
+        let det = map[0][0] * (map[1][1] * map[2][2] - map[1][2] * map[2][1])
+            - map[0][1] * (map[1][0] * map[2][2] - map[1][2] * map[2][0])
+            + map[0][2] * (map[1][0] * map[2][1] - map[1][1] * map[2][0]);
+        for (k, corners) in indices.chunks_exact(3).enumerate() {
+            if let Some(far) = corners.iter().find(|c| **c as usize >= count) {
+                let error =
+                    SceneError::new("mesh.index", format!("triangle {k} names vertex {far}")).value(far.to_string());
+                return Err(refuse(self.source, raw.get(), error.allowed(format!("below {count}"))));
+            }
+            let [a, b, c] = [corners[0], corners[1], corners[2]].map(|c| c + first as u32);
+            if a == b || b == c || c == a {
+                let error = SceneError::new("mesh.degenerate_face", format!("triangle {k} names a vertex twice"));
+                return Err(refuse(
+                    self.source,
+                    raw.get(),
+                    error.value(format!("{corners:?}")).allowed("three different vertices"),
+                ));
+            }
+            self.found.triangles.push(if det < 0.0 { [a, c, b] } else { [a, b, c] });
+        }
+        Ok(())
+    }
+
+    /// The rows of an accessor: three numbers or one, as the kind says.
+    fn accessor(&mut self, index: usize, kind: &str, components: &[u32]) -> Result<Vec<[f64; 3]>, SceneError> {
+        let source = self.source;
+        let raw = self.entry(&self.root.accessors, index, "accessor")?;
+        let bad = |code, message: String| refuse(source, raw.get(), SceneError::new(code, message));
+        let accessor: Accessor<'a> = parse(source, raw.get())?;
+        if accessor.sparse.is_some() {
+            return Err(bad("gltf.unsupported", "sparse accessors cannot be read".into()).value("sparse"));
+        }
+        if accessor.kind != kind || !components.contains(&accessor.component) {
+            let found = format!("{} of type {}", visible(&accessor.kind), accessor.component);
+            let allowed = format!("{kind} of type {components:?}");
+            return Err(bad("gltf.syntax", format!("the accessor holds {found}")).value(found).allowed(allowed));
+        }
+        let Some(view) = accessor.view else {
+            return Err(bad("gltf.unsupported", "the accessor has no bufferView".into()).value("none"));
+        };
+        let view_raw = self.entry(&self.root.views, view, "bufferView")?;
+        let view: View = parse(source, view_raw.get())?;
+        let bytes = self.buffer(view.buffer)?;
+        let size: u64 = match accessor.component {
+            5121 => 1,
+            5123 => 2,
+            _ => 4,
+        };
+        let each = if kind == "VEC3" { 3 * size } else { size };
+        let stride = view.stride.unwrap_or(each);
+        // Compared with the bytes that there are before anything is allocated.
+        let within = || {
+            let last =
+                accessor.count.checked_sub(1)?.checked_mul(stride)?.checked_add(each)?.checked_add(accessor.offset)?;
+            let end = view.offset.checked_add(view.length)?;
+            (last <= view.length && end <= bytes.len() as u64 && stride >= each).then_some(())
+        };
+        if within().is_none() {
+            let message = format!(
+                "{} rows of {each} bytes do not lie within the view and its buffer of {} bytes",
+                accessor.count,
+                bytes.len()
+            );
+            return Err(bad("gltf.size", message)
+                .value(accessor.count.to_string())
+                .hint("the file is cut off, or the view is too short"));
+        }
+        let start = (view.offset + accessor.offset) as usize;
+        let rows = (0..accessor.count as usize).map(|k| {
+            let row = &bytes[start + k * stride as usize..];
+            core::array::from_fn(|axis| {
+                let at = axis * size as usize;
+                match (accessor.component, axis) {
+                    (5121, 0) => f64::from(row[0]),
+                    (5123, 0) => f64::from(u16::from_le_bytes([row[0], row[1]])),
+                    (5125, 0) => f64::from(u32::from_le_bytes([row[0], row[1], row[2], row[3]])),
+                    (5126, _) => f64::from(f32::from_le_bytes([row[at], row[at + 1], row[at + 2], row[at + 3]])),
+                    _ => 0.0,
+                }
+            })
+        });
+        Ok(rows.collect())
+    }
+
+    /// The bytes of a buffer: the chunk of a .glb, a data address, or a file beside the scene.
+    fn buffer(&mut self, index: usize) -> Result<Arc<[u8]>, SceneError> {
+        let source = self.source;
+        let raw = self.entry(&self.root.buffers, index, "buffer")?;
+        if let Some(Some(bytes)) = self.buffers.get(index) {
+            return Ok(Arc::clone(bytes));
+        }
+        let buffer: Buffer = parse(source, raw.get())?;
+        let bad = |code, message: String| refuse(source, raw.get(), SceneError::new(code, message));
+        let bytes: Arc<[u8]> = match (&buffer.uri, self.binary) {
+            (None, Some(binary)) if index == 0 => Arc::from(binary),
+            (None, _) => return Err(bad("gltf.syntax", "the buffer has neither an address nor a binary chunk".into())),
+            (Some(uri), _) if uri.starts_with("data:") => match uri.split_once(";base64,").and_then(|(_, t)| base64(t))
+            {
+                Some(bytes) => bytes.into(),
+                None => {
+                    return Err(bad("gltf.syntax", "the data address is no base64".into()).allowed("data:…;base64,…"));
+                }
+            },
+            // Relative to the glTF file, by the rules for all files of a scene.
+            (Some(uri), _) => {
+                let folder = source.file.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+                (self.open)(&format!("{folder}{uri}"))?
+            }
+        };
+        if (bytes.len() as u64) < buffer.length {
+            let message = format!("the buffer promises {} bytes and has {}", buffer.length, bytes.len());
+            return Err(bad("gltf.size", message)
+                .value(bytes.len().to_string())
+                .allowed(format!("{} bytes", buffer.length)));
+        }
+        self.buffers[index] = Some(Arc::clone(&bytes));
+        Ok(bytes)
+    }
+}
+
+/// Bytes from base64 (RFC 4648); none for other letters.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut count) = (0u32, 0);
+    for letter in text.trim_end_matches('=').bytes() {
+        let value = match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | u32::from(value);
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            out.push((bits >> count) as u8);
+        }
+    }
+    Some(out)
+}

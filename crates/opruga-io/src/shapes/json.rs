@@ -1,0 +1,40 @@
+//! JSON whose values know their place in the file.
+
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+/// A value as it stands in the file, read where it is needed.
+pub(super) type Raw<'a> = &'a RawValue;
+
+/// Where a value stands in the text of its file.
+pub(super) fn span(source: &Source<'_>, raw: &str) -> (usize, usize) {
+    let from = (raw.as_ptr() as usize).saturating_sub(source.text.as_ptr() as usize);
+    (from, from + raw.len())
+}
+
+/// Reads a value of some type.
+///
+/// # Errors
+/// `json.syntax` with line and column.
+pub(super) fn parse<'a, T: Deserialize<'a>>(source: &Source<'_>, raw: &'a str) -> Result<T, SceneError> {
+    serde_json::from_str(raw).map_err(|e| {
+        // Lines and columns (in bytes) of the library count from the value.
+        let line = raw.split_inclusive('\n').take(e.line().saturating_sub(1)).map(str::len).sum::<usize>();
+        let at = span(source, raw).0 + (line + e.column().saturating_sub(1)).min(raw.len().saturating_sub(1));
+        let text = e.to_string();
+        let message = text.rsplit_once(" at line ").map_or(text.as_str(), |(message, _)| message);
+        let found: String = source.text.get(at..).unwrap_or("").chars().take(12).collect();
+        let error = source.mark(SceneError::new("json.syntax", visible(message)), at, at + 1);
+        error.value(visible(&found))
+    })
+}
+
+/// An error at a value.
+pub(super) fn refuse(source: &Source<'_>, raw: &str, error: SceneError) -> SceneError {
+    let (from, end) = span(source, raw);
+    let shown: String = raw.chars().take(40).collect();
+    let value = error.value.clone().unwrap_or_else(|| visible(&shown));
+    source.mark(error, from, end).value(value)
+}

@@ -1,0 +1,335 @@
+//! Maps: polygons of GeoJSON and TopoJSON, from degrees to the plane.
+//!
+//! # Source
+//! RFC 7946, The GeoJSON Format; M. Bostock and C. Metcalf, The TopoJSON Format Specification (2013).
+
+use super::curves::{Curves, Point, larger, smaller};
+use super::drawing::Drawing;
+use super::json::{Raw, parse, refuse, span};
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use opruga_core::spec::{Values, nearest};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Collections may be nested this deep.
+const DEEPEST: usize = 32;
+
+/// Any object of either format: what is not there stays empty.
+#[derive(Deserialize)]
+struct Object<'a> {
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(borrow)]
+    features: Option<Vec<Raw<'a>>>,
+    #[serde(borrow)]
+    geometry: Option<Raw<'a>>,
+    #[serde(borrow)]
+    geometries: Option<Vec<Raw<'a>>>,
+    #[serde(borrow)]
+    coordinates: Option<Raw<'a>>,
+    #[serde(borrow)]
+    arcs: Option<Raw<'a>>,
+    id: Option<serde_json::Value>,
+    properties: Option<BTreeMap<String, serde_json::Value>>,
+}
+
+#[derive(Deserialize)]
+struct Topology<'a> {
+    #[serde(borrow)]
+    objects: BTreeMap<String, Raw<'a>>,
+    #[serde(borrow)]
+    arcs: Vec<Raw<'a>>,
+    transform: Option<Quantisation>,
+}
+
+#[derive(Deserialize)]
+struct Quantisation {
+    scale: [f64; 2],
+    translate: [f64; 2],
+}
+
+struct Reader<'a, 's> {
+    source: &'s Source<'s>,
+    wanted: Option<&'s str>,
+    /// The arcs of a topology, in degrees.
+    arcs: Option<Vec<Vec<Point>>>,
+    polygons: Vec<(Vec<Vec<Point>>, Raw<'a>)>,
+    names: Vec<String>,
+    /// Points and lines, which have no area.
+    others: usize,
+}
+
+/// Reads a map: the feature that the scene names, or all of them.
+///
+/// # Errors
+/// `json.syntax`, `map.syntax`, `map.arc`, `map.range`, `map.unknown_feature`, `map.unknown_layer`, with line and column.
+pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Drawing<'a>, SceneError> {
+    let text = source.text;
+    let raw: Raw<'_> = parse(source, text)?;
+    let top: Object<'_> = parse(source, raw.get())?;
+    let wanted = shape.text("feature");
+    let mut reader = Reader { source, wanted, arcs: None, polygons: Vec::new(), names: Vec::new(), others: 0 };
+    if top.kind == "Topology" {
+        let topology: Topology<'_> = parse(source, raw.get())?;
+        reader.arcs = Some(arcs(source, &topology)?);
+        let layer = layer(source, raw, &topology, shape.text("layer"))?;
+        reader.object(layer, wanted.is_none(), 0)?;
+    } else if let Some(layer) = shape.text("layer") {
+        let error = SceneError::new("map.unknown_layer", format!("there is no layer `{}`", visible(layer)));
+        let error = error.value(visible(layer)).allowed("no `layer`: only a topology has some");
+        return Err(refuse(source, &text[..1.min(text.len())], error));
+    } else {
+        reader.object(raw, wanted.is_none(), 0)?;
+    }
+    if reader.polygons.is_empty() {
+        return Err(reader.nothing(raw));
+    }
+    let mut curves = Curves::default();
+    let mut places = Vec::new();
+    let project = projection(source, &reader.polygons, shape)?;
+    for (part, (rings, raw)) in reader.polygons.iter().enumerate() {
+        let mut polygon = Curves::of_part(part as u32);
+        for ring in rings {
+            polygon.polygon(&ring.iter().map(|p| project(*p)).collect::<Vec<_>>());
+        }
+        curves.append(polygon, &super::curves::IDENTITY);
+        places.push(span(source, raw.get()));
+    }
+    let mut notices = Vec::new();
+    if reader.others > 0 {
+        let message = format!("{} points and lines are left out", reader.others);
+        notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
+    }
+    Ok(Drawing { curves, y_down: false, source: Some(source), places, notices })
+}
+
+/// The arcs of a topology, in degrees.
+fn arcs(source: &Source<'_>, topology: &Topology<'_>) -> Result<Vec<Vec<Point>>, SceneError> {
+    let mut all = Vec::with_capacity(topology.arcs.len());
+    for raw in &topology.arcs {
+        let mut points = positions(source, raw)?;
+        if let Some(Quantisation { scale, translate }) = &topology.transform {
+            // Quantised arcs hold differences.
+            let mut at = [0.0; 2];
+            for point in &mut points {
+                at = [at[0] + point[0], at[1] + point[1]];
+                *point = core::array::from_fn(|d| at[d] * scale[d] + translate[d]);
+            }
+        }
+        all.push(points);
+    }
+    Ok(all)
+}
+
+/// A list of positions; heights are passed over.
+fn positions(source: &Source<'_>, raw: Raw<'_>) -> Result<Vec<Point>, SceneError> {
+    let rows: Vec<Vec<f64>> = parse(source, raw.get())?;
+    rows.into_iter()
+        .map(|row| match row.as_slice() {
+            [x, y, ..] => Ok([*x, *y]),
+            _ => {
+                let error = SceneError::new("map.syntax", format!("a position has {} numbers", row.len()));
+                Err(refuse(source, raw.get(), error.value(row.len().to_string()).allowed("two or three numbers")))
+            }
+        })
+        .collect()
+}
+
+/// The layer of a topology that the scene names, or its only one.
+fn layer<'a>(
+    source: &Source<'_>,
+    raw: Raw<'a>,
+    topology: &Topology<'a>,
+    wanted: Option<&str>,
+) -> Result<Raw<'a>, SceneError> {
+    let names = || topology.objects.keys().map(String::as_str);
+    let list = || names().map(visible).collect::<Vec<_>>().join(", ");
+    let found = match wanted {
+        Some(name) => topology.objects.get(name),
+        None if topology.objects.len() == 1 => topology.objects.values().next(),
+        None => None,
+    };
+    found.copied().ok_or_else(|| {
+        let name = wanted.unwrap_or("");
+        let message = match wanted {
+            Some(name) => format!("there is no layer `{}`", visible(name)),
+            None => format!("the map has {} layers", topology.objects.len()),
+        };
+        let error = SceneError::new("map.unknown_layer", message).value(visible(name)).allowed(list());
+        let error = match wanted {
+            Some(name) => error.nearest(nearest(name, names())),
+            None => error.hint("name one by `layer`"),
+        };
+        refuse(source, &raw.get()[..1], error)
+    })
+}
+
+impl<'a> Reader<'a, '_> {
+    /// An object and what is in it; `taken` where the scene wants all of it.
+    fn object(&mut self, raw: Raw<'a>, taken: bool, depth: usize) -> Result<(), SceneError> {
+        if depth > DEEPEST {
+            let error = SceneError::new("map.depth", format!("collections are nested more than {DEEPEST} deep"));
+            return Err(refuse(self.source, &raw.get()[..1], error.allowed(format!("at most {DEEPEST} levels"))));
+        }
+        if raw.get() == "null" {
+            return Ok(());
+        }
+        let object: Object<'a> = parse(self.source, raw.get())?;
+        let taken = taken || self.is_wanted(&object);
+        match object.kind.as_str() {
+            "FeatureCollection" => {
+                for feature in object.features.unwrap_or_default() {
+                    self.object(feature, taken, depth + 1)?;
+                }
+            }
+            "GeometryCollection" => {
+                for geometry in object.geometries.unwrap_or_default() {
+                    self.object(geometry, taken, depth + 1)?;
+                }
+            }
+            "Feature" => {
+                if let Some(geometry) = object.geometry {
+                    self.object(geometry, taken, depth + 1)?;
+                }
+            }
+            "Polygon" | "MultiPolygon" if !taken => {}
+            "Polygon" => {
+                let rings = self.rings(raw, &object)?;
+                let polygon = self.polygon(raw, rings)?;
+                self.polygons.push((polygon, raw));
+            }
+            "MultiPolygon" => {
+                for rings in parse::<Vec<Raw<'a>>>(self.source, self.rings(raw, &object)?.get())? {
+                    let polygon = self.polygon(raw, rings)?;
+                    self.polygons.push((polygon, raw));
+                }
+            }
+            "Point" | "MultiPoint" | "LineString" | "MultiLineString" => self.others += usize::from(taken),
+            kind => {
+                let error = SceneError::new("map.syntax", format!("`{}` is no type that is read here", visible(kind)));
+                let error = error
+                    .value(visible(kind))
+                    .allowed("FeatureCollection, Feature, GeometryCollection, Polygon, MultiPolygon, Topology");
+                return Err(refuse(self.source, &raw.get()[..1], error));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the scene means this object, by its `id` or by any text among its properties.
+    fn is_wanted(&mut self, object: &Object<'_>) -> bool {
+        let Some(wanted) = self.wanted else { return true };
+        let mut means = false;
+        if let Some(id) = &object.id {
+            means |= id.as_str().map_or_else(|| id.to_string(), String::from) == wanted;
+        }
+        for (key, value) in object.properties.iter().flatten() {
+            if let Some(text) = value.as_str() {
+                means |= text == wanted;
+                if key.to_lowercase().contains("name") && self.names.len() < 100_000 {
+                    self.names.push(text.to_string());
+                }
+            }
+        }
+        means
+    }
+
+    /// The coordinates of a geometry, or its arcs in a topology.
+    fn rings(&self, raw: Raw<'a>, object: &Object<'a>) -> Result<Raw<'a>, SceneError> {
+        let (field, name) =
+            if self.arcs.is_some() { (object.arcs, "arcs") } else { (object.coordinates, "coordinates") };
+        field.ok_or_else(|| {
+            let error = SceneError::new("map.syntax", format!("a {} has no `{name}`", object.kind)).allowed(name);
+            refuse(self.source, raw.get(), error)
+        })
+    }
+
+    /// The rings of one polygon, without the repeated end.
+    fn polygon(&self, geometry: Raw<'_>, raw: Raw<'a>) -> Result<Vec<Vec<Point>>, SceneError> {
+        let rings: Vec<Raw<'a>> = parse(self.source, raw.get())?;
+        let mut out = Vec::with_capacity(rings.len());
+        for ring in rings {
+            let mut points = match &self.arcs {
+                None => positions(self.source, ring)?,
+                Some(arcs) => {
+                    let mut points: Vec<Point> = Vec::new();
+                    for index in parse::<Vec<i64>>(self.source, ring.get())? {
+                        // ~k is arc k backwards.
+                        let (place, backwards) = if index < 0 { (!index, true) } else { (index, false) };
+                        let Some(arc) = usize::try_from(place).ok().and_then(|k| arcs.get(k)) else {
+                            let error =
+                                SceneError::new("map.arc", format!("there is no arc {index}")).value(index.to_string());
+                            let n = arcs.len() as i64;
+                            return Err(refuse(
+                                self.source,
+                                geometry.get(),
+                                error.allowed(format!("{} to {}", -n, n - 1)),
+                            ));
+                        };
+                        // The first point of an arc repeats the last of the one before.
+                        points.pop();
+                        if backwards { points.extend(arc.iter().rev()) } else { points.extend(arc) }
+                    }
+                    points
+                }
+            };
+            if points.first() != points.last() || points.len() < 4 {
+                let error = SceneError::new("map.syntax", "a ring is not closed").value(points.len().to_string());
+                let allowed = "four or more positions, the last like the first";
+                return Err(refuse(self.source, ring.get(), error.allowed(allowed)));
+            }
+            points.pop();
+            out.push(points);
+        }
+        Ok(out)
+    }
+
+    /// Why no polygon was found.
+    fn nothing(&self, raw: Raw<'_>) -> SceneError {
+        let error = match self.wanted {
+            Some(name) => SceneError::new("map.unknown_feature", format!("no polygon belongs to `{}`", visible(name)))
+                .value(visible(name))
+                .allowed("the `id` of a feature, or a text among its properties")
+                .nearest(nearest(name, self.names.iter().map(String::as_str))),
+            None => SceneError::new("shape.no_area", "the map holds no polygon").value("0"),
+        };
+        refuse(self.source, &raw.get()[..1], error)
+    }
+}
+
+/// From degrees to the plane; the middle of the polygons keeps its proportions.
+fn projection(
+    source: &Source<'_>,
+    polygons: &[(Vec<Vec<Point>>, Raw<'_>)],
+    shape: &Values,
+) -> Result<Box<dyn Fn(Point) -> Point>, SceneError> {
+    let kind = shape.text("projection").unwrap_or("equirectangular");
+    if kind == "none" {
+        return Ok(Box::new(|p| p));
+    }
+    // The poles lie at infinity in Mercator's projection.
+    let most = if kind == "mercator" { 89.0 } else { 90.0 };
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (rings, raw) in polygons {
+        for point in rings.iter().flatten() {
+            if !(point[1].abs() <= most && point[0].abs() <= 540.0) {
+                let error =
+                    SceneError::new("map.range", format!("({}, {}) is no place on the globe", point[0], point[1]));
+                let error = error.value(format!("{}, {}", point[0], point[1]));
+                let allowed = format!("latitudes from -{most} to {most}, longitudes from -540 to 540");
+                let hint = "`projection = \"none\"` takes coordinates as they are";
+                return Err(refuse(source, raw.get(), error.allowed(allowed).hint(hint)));
+            }
+            low = smaller(low, point[1]);
+            high = larger(high, point[1]);
+        }
+    }
+    let radians = |degrees: f64| degrees / 180.0 * core::f64::consts::PI;
+    if kind == "mercator" {
+        let quarter = core::f64::consts::FRAC_PI_4;
+        return Ok(Box::new(move |[x, y]| [radians(x), libm::log(libm::tan(quarter + 0.5 * radians(y)))]));
+    }
+    let shrink = libm::cos(radians(0.5 * (low + high)));
+    Ok(Box::new(move |[x, y]| [x * shrink, y]))
+}

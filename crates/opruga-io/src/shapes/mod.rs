@@ -1,0 +1,177 @@
+//! Shapes from files: drawings become outlines, and outlines bodies.
+//!
+//! ```text
+//! svg, map, text, bitmap ──→ curves ──drawing──→ rings at the wanted size and spacing ──┐
+//! obj, stl, ply, gltf ─────→ triangles ──→ welded, checked, turned outward, sized ───────┴→ mesh
+//! ```
+//! Every reader tells what is wrong with the line or byte of its file. Nothing is repaired unless the scene asks for it, and then it is counted.
+
+mod bitmap;
+mod curves;
+mod drawing;
+mod gltf;
+mod json;
+mod map;
+mod obj;
+mod ply;
+mod stl;
+mod svg;
+mod svg_path;
+mod text;
+mod triangles;
+
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use opruga_core::spec::Values;
+use opruga_mesh::outline::{self, Ring};
+use opruga_mesh::{Mesh, MeshError};
+use opruga_world::shapes::{self, Made, Transform};
+use std::any::Any;
+use std::sync::Arc;
+
+/// Gives the bytes of a file by the name that the scene uses.
+type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
+
+/// The contents of a shape's file, checked, before a mesh is made of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Loaded {
+    /// What is odd about it, counted.
+    pub(crate) notices: Vec<SceneError>,
+    content: Content,
+}
+
+#[derive(Clone, Debug)]
+enum Content {
+    /// Rings at their final size, and the spacing of a filling.
+    Outline { rings: Vec<Ring>, filling: Option<f64> },
+    /// A surface at its final size, and the spacing of a filling.
+    Surface { mesh: Box<Mesh<3>>, filling: Option<f64> },
+}
+
+/// Why a shape's file is refused.
+#[derive(Debug)]
+pub(crate) struct Problem {
+    /// The field of the shape to blame, where the error has no place in the file itself.
+    pub(crate) field: &'static str,
+    /// What is wrong.
+    pub(crate) about: SceneError,
+}
+
+impl Problem {
+    fn new(field: &'static str, about: SceneError) -> Problem {
+        Problem { field, about }
+    }
+}
+
+/// A problem in the file.
+impl From<SceneError> for Problem {
+    fn from(about: SceneError) -> Problem {
+        Problem { field: "file", about }
+    }
+}
+
+/// Reads the file of a shape; `open` gives the bytes of a file by the name that the scene uses.
+///
+/// # Errors
+/// The first that is found, with its place in the file.
+pub(crate) fn load(shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
+    let name = shape.text("file").unwrap_or("").to_string();
+    let bytes = open(&name)?;
+    match shape.kind() {
+        "svg" => {
+            let source = text_of(&name, &bytes)?;
+            drawing::loaded(svg::read(&source, shape.text("path"))?, shape)
+        }
+        "map" => {
+            let source = text_of(&name, &bytes)?;
+            drawing::loaded(map::read(&source, shape)?, shape)
+        }
+        "text" => drawing::loaded(text::read(&name, &bytes, shape)?, shape),
+        "bitmap" => {
+            let read = bitmap::read(&bytes, shape).map_err(|e| SceneError { file: name.clone(), ..e })?;
+            drawing::loaded(read, shape)
+        }
+        "surface" => surface(&name, &bytes, shape, open),
+        kind => Err(SceneError::new("scene.unknown_kind", format!("`{kind}` reads no file")).into()),
+    }
+}
+
+/// A surface in the format that its contents, or else its ending, tell.
+fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+    let text = || text_of(name, bytes);
+    let named = |error: SceneError| SceneError { file: name.to_string(), ..error };
+    match ending.as_str() {
+        "obj" => {
+            let source = text()?;
+            triangles::loaded(obj::read(&source)?, name, Some(&source), shape)
+        }
+        "stl" if stl::is_binary(bytes) => triangles::loaded(stl::read_binary(bytes).map_err(named)?, name, None, shape),
+        "stl" => {
+            let source = text()?;
+            triangles::loaded(stl::read_text(&source)?, name, Some(&source), shape)
+        }
+        "ply" => triangles::loaded(ply::read(name, bytes)?, name, None, shape),
+        "gltf" | "glb" => {
+            let (json, binary) = gltf::chunks(name, bytes)?;
+            let source = text_of(name, json)?;
+            triangles::loaded(gltf::read(&source, binary, open)?, name, None, shape)
+        }
+        _ => {
+            let error =
+                SceneError::new("shape.format", format!("files ending in `.{}` cannot be read", visible(&ending)));
+            Err(error.value(visible(name)).allowed("a file ending in .obj, .stl, .ply, .gltf, .glb").into())
+        }
+    }
+}
+
+/// The text of a file.
+fn text_of<'a>(name: &'a str, bytes: &'a [u8]) -> Result<Source<'a>, SceneError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match core::str::from_utf8(bytes) {
+        Ok(text) => Ok(Source { file: name, text }),
+        Err(e) => {
+            let good = core::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or("");
+            let byte = bytes.get(good.len()).copied().unwrap_or(0);
+            let error = SceneError::new("shape.encoding", format!("byte 0x{byte:02x} is no UTF-8"));
+            let error = Source { file: name, text: good }.mark(error, good.len(), good.len());
+            let error = error.value(format!("0x{byte:02x}"));
+            Err(error.allowed("a text in UTF-8").hint("save it as UTF-8"))
+        }
+    }
+}
+
+impl Loaded {
+    /// About how many nodes the body will have.
+    pub(crate) fn node_count(&self) -> u64 {
+        match &self.content {
+            Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
+            Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
+            Content::Surface { mesh, filling: Some(spacing) } => mesh.lattice_estimate(*spacing),
+            Content::Surface { mesh, filling: None } => mesh.nodes() as u64,
+        }
+    }
+
+    /// The mesh, scaled and turned.
+    ///
+    /// # Errors
+    /// What fillings refuse.
+    pub(crate) fn mesh<const D: usize>(&self, transform: &Transform<'_>) -> Result<Made<D>, SceneError> {
+        let refuse = |refusal: MeshError| SceneError::new("scene.shape", refusal.to_string());
+        let made: Box<dyn Any> = match &self.content {
+            Content::Outline { rings, filling } => Box::new(match filling {
+                None => outline::skin(rings).map_err(refuse)?,
+                Some(spacing) => outline::filled(rings, *spacing).map_err(|e| drawing::refused(&e))?.0,
+            }),
+            Content::Surface { mesh, filling } => Box::new(match filling {
+                None => (**mesh).clone(),
+                Some(spacing) => mesh.lattice_filling(*spacing).map_err(refuse)?,
+            }),
+        };
+        let Ok(mut mesh) = made.downcast::<Mesh<D>>() else {
+            return Err(SceneError::new("scene.dimension", format!("this shape does not exist in {D}D")));
+        };
+        shapes::place(&mut mesh, transform).map_err(refuse)?;
+        Ok(Made { mesh: *mesh, flipped: false })
+    }
+}

@@ -1,0 +1,339 @@
+//! PLY: elements with properties, as text or as bytes of either order.
+//!
+//! Read are the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons become fans. Other
+//! properties and elements are passed over by the sizes that the header gives.
+//!
+//! # Source
+//! G. Turk, The PLY Polygon File Format (1994).
+
+use super::triangles::Triangles;
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Kind {
+    fn named(word: &str) -> Option<Kind> {
+        Some(match word {
+            "char" | "int8" => Kind::I8,
+            "uchar" | "uint8" => Kind::U8,
+            "short" | "int16" => Kind::I16,
+            "ushort" | "uint16" => Kind::U16,
+            "int" | "int32" => Kind::I32,
+            "uint" | "uint32" => Kind::U32,
+            "float" | "float32" => Kind::F32,
+            "double" | "float64" => Kind::F64,
+            _ => return None,
+        })
+    }
+    fn size(self) -> usize {
+        match self {
+            Kind::I8 | Kind::U8 => 1,
+            Kind::I16 | Kind::U16 => 2,
+            Kind::I32 | Kind::U32 | Kind::F32 => 4,
+            Kind::F64 => 8,
+        }
+    }
+}
+
+struct Property {
+    name: String,
+    /// The type of the count, for a list.
+    count: Option<Kind>,
+    kind: Kind,
+}
+
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Format {
+    Text,
+    Little,
+    Big,
+}
+
+/// Reads the file.
+///
+/// # Errors
+/// `ply.syntax` with the line of the header or of the text; `ply.size` where the header promises more than the file holds, before anything is
+/// allocated; `mesh.index`, `mesh.degenerate_face`, with the number of the element and, in binary files, the byte.
+pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
+    let (format, elements, body) = header(file, bytes)?;
+    let mut values = Reader { file, bytes, at: body, format };
+    let mut found = Triangles::default();
+    let (mut seen_vertices, mut seen_faces) = (false, false);
+    for element in &elements {
+        let least: usize = element
+            .properties
+            .iter()
+            .map(|p| if format == Format::Text { 2 } else { p.count.unwrap_or(p.kind).size() })
+            .sum();
+        let (needed, left) = (u128::from(element.count) * least as u128, (bytes.len() + 1).saturating_sub(values.at));
+        if needed > left as u128 {
+            let message = format!(
+                "the header promises {} of `{}`, but only {left} bytes follow",
+                element.count,
+                visible(&element.name)
+            );
+            let error = SceneError::new("ply.size", message).value(element.count.to_string());
+            let most = left / least.max(1);
+            return Err(SceneError { file: file.into(), ..error }
+                .allowed(format!("at most {most}"))
+                .hint("the file is cut off"));
+        }
+        let place = |name: &str| element.properties.iter().position(|p| p.name == name && p.count.is_none());
+        match element.name.as_str() {
+            "vertex" => {
+                seen_vertices = true;
+                let (Some(x), Some(y), Some(z)) = (place("x"), place("y"), place("z")) else {
+                    let error = SceneError::new("ply.syntax", "`vertex` has no properties x, y, z").value("vertex");
+                    return Err(SceneError { file: file.into(), ..error });
+                };
+                for _ in 0..element.count {
+                    let mut row = [0.0; 3];
+                    for (k, property) in element.properties.iter().enumerate() {
+                        let list = values.property(property)?;
+                        for (axis, wanted) in [x, y, z].into_iter().enumerate() {
+                            if wanted == k {
+                                row[axis] = list.first().copied().unwrap_or(0.0);
+                            }
+                        }
+                    }
+                    if let Some(bad) = row.iter().find(|x| !x.is_finite()) {
+                        let error = values.error(
+                            "scene.not_finite",
+                            format!("a coordinate of vertex {} is {bad}", found.positions.len()),
+                        );
+                        return Err(error.value(bad.to_string()).allowed("a finite number"));
+                    }
+                    found.positions.push(row);
+                }
+            }
+            "face" => {
+                seen_faces = true;
+                let list = element
+                    .properties
+                    .iter()
+                    .position(|p| p.count.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index"));
+                let Some(wanted) = list else {
+                    let error = SceneError::new("ply.syntax", "`face` has no list vertex_indices").value("face");
+                    return Err(SceneError { file: file.into(), ..error });
+                };
+                for face in 0..element.count {
+                    for (k, property) in element.properties.iter().enumerate() {
+                        let row = values.property(property)?;
+                        if k != wanted {
+                            continue;
+                        }
+                        let count = found.positions.len();
+                        let mut corners = Vec::with_capacity(row.len());
+                        for index in row {
+                            if !(index >= 0.0 && index < count as f64) {
+                                let error = values.error("mesh.index", format!("face {face} names vertex {index}"));
+                                return Err(error
+                                    .value(index.to_string())
+                                    .allowed(format!("0 to {}", count.saturating_sub(1))));
+                            }
+                            corners.push(index as u32);
+                        }
+                        if let Err(why) = found.polygon(&corners) {
+                            let error = values.error("mesh.degenerate_face", format!("{why}: face {face}"));
+                            return Err(error.value(format!("{corners:?}")));
+                        }
+                    }
+                }
+            }
+            _ => {
+                for _ in 0..element.count {
+                    for property in &element.properties {
+                        values.property(property)?;
+                    }
+                }
+            }
+        }
+    }
+    if !seen_vertices || !seen_faces {
+        let missing = if seen_vertices { "face" } else { "vertex" };
+        let error =
+            SceneError::new("ply.syntax", format!("there is no element `{missing}` before its use")).value(missing);
+        return Err(SceneError { file: file.into(), ..error });
+    }
+    let rest = bytes.get(values.at..).unwrap_or(&[]);
+    if format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
+        let error = values.error("ply.size", format!("{} bytes follow the last element", rest.len()));
+        return Err(error.value(rest.len().to_string()).allowed("0 bytes"));
+    }
+    Ok(found)
+}
+
+/// Format, elements, and where they begin.
+fn header(file: &str, bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), SceneError> {
+    let refuse = |from: usize, end: usize, message: String, allowed: &str| {
+        // Binary contents may follow; the header itself is a text.
+        let good = bytes[..end].iter().position(|b| !b.is_ascii()).unwrap_or(end);
+        let text = core::str::from_utf8(&bytes[..good]).unwrap_or("");
+        let value = text.get(from..).unwrap_or("").trim().to_string();
+        let error = Source { file, text }.mark(SceneError::new("ply.syntax", message), from, end);
+        error.value(visible(&value)).allowed(allowed)
+    };
+    let (mut format, mut elements): (Option<Format>, Vec<Element>) = (None, Vec::new());
+    let mut at = 0;
+    let mut first = true;
+    loop {
+        let from = at;
+        let Some(length) = bytes[at..].iter().take(4096).position(|b| *b == b'\n') else {
+            return Err(refuse(from, bytes.len().min(from + 80), "the header has no end".into(), "end_header"));
+        };
+        at += length + 1;
+        let line = core::str::from_utf8(&bytes[from..at - 1]).unwrap_or("\u{fffd}").trim();
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let bad = |message: &str, allowed: &str| refuse(from, at - 1, message.into(), allowed);
+        if first && line != "ply" {
+            return Err(bad("the file does not begin with `ply`", "ply"));
+        }
+        match words.as_slice() {
+            ["ply"] if first => {}
+            ["format", kind, "1.0"] if format.is_none() => {
+                format = Some(match *kind {
+                    "ascii" => Format::Text,
+                    "binary_little_endian" => Format::Little,
+                    "binary_big_endian" => Format::Big,
+                    _ => return Err(bad("the format is unknown", "ascii, binary_little_endian, binary_big_endian")),
+                });
+            }
+            ["comment" | "obj_info", ..] => {}
+            ["element", name, count] => {
+                let Ok(count) = count.parse() else { return Err(bad("the count is no whole number", "0 or more")) };
+                elements.push(Element { name: (*name).to_string(), count, properties: Vec::new() });
+            }
+            ["property", "list", count, kind, name] => {
+                let (Some(count), Some(kind), Some(element)) =
+                    (Kind::named(count), Kind::named(kind), elements.last_mut())
+                else {
+                    return Err(bad("the property cannot be read", "property list TYPE TYPE name, below an element"));
+                };
+                if matches!(count, Kind::F32 | Kind::F64) {
+                    return Err(bad("the count of a list is no whole number", "a whole type"));
+                }
+                element.properties.push(Property { name: (*name).to_string(), count: Some(count), kind });
+            }
+            ["property", kind, name] => {
+                let (Some(kind), Some(element)) = (Kind::named(kind), elements.last_mut()) else {
+                    return Err(bad("the property cannot be read", "property TYPE name, below an element"));
+                };
+                element.properties.push(Property { name: (*name).to_string(), count: None, kind });
+            }
+            ["end_header"] => break,
+            _ => return Err(bad("this line cannot be read", "format, comment, element, property, end_header")),
+        }
+        first = false;
+        if elements.len() > 1000 || elements.iter().map(|e| e.properties.len()).sum::<usize>() > 10_000 {
+            return Err(bad("the header is too long", "at most 1000 elements and 10000 properties"));
+        }
+    }
+    let Some(format) = format else {
+        return Err(refuse(0, 3, "the header names no format".into(), "format ascii 1.0"));
+    };
+    Ok((format, elements, at))
+}
+
+/// The values after the header.
+struct Reader<'a> {
+    file: &'a str,
+    bytes: &'a [u8],
+    at: usize,
+    format: Format,
+}
+
+impl Reader<'_> {
+    /// An error where the reader is: a line of a text, a byte of a binary file.
+    fn error(&self, code: &'static str, message: String) -> SceneError {
+        if self.format == Format::Text {
+            let good = self.bytes[..self.at].iter().position(|b| !b.is_ascii()).unwrap_or(self.at);
+            let text = core::str::from_utf8(&self.bytes[..good]).unwrap_or("");
+            let from = text.trim_end().rfind('\n').map_or(0, |k| k + 1);
+            return Source { file: self.file, text }.mark(SceneError::new(code, message), from, text.trim_end().len());
+        }
+        let error = SceneError::new(code, format!("{message}, before byte {}", self.at));
+        SceneError { file: self.file.to_string(), ..error }
+    }
+
+    /// The values of one property: one, or those of a list.
+    fn property(&mut self, property: &Property) -> Result<Vec<f64>, SceneError> {
+        let Some(count) = property.count else { return Ok(vec![self.value(property.kind)?]) };
+        let length = self.value(count)?;
+        let least = if self.format == Format::Text { 1 } else { property.kind.size() };
+        let most = self.bytes.len().saturating_sub(self.at) / least + 1;
+        if !(length >= 0.0 && length <= most as f64) {
+            let error = self.error("ply.size", format!("a list of `{}` has {length} values", visible(&property.name)));
+            return Err(error.value(length.to_string()).allowed(format!("0 to {most}, as many as the file can hold")));
+        }
+        (0..length as u64).map(|_| self.value(property.kind)).collect()
+    }
+
+    fn value(&mut self, kind: Kind) -> Result<f64, SceneError> {
+        if self.format == Format::Text {
+            return self.word(kind);
+        }
+        let size = kind.size();
+        let Some(bytes) = self.bytes.get(self.at..self.at + size) else {
+            let error = self.error("ply.size", "the file ends in the middle of an element".into());
+            return Err(error.value(self.bytes.len().to_string()).hint("the file is cut off"));
+        };
+        let mut word = [0u8; 8];
+        word[..size].copy_from_slice(bytes);
+        if self.format == Format::Big {
+            word[..size].reverse();
+        }
+        self.at += size;
+        let [a, b, c, d, ..] = word;
+        Ok(match kind {
+            Kind::I8 => f64::from(a as i8),
+            Kind::U8 => f64::from(a),
+            Kind::I16 => f64::from(i16::from_le_bytes([a, b])),
+            Kind::U16 => f64::from(u16::from_le_bytes([a, b])),
+            Kind::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+            Kind::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+            Kind::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+            Kind::F64 => f64::from_le_bytes(word),
+        })
+    }
+
+    fn word(&mut self, kind: Kind) -> Result<f64, SceneError> {
+        let rest = &self.bytes[self.at..];
+        let skipped = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
+        let length = rest[skipped..].iter().take_while(|b| !b.is_ascii_whitespace()).count();
+        let word = core::str::from_utf8(&rest[skipped..skipped + length]).unwrap_or("\u{fffd}").to_string();
+        self.at += skipped + length;
+        if word.is_empty() {
+            return Err(self
+                .error("ply.size", "the file ends in the middle of an element".into())
+                .value("end of file"));
+        }
+        let parsed = match kind {
+            Kind::F32 | Kind::F64 => word.parse::<f64>().ok(),
+            _ => word.parse::<i64>().ok().map(|x| x as f64),
+        };
+        parsed.ok_or_else(|| {
+            let allowed =
+                if matches!(kind, Kind::F32 | Kind::F64) { "a number with a decimal point" } else { "a whole number" };
+            self.error("shape.number", format!("`{}` is no number", visible(&word)))
+                .value(visible(&word))
+                .allowed(allowed)
+        })
+    }
+}

@@ -1,0 +1,153 @@
+//! STL: triangles with corners of their own, as text or as bytes.
+//!
+//! A file is binary where its size is the one that its header promises, or where it cannot be a text. The normals of the file are passed over: the corners tell the side.
+//! Vertices at the same place are joined, since the format cannot say that triangles share them.
+//!
+//! # Source
+//! 3D Systems, StereoLithography Interface Specification (1989).
+
+use super::obj::number;
+use super::triangles::{Places, Triangles};
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+
+/// Header and count.
+const HEAD: usize = 84;
+/// A normal, three corners, two spare bytes.
+const EACH: usize = 50;
+
+/// Whether the bytes are a binary STL file, whole or cut off.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(HEAD)];
+    promised(bytes).is_some_and(|size| size == bytes.len() as u64)
+        || !bytes.trim_ascii_start().starts_with(b"solid")
+        || head.contains(&0)
+}
+
+/// The size that the header promises.
+fn promised(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(80..HEAD)?.first_chunk::<4>()?;
+    Some(HEAD as u64 + EACH as u64 * u64::from(u32::from_le_bytes(*count)))
+}
+
+/// Reads a binary file.
+///
+/// # Errors
+/// `stl.size` before anything is allocated; `scene.not_finite` with the byte.
+pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
+    match promised(bytes) {
+        Some(size) if size == bytes.len() as u64 => {}
+        Some(size) => {
+            let count = (size - HEAD as u64) / EACH as u64;
+            let message =
+                format!("at byte 80 the header promises {count} triangles, but the file has {} bytes", bytes.len());
+            let error = SceneError::new("stl.size", message).value(bytes.len().to_string());
+            return Err(error.allowed(format!("{size} bytes")).hint("the file is cut off, or it is no STL"));
+        }
+        None => {
+            let error = SceneError::new("stl.size", format!("the file has {} bytes", bytes.len()));
+            return Err(error
+                .value(bytes.len().to_string())
+                .allowed("84 bytes and 50 for every triangle, or a text that begins with `solid`"));
+        }
+    }
+    let count = (bytes.len() - HEAD) / EACH;
+    let mut found = Triangles { soup: true, places: Places::Bytes { first: HEAD, each: EACH }, ..Triangles::default() };
+    found.positions.reserve_exact(3 * count);
+    found.triangles.reserve_exact(count);
+    for (k, record) in bytes[HEAD..].chunks_exact(EACH).enumerate() {
+        for (corner, field) in record[12..48].chunks_exact(12).enumerate() {
+            let mut position = [0.0; 3];
+            for (axis, word) in field.chunks_exact(4).enumerate() {
+                let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+                if !x.is_finite() {
+                    let byte = HEAD + EACH * k + 12 + 12 * corner + 4 * axis;
+                    let error = SceneError::new("scene.not_finite", format!("a coordinate is {x}, at byte {byte}"));
+                    return Err(error.value(x.to_string()).allowed("a finite number"));
+                }
+                position[axis] = f64::from(x);
+            }
+            found.positions.push(position);
+        }
+        let first = 3 * k as u32;
+        found.triangles.push([first, first + 1, first + 2]);
+    }
+    Ok(found)
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// `stl.syntax` with the line.
+pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
+    let mut found = Triangles { soup: true, ..Triangles::default() };
+    let mut lines = Vec::new();
+    // What has to follow: solid, facet, outer loop, three vertices, endloop, endfacet, and facet or endsolid.
+    let mut state = "solid";
+    let (mut corners, mut begun) = (0u32, 0usize);
+    let mut start = 0;
+    for line in source.text.split_inclusive('\n') {
+        let here = start;
+        start += line.len();
+        let text = line.trim();
+        if text.is_empty() {
+            continue;
+        }
+        let mut words = text.split_ascii_whitespace();
+        let (first, second) = (words.next().unwrap_or(""), text.split_ascii_whitespace().nth(1).unwrap_or(""));
+        let from = here + (text.as_ptr() as usize - line.as_ptr() as usize);
+        let refuse = |error: SceneError| source.mark(error, from, from + text.len());
+        let lower = first.to_ascii_lowercase();
+        let next = match (state, lower.as_str(), second.to_ascii_lowercase().as_str()) {
+            ("solid", "solid", _) => "facet",
+            ("facet", "facet", _) => {
+                begun = here;
+                "outer loop"
+            }
+            ("facet", "endsolid", _) => "solid",
+            ("outer loop", "outer", "loop") => {
+                corners = 0;
+                "vertex"
+            }
+            ("vertex", "vertex", _) if corners < 3 => {
+                let mut position = [0.0; 3];
+                let mut count = 0;
+                for part in words {
+                    let at = here + (part.as_ptr() as usize - line.as_ptr() as usize);
+                    let x = number(part).map_err(|e| source.mark(e.value(visible(part)), at, at + part.len()))?;
+                    if count < 3 {
+                        position[count] = x;
+                    }
+                    count += 1;
+                }
+                if count != 3 {
+                    let error = SceneError::new("stl.syntax", format!("a vertex has {count} coordinates"));
+                    return Err(refuse(error.value(count.to_string()).allowed("vertex x y z")));
+                }
+                found.positions.push(position);
+                corners += 1;
+                if corners == 3 { "endloop" } else { "vertex" }
+            }
+            ("endloop", "endloop", _) => "endfacet",
+            ("endfacet", "endfacet", _) => {
+                let n = found.positions.len() as u32;
+                found.triangles.push([n - 3, n - 2, n - 1]);
+                lines.push(begun as u32);
+                "facet"
+            }
+            _ => {
+                let error = SceneError::new("stl.syntax", format!("`{}` does not belong here", visible(text)));
+                let allowed = if state == "facet" { "facet normal … or endsolid".into() } else { state.to_string() };
+                return Err(refuse(error.value(visible(text)).allowed(allowed)));
+            }
+        };
+        state = next;
+    }
+    if state != "solid" {
+        let end = source.text.trim_end().len();
+        let error = source.mark(SceneError::new("stl.syntax", "the file ends in the middle"), end, end);
+        return Err(error.value("end of file").allowed(if state == "facet" { "endsolid" } else { state }));
+    }
+    found.places = Places::Lines(lines);
+    Ok(found)
+}

@@ -1,0 +1,110 @@
+//! The path language of SVG: segments drawn by a pen.
+
+use super::curves::{Curves, Point};
+use svgtypes::PathSegment;
+
+/// The pen of the path language: where it is, and what a smooth curve goes on from.
+pub(super) struct Pen<'c> {
+    curves: &'c mut Curves,
+    pub(super) at: Point,
+    /// The last control point, and whether its curve was cubic.
+    control: Option<(Point, bool)>,
+    /// Whether a subpath has a start.
+    begun: bool,
+    /// Whether lines have been drawn from it that are not closed yet.
+    drawing: bool,
+    /// Subpaths that were left open.
+    pub(super) open: usize,
+}
+
+impl<'c> Pen<'c> {
+    /// A pen at the origin.
+    pub(super) fn on(curves: &'c mut Curves) -> Pen<'c> {
+        Pen { curves, at: [0.0; 2], control: None, begun: false, drawing: false, open: 0 }
+    }
+
+    /// Ends a subpath that was not closed.
+    pub(super) fn leave(&mut self) {
+        let closed = self.curves.start() == self.at;
+        self.open += usize::from(self.drawing && !closed);
+        self.drawing = false;
+    }
+
+    /// Draws one segment.
+    pub(super) fn draw(&mut self, segment: PathSegment) {
+        let from = self.at;
+        let place = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [from[0] + x, from[1] + y] };
+        // A smooth curve mirrors the control point of the curve of its own kind before it.
+        let mirrored = |cubic: bool| match self.control {
+            Some((p, kind)) if kind == cubic => [2.0 * from[0] - p[0], 2.0 * from[1] - p[1]],
+            _ => from,
+        };
+        let mut control = None;
+        let mut draws = true;
+        // After a close the next subpath begins where the last one did.
+        if !self.begun && !matches!(segment, PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }) {
+            self.curves.move_to(from);
+            self.begun = true;
+        }
+        match segment {
+            PathSegment::MoveTo { abs, x, y } => {
+                let to = place(abs, x, y);
+                self.leave();
+                self.curves.move_to(to);
+                self.at = to;
+                self.begun = true;
+                draws = false;
+            }
+            PathSegment::LineTo { abs, x, y } => self.line(place(abs, x, y)),
+            PathSegment::HorizontalLineTo { abs, x } => self.line([if abs { x } else { from[0] + x }, from[1]]),
+            PathSegment::VerticalLineTo { abs, y } => self.line([from[0], if abs { y } else { from[1] + y }]),
+            PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
+                let (p, q) = (place(abs, x1, y1), place(abs, x2, y2));
+                self.cubic(p, q, place(abs, x, y));
+                control = Some((q, true));
+            }
+            PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
+                let (p, q) = (mirrored(true), place(abs, x2, y2));
+                self.cubic(p, q, place(abs, x, y));
+                control = Some((q, true));
+            }
+            PathSegment::Quadratic { abs, x1, y1, x, y } => {
+                let p = place(abs, x1, y1);
+                self.quadratic(p, place(abs, x, y));
+                control = Some((p, false));
+            }
+            PathSegment::SmoothQuadratic { abs, x, y } => {
+                let p = mirrored(false);
+                self.quadratic(p, place(abs, x, y));
+                control = Some((p, false));
+            }
+            PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
+                let to = place(abs, x, y);
+                self.curves.arc_to([rx, ry], x_axis_rotation / 180.0 * core::f64::consts::PI, large_arc, sweep, to);
+                self.at = to;
+            }
+            PathSegment::ClosePath { .. } => {
+                self.at = self.curves.start();
+                draws = false;
+                (self.begun, self.drawing) = (false, false);
+            }
+        }
+        self.control = control;
+        self.drawing |= draws;
+    }
+
+    fn line(&mut self, to: Point) {
+        self.curves.line_to(to);
+        self.at = to;
+    }
+
+    fn cubic(&mut self, p: Point, q: Point, to: Point) {
+        self.curves.cubic_to(p, q, to);
+        self.at = to;
+    }
+
+    fn quadratic(&mut self, p: Point, to: Point) {
+        self.curves.quadratic_to(p, to);
+        self.at = to;
+    }
+}

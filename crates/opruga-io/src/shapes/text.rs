@@ -1,0 +1,80 @@
+//! Texts: the outlines of letters in a font.
+
+use super::Problem;
+use super::curves::Curves;
+use super::drawing::Drawing;
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::Values;
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
+
+/// The pen of a font, from where a letter begins.
+struct Pen {
+    curves: Curves,
+    from: f64,
+    /// Where the contour began.
+    start: [f64; 2],
+}
+
+impl Pen {
+    fn place(&self, x: f32, y: f32) -> [f64; 2] {
+        [self.from + f64::from(x), f64::from(y)]
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.start = self.place(x, y);
+        self.curves.move_to(self.start);
+    }
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.curves.line_to(self.place(x, y));
+    }
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.curves.quadratic_to(self.place(x1, y1), self.place(x, y));
+    }
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.curves.cubic_to(self.place(x1, y1), self.place(x2, y2), self.place(x, y));
+    }
+    fn close(&mut self) {
+        self.curves.line_to(self.start);
+    }
+}
+
+/// Reads the letters of `text` from a font in OpenType or TrueType, one part each, set on one line with the kerning of the table `kern`.
+///
+/// # Errors
+/// `font.syntax` for a file that is no font, `font.no_glyph` for a letter that it lacks.
+pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Problem> {
+    let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
+    let face = Face::parse(bytes, 0).map_err(|e| {
+        let error = SceneError::new("font.syntax", format!("this is no font that can be read: {e}"));
+        named(error.value(format!("{} bytes", bytes.len())).allowed("OpenType or TrueType (.ttf, .otf)"))
+    })?;
+    let text = shape.text("text").unwrap_or("");
+    let mut pen = Pen { curves: Curves::default(), from: 0.0, start: [0.0; 2] };
+    let mut last: Option<GlyphId> = None;
+    for (part, letter) in text.chars().enumerate() {
+        let refuse = |code, message: String| {
+            Problem::new("text", SceneError::new(code, message).value(visible(&letter.to_string())))
+        };
+        if letter.is_control() {
+            return Err(refuse("font.no_glyph", format!("`{}` is no letter", visible(&letter.to_string()))));
+        }
+        let Some(glyph) = face.glyph_index(letter) else {
+            let message = format!("the font `{}` has no letter `{}`", visible(file), visible(&letter.to_string()));
+            return Err(refuse("font.no_glyph", message));
+        };
+        if let Some(last) = last {
+            let tables = face.tables().kern.iter().flat_map(|kern| kern.subtables);
+            let kerning = tables.filter(|t| t.horizontal && !t.variable).find_map(|t| t.glyphs_kerning(last, glyph));
+            pen.from += f64::from(kerning.unwrap_or(0));
+        }
+        let mut own = Pen { curves: Curves::of_part(part as u32), from: pen.from, start: [0.0; 2] };
+        // Spaces have no outline.
+        let _ = face.outline_glyph(glyph, &mut own);
+        pen.curves.append(own.curves, &super::curves::IDENTITY);
+        pen.from += f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
+        last = Some(glyph);
+    }
+    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places: Vec::new(), notices: Vec::new() })
+}

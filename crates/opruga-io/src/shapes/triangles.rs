@@ -1,0 +1,301 @@
+//! Triangles as a file gives them, and what becomes of them: a closed surface, cloth, or a filled body.
+
+use super::curves::larger;
+use super::{Content, Loaded, Problem};
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use opruga_core::spec::Values;
+use opruga_mesh::{Mesh, MeshError};
+use std::collections::BTreeMap;
+
+/// A triangle whose area is below this part of its longest edge squared is refused.
+const THIN: f64 = 1e-10;
+
+/// What a reader found.
+#[derive(Debug, Default)]
+pub(super) struct Triangles {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Where each triangle stands in the file.
+    pub(super) places: Places,
+    /// Named sets of vertices.
+    pub(super) groups: BTreeMap<String, Vec<u32>>,
+    /// Whether the format gives every triangle corners of its own.
+    pub(super) soup: bool,
+    pub(super) notices: Vec<SceneError>,
+}
+
+/// Where triangles stand in a file.
+#[derive(Debug, Default)]
+pub(super) enum Places {
+    /// Only their numbers are known.
+    #[default]
+    Numbers,
+    /// The byte of the text where the line of each begins.
+    Lines(Vec<u32>),
+    /// The byte of the first one, and how many bytes each takes.
+    Bytes { first: usize, each: usize },
+}
+
+impl Triangles {
+    /// Adds a polygon as a fan of triangles from one of its corners, or says why there is none.
+    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, &'static str> {
+        if corners.len() < 3 {
+            return Err("a face has fewer than three corners");
+        }
+        if corners.iter().enumerate().any(|(k, corner)| corners[..k].contains(corner)) {
+            return Err("a face names a vertex twice");
+        }
+        if let [a, b, c] = *corners {
+            self.triangles.push([a, b, c]);
+            return Ok(1);
+        }
+        let at = |node: u32| self.positions[node as usize];
+        let n = corners.len();
+        // The sum of all fan triangles' normals is twice the area vector, whichever corner they begin from.
+        let normal = |a: u32, b: u32, c: u32| cross(minus(at(b), at(a)), minus(at(c), at(a)));
+        let mut whole = [0.0; 3];
+        for k in 1..n - 1 {
+            let part = normal(corners[0], corners[k], corners[k + 1]);
+            whole = core::array::from_fn(|d| whole[d] + part[d]);
+        }
+        let start = (0..n).find(|start| {
+            let corner = |k: usize| corners[(start + k) % n];
+            (1..n - 1).all(|k| dot(normal(corner(0), corner(k), corner(k + 1)), whole) > 0.0)
+        });
+        let Some(start) = start else { return Err("a face is no polygon that a fan of triangles can fill") };
+        let corner = |k: usize| corners[(start + k) % n];
+        self.triangles.extend((1..n - 1).map(|k| [corner(0), corner(k), corner(k + 1)]));
+        Ok(n - 2)
+    }
+
+    /// An error at a triangle.
+    fn at(&self, source: Option<&Source<'_>>, triangle: u32, error: SceneError) -> SceneError {
+        match (&self.places, source) {
+            (Places::Lines(lines), Some(source)) => match lines.get(triangle as usize) {
+                Some(from) => {
+                    let from = *from as usize;
+                    let end = source.text[from..].find('\n').map_or(source.text.len(), |k| from + k);
+                    source.mark(error, from, end)
+                }
+                None => error,
+            },
+            (Places::Bytes { first, each }, _) => {
+                let byte = first + each * triangle as usize;
+                let message = format!("{}, at byte {byte}", error.message);
+                SceneError { message, ..error }
+            }
+            _ => error,
+        }
+    }
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|d| a[d] - b[d])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Welding, checks, orientation, size and filling, as the scene asks for.
+pub(super) fn loaded(
+    mut found: Triangles,
+    file: &str,
+    source: Option<&Source<'_>>,
+    shape: &Values,
+) -> Result<Loaded, Problem> {
+    let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
+    if found.triangles.is_empty() {
+        let error = SceneError::new("mesh.empty", "the file holds no triangles").value("0");
+        return Err(named(error.allowed("at least one triangle")));
+    }
+    let mut notices = std::mem::take(&mut found.notices);
+    weld(&mut found, source, shape, &mut notices).map_err(named)?;
+    let mut mesh = Mesh::<3> {
+        positions: std::mem::take(&mut found.positions),
+        facets: std::mem::take(&mut found.triangles),
+        groups: std::mem::take(&mut found.groups),
+        ..Mesh::default()
+    };
+    mesh.validate().map_err(|e| named(SceneError::new("mesh.index", e.to_string())))?;
+    if let Some([first, second]) = mesh.duplicate_facets() {
+        let message = format!("triangles {first} and {second} have the same corners");
+        let error = SceneError::new("mesh.duplicate_element", message).value(second.to_string());
+        return Err(named(found.at(source, second, error.hint("leave one of them out"))));
+    }
+    if let Some((facet, area)) = mesh.thin_facet(THIN) {
+        let message = format!("triangle {facet} has no area for its size");
+        let error = SceneError::new("mesh.degenerate_face", message).value(format!("{area:e}"));
+        let allowed = format!("an area above {THIN:e} of its longest edge squared");
+        return Err(named(found.at(source, facet, error.allowed(allowed))));
+    }
+    let unused = mesh.drop_unreferenced();
+    if unused > 0 {
+        let message = format!("{unused} vertices that no triangle names are left out");
+        notices.push(SceneError::new("mesh.unreferenced", message).value(unused.to_string()));
+    }
+    orient(&mut mesh, &found, source, shape, &mut notices).map_err(named)?;
+    place(&mut mesh, shape).map_err(named)?;
+    let filling = match shape.text("filling") {
+        Some("lattice") if mesh.facets.is_empty() => {
+            let error = SceneError::new("mesh.open", "an open surface has no inside to fill").value("lattice");
+            return Err(Problem::new("filling", error.hint("close it with `open = \"cap\"`")));
+        }
+        Some("lattice") => match shape.number("spacing") {
+            Some(spacing) => Some(spacing),
+            None => {
+                let error = SceneError::new("scene.missing", "`spacing` is missing for `filling = \"lattice\"`");
+                return Err(Problem::new("filling", error.hint("the side of the cubes of the lattice [m]")));
+            }
+        },
+        _ => None,
+    };
+    Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), filling } })
+}
+
+/// Joins vertices where the scene or the format asks for it.
+fn weld(
+    found: &mut Triangles,
+    source: Option<&Source<'_>>,
+    shape: &Values,
+    notices: &mut Vec<SceneError>,
+) -> Result<(), SceneError> {
+    let distance = match (shape.number("weld"), found.soup) {
+        (Some(distance), _) => distance,
+        (None, true) => 0.0,
+        (None, false) => return Ok(()),
+    };
+    let before = found.positions.len();
+    let (mut positions, mut triangles) = (found.positions.clone(), found.triangles.clone());
+    let joined = match opruga_mesh::weld(&mut positions, &mut triangles, distance) {
+        Ok(joined) => joined,
+        Err(MeshError::RepeatedNode { index, .. }) => {
+            let message = format!("triangle {index} names a place twice where vertices within {distance} m are joined");
+            let error = SceneError::new("mesh.degenerate_face", message).value(distance.to_string());
+            return Err(found.at(source, index, error.hint("take a smaller `weld`, or leave the triangle out")));
+        }
+        Err(e) => return Err(SceneError::new("scene.range", e.to_string()).value(distance.to_string())),
+    };
+    if joined > 0 && !found.groups.is_empty() {
+        // Groups follow their vertices by the corners of the triangles.
+        let mut number = vec![u32::MAX; before];
+        for (old, new) in found.triangles.iter().flatten().zip(triangles.iter().flatten()) {
+            number[*old as usize] = *new;
+        }
+        for nodes in found.groups.values_mut() {
+            nodes.iter_mut().for_each(|node| *node = number[*node as usize]);
+            nodes.retain(|node| *node != u32::MAX);
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
+    }
+    // A format that repeats every corner is welded as a matter of course.
+    if joined > 0 && !found.soup {
+        let message = format!("{joined} of {before} vertices are joined to others");
+        notices.push(SceneError::new("mesh.welded", message).value(joined.to_string()));
+    }
+    (found.positions, found.triangles) = (positions, triangles);
+    Ok(())
+}
+
+/// Makes all triangles face outward and closes or keeps open surfaces as the scene says.
+fn orient(
+    mesh: &mut Mesh<3>,
+    found: &Triangles,
+    source: Option<&Source<'_>>,
+    shape: &Values,
+    notices: &mut Vec<SceneError>,
+) -> Result<(), SceneError> {
+    let refuse = |mesh: &Mesh<3>, error: MeshError| refused(mesh, found, source, error);
+    let open = shape.text("open").unwrap_or("refuse");
+    let mut turned = mesh.orient_components();
+    if let (Err(MeshError::Open { .. }), "cap" | "sheet") = (&turned, open) {
+        if open == "sheet" {
+            let against = mesh.orient_alike().map_err(|e| refuse(mesh, e))?;
+            flipped(notices, against, "triangles that face against their neighbours are turned");
+            mesh.sheets = std::mem::take(&mut mesh.facets);
+            return Ok(());
+        }
+        let closed = mesh.cap().map_err(|e| refuse(mesh, e))?;
+        let what = if closed == 1 { "free boundary is" } else { "free boundaries are" };
+        let message = format!("{closed} {what} closed by fans of triangles");
+        notices.push(SceneError::new("mesh.capped", message).value(closed.to_string()));
+        turned = mesh.orient_components();
+    }
+    let turned = turned.map_err(|e| refuse(mesh, e))?;
+    flipped(notices, turned.against, "triangles that face against their neighbours are turned");
+    flipped(notices, turned.inside_out, "components that are inside out are turned");
+    if let Some((facet, volume)) = turned.flat {
+        let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
+        let error = error.value(format!("{volume:e}")).allowed("a volume above 1e-12 of its extent cubed");
+        return Err(found.at(source, facet, error));
+    }
+    Ok(())
+}
+
+fn flipped(notices: &mut Vec<SceneError>, count: usize, what: &str) {
+    if count > 0 {
+        notices.push(SceneError::new("mesh.flipped", format!("{count} {what}")).value(count.to_string()));
+    }
+}
+
+/// What the topology of a surface forbids.
+fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error: MeshError) -> SceneError {
+    let place = |node: u32| mesh.positions[node as usize].map(|x| x.to_string()).join(", ");
+    match &error {
+        MeshError::Open { loops, nodes } => {
+            let shown: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
+            let what = if *loops == 1 { "free boundary" } else { "free boundaries" };
+            let message = format!("the surface is not closed: {loops} {what}, through {}", shown.join(", "));
+            let hint = match seams(mesh) {
+                0 => "`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth".to_string(),
+                n => format!(
+                    "{n} vertices lie at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`"
+                ),
+            };
+            SceneError::new("mesh.open", message).value(loops.to_string()).allowed("a closed surface").hint(hint)
+        }
+        MeshError::NonManifoldEdges { edges } => {
+            let shown: Vec<String> =
+                edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", place(*a), place(*b))).collect();
+            let message = format!("more than two triangles meet at {} edges: {}", edges.len(), shown.join("; "));
+            SceneError::new("mesh.non_manifold", message).value(edges.len().to_string()).allowed("at most two")
+        }
+        MeshError::NonOrientable { facet } => {
+            let error = SceneError::new("mesh.non_orientable", "the surface has only one side, as a Möbius band");
+            found.at(source, *facet, error.value(facet.to_string()))
+        }
+        other => SceneError::new("mesh.topology", visible(&other.to_string())),
+    }
+}
+
+/// Vertices that lie exactly where another one lies.
+fn seams(mesh: &Mesh<3>) -> usize {
+    let mut places: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    places.sort_unstable();
+    places.windows(2).filter(|pair| pair[0] == pair[1]).count()
+}
+
+/// Brings the surface upright, to its size and to its place.
+fn place(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
+    if shape.text("up") == Some("z") {
+        mesh.positions.iter_mut().for_each(|p| *p = [p[0], p[2], -p[1]]);
+    }
+    let (low, high) = mesh.bounds();
+    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, larger);
+    if !(extent > 1e-150 && extent < 1e150) {
+        let error = SceneError::new("mesh.size", "the surface has no extent, or one out of range");
+        return Err(error.value(format!("{extent:e}")).allowed("an extent from 1e-150 to 1e150"));
+    }
+    let factor = shape.number("size").map_or(1.0, |size| size / extent);
+    let center: [f64; 3] = shape.vector("center");
+    for position in &mut mesh.positions {
+        *position = core::array::from_fn(|d| center[d] + factor * (position[d] - 0.5 * (low[d] + high[d])));
+    }
+    Ok(())
+}

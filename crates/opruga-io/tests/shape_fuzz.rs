@@ -1,0 +1,118 @@
+//! Random bytes and tampered files of every format: a mesh that is sound, or an error that names file and value, never a panic.
+//!
+//! `fuzz/` looks for new ones.
+
+mod common;
+use common::{HEAD, catalogue};
+use opruga_io::Files;
+use opruga_io::scene::{Limits, Options, read};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::AnyBlueprint;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::sync::Arc;
+
+const HEART: &[u8] = include_bytes!("../../../scenes/shapes/heart.svg");
+const FISH: &[u8] = include_bytes!("../../../scenes/shapes/fish.svg");
+const FONT: &[u8] = include_bytes!("../../../scenes/shapes/inter-black-subset.otf");
+const SMALL_MAP: &[u8] = br#"{"type":"Topology","transform":{"scale":[0.5,0.5],"translate":[0,0]},"arcs":[[[4,0],[0,4]],[[4,4],[-4,0],[0,-4],[4,0]]],"objects":{"one":{"type":"MultiPolygon","arcs":[[[0,1]]],"properties":{"name":"a"}}}}"#;
+const GEOJSON: &[u8] = br#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"a"},"geometry":{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}}]}"#;
+const OBJ: &[u8] = b"o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+const PLY: &[u8] = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+const STL: &[u8] = b"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+const GLTF: &[u8] = br#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"buffers":[{"byteLength":60,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAIBAAEDAQIDAAMC"}]}"#;
+
+/// Dimension, shape, name of the file, contents.
+fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
+    let leaked = |text: String| -> &'static str { text.leak() };
+    let outline = |kind: &str, more: &str| leaked(format!("kind = \"{kind}\", {more}"));
+    let joined = "spacing = 0.1, size = 1.0, overlap = \"union\"";
+    let filled = "spacing = 0.2, size = 1.0, filling = \"triangles\"";
+    vec![
+        (2, outline("svg", filled), "a.svg", HEART),
+        (2, outline("svg", joined), "a.svg", FISH),
+        (2, outline("map", filled), "a.json", SMALL_MAP),
+        (2, outline("map", joined), "a.json", GEOJSON),
+        (2, outline("text", "spacing = 0.2, size = 1.0, text = \"oB\""), "a.otf", FONT),
+        (3, outline("surface", "weld = 1e-9"), "a.obj", OBJ),
+        (3, outline("surface", "filling = \"lattice\", spacing = 0.4"), "a.ply", PLY),
+        (3, outline("surface", "open = \"cap\""), "a.stl", STL),
+        (3, outline("surface", "open = \"sheet\""), "a.gltf", GLTF),
+    ]
+}
+
+fn sound<const D: usize>(mesh: &Mesh<D>) {
+    mesh.validate().expect("a valid mesh");
+    assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
+    mesh.chambers().expect("closed chambers, or none");
+}
+
+/// Whether the file is read; what is read must be sound.
+fn survives(dimension: u8, shape: &str, name: &str, bytes: &[u8]) -> bool {
+    let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
+    let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{name}\", {shape} }}\n");
+    let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
+    let files = Files::held([(name.to_string(), Arc::from(bytes))]);
+    match read(text.as_bytes(), "scene.toml", &catalogue(), &Options { limits, files, ..Options::default() }) {
+        Ok((AnyBlueprint::Plane(b), _)) => sound(&b.bodies[0].mesh),
+        Ok((AnyBlueprint::Space(b), _)) => sound(&b.bodies[0].mesh),
+        Err(errors) => {
+            for error in errors {
+                assert!(!error.file.is_empty(), "{error:?}");
+                assert!(error.to_string().chars().all(|c| c == '\n' || !c.is_control()), "{error:?}");
+            }
+            return false;
+        }
+    }
+    true
+}
+
+#[test]
+fn the_samples_are_read() {
+    for (dimension, shape, name, bytes) in samples() {
+        assert!(survives(dimension, shape, name, bytes), "{name}, {shape}");
+    }
+}
+
+/// What a tampered byte becomes.
+const BYTES: &[u8] = b"\0\xff09-.eM,[]{}\"<>/ \n1";
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+    #[test]
+    fn tampered_files(sample in 0..9usize, changes in proptest::collection::vec((any::<u32>(), 0..BYTES.len(), 0..4u8), 1..5)) {
+        let (dimension, shape, name, bytes) = samples()[sample];
+        let mut bytes = bytes.to_vec();
+        for (place, byte, how) in changes {
+            let place = place as usize % bytes.len().max(1);
+            match how {
+                0 if place < bytes.len() => bytes[place] = BYTES[byte],
+                1 => bytes.insert(place, BYTES[byte]),
+                2 if !bytes.is_empty() => drop(bytes.remove(place)),
+                _ => bytes.truncate(bytes.len().max(1) - 1 - place % 7 % bytes.len().max(1)),
+            }
+        }
+        survives(dimension, shape, name, &bytes);
+    }
+
+    #[test]
+    fn random_files(sample in 0..9usize, bytes in proptest::collection::vec(any::<u8>(), 0..300), keep in 0..60usize) {
+        let (dimension, shape, name, good) = samples()[sample];
+        // A good beginning leads deeper.
+        let bytes = [&good[..keep.min(good.len())], &bytes[..]].concat();
+        survives(dimension, shape, name, &bytes);
+    }
+
+    /// Other digits: files that are well formed, of shapes that nobody drew.
+    #[test]
+    fn files_with_other_numbers(sample in 0..9usize, changes in proptest::collection::vec((any::<u32>(), b'0'..=b'9'), 1..8)) {
+        let (dimension, shape, name, bytes) = samples()[sample];
+        let mut bytes = bytes.to_vec();
+        let digits: Vec<usize> = (0..bytes.len()).filter(|k| bytes[*k].is_ascii_digit()).collect();
+        for (place, digit) in changes {
+            bytes[digits[place as usize % digits.len()]] = digit;
+        }
+        survives(dimension, shape, name, &bytes);
+    }
+}

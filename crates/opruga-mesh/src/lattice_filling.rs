@@ -1,0 +1,219 @@
+//! The inside of a closed surface as a lattice of tetrahedra.
+
+use crate::edges::ascending;
+use crate::geometry::tetrahedron_volume;
+use crate::mesh::positive;
+use crate::skin::{Inside, Skin, weights};
+use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use std::collections::BTreeMap;
+
+/// Lattice points by twice their coordinates: corners of cubes are even in all of them, centres of cubes odd.
+type Key = [i32; 3];
+
+/// The most cubes in the box of a surface: each is looked at.
+const MOST_CUBES: f64 = 8_388_608.0;
+
+/// The four tetrahedra between the centres of two cubes that share the face with corners `face`: each has an edge of the face and both centres.
+fn around(centers: [Key; 2], face: [Key; 4]) -> [[Key; 4]; 4] {
+    core::array::from_fn(|k| [centers[0], centers[1], face[k], face[(k + 1) % 4]])
+}
+
+impl Mesh<3> {
+    /// About how many nodes [`Mesh::lattice_filling`] makes of this surface.
+    pub fn lattice_estimate(&self, spacing: f64) -> u64 {
+        let mut area = 0.0;
+        for facet in &self.facets {
+            let [a, b, c] = facet.map(|node| self.positions[node as usize]);
+            area += crate::geometry::triangle_area(a, b, c);
+        }
+        let nodes =
+            2.0 * self.enclosed_volume().abs() / (spacing * spacing * spacing) + 2.0 * area / (spacing * spacing);
+        if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+    }
+
+    /// The inside of this closed surface as a body of equal tetrahedra, which carries the surface as its [`Skin`].
+    ///
+    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra, all alike, have two edges of
+    /// length a (between centres, and along cubes) and four of √3/2·a. Those are kept whose middle is inside the surface or that hold a node
+    /// of it, and those around edges where they would else touch, so the body reaches a little beyond the surface; the skin shows the surface itself.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose box is
+    /// too large for the spacing.
+    ///
+    /// # Source
+    /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007), section 3.
+    pub fn lattice_filling(&self, spacing: f64) -> Result<Mesh<3>, MeshError> {
+        positive("spacing", spacing)?;
+        let estimate = self.lattice_estimate(spacing);
+        if estimate > MAXIMUM_NODES {
+            return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });
+        }
+        let (low, high) = self.bounds();
+        // A slanted needle has few nodes in a large box.
+        let cubes: f64 = (0..3).map(|d| (high[d] - low[d]) / spacing + 3.0).product();
+        if cubes > MOST_CUBES {
+            let nodes = if cubes < 1e18 { 2 * cubes as u64 } else { u64::MAX };
+            return Err(MeshError::TooManyNodes { nodes, most: 2 * MOST_CUBES as u64 });
+        }
+        let inside = Inside::of(self)?;
+        // The lattice is centred in the box; coordinates count half cubes.
+        let counts: [i32; 3] = core::array::from_fn(|d| ((high[d] - low[d]) / spacing).ceil() as i32 + 2);
+        let origin: [f64; 3] =
+            core::array::from_fn(|d| 0.5 * (low[d] + high[d]) - 0.5 * f64::from(counts[d]) * spacing);
+        let at = |key: Key| -> [f64; 3] { core::array::from_fn(|d| origin[d] + 0.5 * spacing * f64::from(key[d])) };
+
+        // Tetrahedra that hold a point of the skin.
+        let mut kept: BTreeMap<[Key; 4], ()> = BTreeMap::new();
+        let mut holders: Vec<[Key; 4]> = Vec::with_capacity(self.nodes());
+        for position in &self.positions {
+            let holder = holder(position.map(|x| x), &origin, spacing, &at);
+            kept.insert(holder, ());
+            holders.push(holder);
+        }
+        // Tetrahedra whose middle is inside.
+        for k in 0..counts[2] {
+            for j in 0..counts[1] {
+                for i in 0..counts[0] {
+                    let center = [2 * i + 1, 2 * j + 1, 2 * k + 1];
+                    for axis in 0..3 {
+                        for tetrahedron in beyond(center, axis, &at) {
+                            let corners = tetrahedron.map(at);
+                            let middle = core::array::from_fn(|d| 0.25 * corners.iter().map(|c| c[d]).sum::<f64>());
+                            if inside.contains(middle) {
+                                kept.insert(tetrahedron, ());
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let (keys, mut mesh) = loop {
+            let (keys, mesh) = body(&kept, &at)?;
+            // Where the steps of the lattice touch along an edge, the tetrahedra around it close the gap.
+            let crowded = crowded_edges(&mesh.facets);
+            if crowded.is_empty() {
+                break (keys, mesh);
+            }
+            for edge in crowded {
+                let edge = edge.map(|node| keys[node as usize]);
+                kept.extend(around_edge(edge, &at).into_iter().map(|tetrahedron| (tetrahedron, ())));
+            }
+        };
+        let number = |key: &Key| number(&keys, key);
+        let mut skin = Skin { triangles: self.facets.clone(), ..Skin::default() };
+        for (position, holder) in self.positions.iter().zip(&holders) {
+            skin.carriers.push(holder.map(|key| number(&key)));
+            skin.weights.push(weights(holder.map(at), *position));
+        }
+        mesh.skin = Some(skin);
+        Ok(mesh)
+    }
+
+    /// Lowest and highest coordinates [m]; zeros without nodes.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let first = self.positions.first().copied().unwrap_or([0.0; 3]);
+        let (mut low, mut high) = (first, first);
+        for position in &self.positions {
+            for d in 0..3 {
+                if position[d] < low[d] {
+                    low[d] = position[d];
+                }
+                if position[d] > high[d] {
+                    high[d] = position[d];
+                }
+            }
+        }
+        (low, high)
+    }
+}
+
+/// The nodes of tetrahedra in the order of the lattice, z slowest, and the mesh of them.
+fn body(kept: &BTreeMap<[Key; 4], ()>, at: &impl Fn(Key) -> [f64; 3]) -> Result<(Vec<Key>, Mesh<3>), MeshError> {
+    let mut keys: Vec<Key> = kept.keys().flatten().copied().collect();
+    keys.sort_unstable_by_key(|[x, y, z]| (*z, *y, *x));
+    keys.dedup();
+    let mut mesh = Mesh::<3> { positions: keys.iter().map(|key| at(*key)).collect(), ..Mesh::default() };
+    mesh.cells.tetrahedra = kept.keys().map(|tetrahedron| tetrahedron.map(|key| number(&keys, &key))).collect();
+    mesh.facets = mesh.facets_from_cells()?;
+    Ok((keys, mesh))
+}
+
+/// The node of a lattice point.
+fn number(keys: &[Key], key: &Key) -> u32 {
+    keys.binary_search_by_key(&(key[2], key[1], key[0]), |[x, y, z]| (*z, *y, *x)).unwrap_or(0) as u32
+}
+
+/// Edges at which more than two facets meet.
+fn crowded_edges(facets: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> =
+        facets.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]).map(|(a, b)| ascending(a, b)).collect();
+    edges.sort_unstable();
+    edges.chunk_by(|p, q| p == q).filter(|group| group.len() > 2).map(|group| group[0]).collect()
+}
+
+/// All tetrahedra of the lattice that have both ends of an edge.
+fn around_edge(edge: [Key; 2], at: &impl Fn(Key) -> [f64; 3]) -> Vec<[Key; 4]> {
+    let mut found = Vec::new();
+    // Centres of cubes are odd; those that matter are at most two steps away.
+    let near = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
+    for z in near(edge[0][2]) {
+        for y in near(edge[0][1]) {
+            for x in near(edge[0][0]) {
+                for axis in 0..3 {
+                    let four = beyond([x, y, z], axis, at);
+                    found.extend(
+                        four.into_iter().filter(|tetrahedron| edge.iter().all(|key| tetrahedron.contains(key))),
+                    );
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The four tetrahedra between a cube and the next along an axis, each of positive volume.
+fn beyond(center: Key, axis: usize, at: &impl Fn(Key) -> [f64; 3]) -> [[Key; 4]; 4] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut next = center;
+    next[axis] += 2;
+    let corner = |p: i32, q: i32| {
+        let mut key = center;
+        key[axis] += 1;
+        key[u] += p;
+        key[v] += q;
+        key
+    };
+    let face = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
+    around([center, next], face).map(|tetrahedron| {
+        let [a, b, c, d] = tetrahedron.map(at);
+        if tetrahedron_volume(a, b, c, d) < 0.0 {
+            let [p, q, r, s] = tetrahedron;
+            [p, q, s, r]
+        } else {
+            tetrahedron
+        }
+    })
+}
+
+/// The tetrahedron of the lattice that holds a point: of those around the point's cube the one in which its least weight is largest.
+fn holder(point: [f64; 3], origin: &[f64; 3], spacing: f64, at: &impl Fn(Key) -> [f64; 3]) -> [Key; 4] {
+    let cube: [i32; 3] = core::array::from_fn(|d| ((point[d] - origin[d]) / spacing).floor() as i32);
+    let center = cube.map(|c| 2 * c + 1);
+    let mut best = ([center; 4], f64::NEG_INFINITY);
+    for axis in 0..3 {
+        let mut before = center;
+        before[axis] -= 2;
+        for from in [before, center] {
+            for tetrahedron in beyond(from, axis, at) {
+                let least = weights(tetrahedron.map(at), point)
+                    .into_iter()
+                    .fold(f64::INFINITY, |m, w| if w < m { w } else { m });
+                if least > best.1 {
+                    best = (tetrahedron, least);
+                }
+            }
+        }
+    }
+    best.0
+}

@@ -1,0 +1,225 @@
+//! The inside of closed curves as triangles.
+
+use super::{OutlineError, Ring, distance};
+use crate::{MAXIMUM_NODES, Mesh};
+use spade::handles::FixedVertexHandle;
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
+use std::collections::BTreeMap;
+
+/// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
+pub const SMALLEST_ANGLE: f64 = 25.0;
+
+/// Circumradius over shortest edge at [`SMALLEST_ANGLE`]: ½ / sin 25°.
+const RADIUS_TO_EDGE: f64 = 1.183_100_791_576_249_3;
+
+/// √3 / 2: height of an equilateral triangle over its side.
+const HEIGHT: f64 = 0.866_025_403_784_438_6;
+
+/// Inner nodes keep this much of the spacing away from the outline.
+const CLEARANCE: f64 = 0.6;
+
+/// Triangles of less than this times the spacing squared are not divided any more: an equilateral one has 0.43.
+const SMALLEST_AREA: f64 = 0.1;
+
+/// How good the triangles of a filling are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// The smallest angle of all triangles [rad].
+    pub smallest_angle: f64,
+    /// Whether the refinement came to its end.
+    pub complete: bool,
+    /// Length of the shortest edge [m].
+    pub shortest_edge: f64,
+    /// Length of the longest edge [m].
+    pub longest_edge: f64,
+}
+
+/// About how many nodes a filling has: those of the rings, and one for every two triangles inside.
+pub fn node_estimate(rings: &[Ring], spacing: f64) -> u64 {
+    let inside: f64 = rings.iter().map(Ring::area).sum::<f64>() / (HEIGHT * spacing * spacing);
+    let border: u64 = rings.iter().map(|ring| ring.points.len() as u64).sum();
+    if inside.is_finite() && inside < 1e18 { border.saturating_add(inside.abs() as u64) } else { u64::MAX }
+}
+
+/// The inside of rings that [`super::nest`] has turned, as a lattice of nearly equilateral triangles of side `spacing` [m].
+///
+/// Nodes of the rings come first and keep their order; edges of the rings may be halved where a triangle would else be too thin. Inside, the nodes lie
+/// on a regular triangular lattice; between it and the outline lies a constrained Delaunay triangulation, refined until no angle is below
+/// [`SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time.
+///
+/// # Errors
+/// [`OutlineError::TooCoarse`] where edges of the rings cross, [`OutlineError::TooFine`] where the mesh would be too large.
+///
+/// # Source
+/// J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", J. Algorithms 18 (1995); library spade.
+pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), OutlineError> {
+    let estimate = node_estimate(rings, spacing);
+    if estimate > MAXIMUM_NODES {
+        return Err(OutlineError::TooFine { spacing, nodes: estimate });
+    }
+    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty)?;
+    let extent = distance(low, high);
+
+    // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
+    let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
+    let failed = |part: u32, place| OutlineError::TooCoarse { spacing, parts: [part; 2], place };
+    let mut triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+    for ring in rings {
+        let mut handles: Vec<FixedVertexHandle> = Vec::with_capacity(ring.points.len());
+        for point in &ring.points {
+            handles.push(triangulation.insert(shrink(*point)).map_err(|_| failed(ring.part, *point))?);
+        }
+        for (k, from) in handles.iter().enumerate() {
+            let to = handles[(k + 1) % handles.len()];
+            if triangulation.try_add_constraint(*from, to).len() != 1 {
+                return Err(failed(ring.part, ring.points[k]));
+            }
+        }
+    }
+    let border = triangulation.num_vertices();
+    for point in lattice(rings, low, high, spacing) {
+        triangulation.insert(shrink(point)).map_err(|_| failed(0, point))?;
+    }
+    let parameters = RefinementParameters::<f64>::new()
+        .with_angle_limit(AngleLimit::from_radius_to_shortest_edge_ratio(RADIUS_TO_EDGE))
+        .with_min_required_area(SMALLEST_AREA * (spacing / extent) * (spacing / extent))
+        .with_max_additional_vertices(4 * triangulation.num_vertices() + 1000)
+        .exclude_outer_faces(true);
+    let refined = triangulation.refine(parameters);
+
+    // Nodes: those of the rings, then those inside in the order of their insertion.
+    let mut outside = refined.excluded_faces;
+    outside.sort_unstable();
+    let mut triangles: Vec<[u32; 3]> = triangulation
+        .inner_faces()
+        .filter(|face| outside.binary_search(&face.fix()).is_err())
+        .map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32))
+        .collect();
+    let mut used = vec![false; triangulation.num_vertices()];
+    triangles.iter().flatten().for_each(|node| used[*node as usize] = true);
+    if !used[..border].iter().all(|u| *u) {
+        return Err(failed(0, low));
+    }
+    let mut numbers = vec![0u32; used.len()];
+    let mut positions = Vec::new();
+    let given: Vec<[f64; 2]> = rings.iter().flat_map(|ring| ring.points.iter().copied()).collect();
+    for vertex in triangulation.fixed_vertices() {
+        let index = vertex.index();
+        if used[index] {
+            numbers[index] = positions.len() as u32;
+            let p = triangulation.vertex(vertex).position();
+            // Points of the rings keep their bits.
+            positions.push(given.get(index).copied().unwrap_or([low[0] + p.x * extent, low[1] + p.y * extent]));
+        }
+    }
+    triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
+    for triangle in &mut triangles {
+        let lowest = (0..3).min_by_key(|k| triangle[*k]).unwrap_or(0);
+        triangle.rotate_left(lowest);
+    }
+    triangles.sort_unstable();
+    let mut mesh = Mesh::<2> { positions, ..Mesh::default() };
+    mesh.cells.triangles = triangles;
+    mesh.facets = mesh.facets_from_cells()?;
+    let quality = quality(&mesh, refined.refinement_complete);
+    Ok((mesh, quality))
+}
+
+/// Points of a triangular lattice inside the rings and clear of them, row by row.
+fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[f64; 2]> {
+    // Edges by the cells of a grid that they run through.
+    let cell = |x: f64| (x / spacing).floor() as i64;
+    let edges: Vec<([f64; 2], [f64; 2])> = rings.iter().flat_map(Ring::edges).collect();
+    let mut near: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
+    for (number, (a, b)) in edges.iter().enumerate() {
+        let range = |axis: usize| {
+            let (p, q) = (cell(a[axis] - low[axis]), cell(b[axis] - low[axis]));
+            if p <= q { p..=q } else { q..=p }
+        };
+        for i in range(0) {
+            for j in range(1) {
+                near.entry((i, j)).or_default().push(number);
+            }
+        }
+    }
+    let clear = |point: [f64; 2]| {
+        let (i, j) = (cell(point[0] - low[0]), cell(point[1] - low[1]));
+        let around = (i - 1..=i + 1).flat_map(|i| (j - 1..=j + 1).map(move |j| (i, j)));
+        around
+            .filter_map(|key| near.get(&key))
+            .flatten()
+            .all(|edge| distance_to_segment(point, edges[*edge]) >= CLEARANCE * spacing)
+    };
+
+    // The lattice is centred in the box, so that symmetric outlines get symmetric lattices.
+    let height = HEIGHT * spacing;
+    let rows = ((high[1] - low[1]) / height).floor() as i64;
+    let first_y = low[1] + 0.5 * ((high[1] - low[1]) - rows as f64 * height);
+    let middle = 0.5 * (low[0] + high[0]);
+    // A sweep from below: edges come in by their lower end, and go by their upper one.
+    let lower =
+        |edge: &usize| if edges[*edge].0[1] < edges[*edge].1[1] { edges[*edge].0[1] } else { edges[*edge].1[1] };
+    let mut waiting: Vec<usize> = (0..edges.len()).collect();
+    waiting.sort_by(|p, q| lower(q).total_cmp(&lower(p)));
+    let mut active: Vec<usize> = Vec::new();
+    let mut points = Vec::new();
+    let mut crossings: Vec<f64> = Vec::new();
+    for row in 0..=rows {
+        let y = first_y + row as f64 * height;
+        while let Some(edge) = waiting.pop_if(|edge| lower(edge) <= y) {
+            active.push(edge);
+        }
+        active.retain(|edge| edges[*edge].0[1] > y || edges[*edge].1[1] > y);
+        crossings.clear();
+        for edge in &active {
+            let (a, b) = edges[*edge];
+            if (a[1] > y) != (b[1] > y) {
+                crossings.push(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+            }
+        }
+        crossings.sort_by(f64::total_cmp);
+        let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+        for inside in crossings.chunks_exact(2) {
+            let place = |x: f64| ((x - middle) / spacing - shift).floor() as i64;
+            for k in place(inside[0])..=place(inside[1]) + 1 {
+                let x = middle + (k as f64 + shift) * spacing;
+                if inside[0] <= x && x < inside[1] && clear([x, y]) {
+                    points.push([x, y]);
+                }
+            }
+        }
+    }
+    points
+}
+
+fn distance_to_segment(point: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
+    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
+    let square = u[0] * u[0] + u[1] * u[1];
+    let t = if square > 0.0 { (u[0] * v[0] + u[1] * v[1]) / square } else { 0.0 };
+    let t = t.clamp(0.0, 1.0);
+    distance(point, [a[0] + t * u[0], a[1] + t * u[1]])
+}
+
+fn quality(mesh: &Mesh<2>, complete: bool) -> Quality {
+    let mut quality =
+        Quality { smallest_angle: f64::INFINITY, complete, shortest_edge: f64::INFINITY, longest_edge: 0.0 };
+    for triangle in &mesh.cells.triangles {
+        for corner in 0..3 {
+            let at = |k: usize| mesh.positions[triangle[(corner + k) % 3] as usize];
+            let (o, a, b) = (at(0), at(1), at(2));
+            let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
+            let angle = libm::atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+            if angle < quality.smallest_angle {
+                quality.smallest_angle = angle;
+            }
+            let length = distance(o, a);
+            if length < quality.shortest_edge {
+                quality.shortest_edge = length;
+            }
+            if length > quality.longest_edge {
+                quality.longest_edge = length;
+            }
+        }
+    }
+    quality
+}

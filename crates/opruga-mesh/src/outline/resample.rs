@@ -1,0 +1,127 @@
+//! Closed curves in equal edges that keep their corners.
+
+use super::{OutlineError, Ring, distance};
+
+/// A turn by more than this within one edge length is a corner: cos 45°.
+const CORNER_COSINE: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
+/// Rings with points about `spacing` [m] apart along them: corners stay, curves between them are cut into equal lengths, detail finer than the
+/// spacing is left out; at least 3 points each.
+///
+/// A corner is a point where the directions half a spacing before and behind differ by more than 45°, and more than those around it.
+///
+/// # Errors
+/// [`OutlineError::Mesh`] for too many points; [`OutlineError::NoArea`] for a ring that vanishes, [`OutlineError::TooCoarse`] where edges cross now.
+pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError> {
+    crate::mesh::positive("spacing", spacing)?;
+    let pieces: f64 = rings.iter().map(|ring| ring.length() / spacing).sum();
+    crate::mesh::limit_nodes(if pieces < 1e18 { pieces as u64 } else { u64::MAX })?;
+    let coarse: Vec<Ring> = rings.iter().map(|ring| resample(ring, spacing)).collect();
+    for (ring, before) in coarse.iter().zip(rings) {
+        if ring.area() * before.area() <= 0.0 {
+            let place = ring.points.first().copied().unwrap_or([0.0; 2]);
+            return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });
+        }
+    }
+    match super::nesting::meeting(&coarse) {
+        Some((parts, place)) => Err(OutlineError::TooCoarse { spacing, parts, place }),
+        None => Ok(coarse),
+    }
+}
+
+/// One ring, resampled.
+fn resample(ring: &Ring, spacing: f64) -> Ring {
+    let curve = Curve::of(ring);
+    if curve.total == 0.0 {
+        return ring.clone();
+    }
+    let corners = curve.corners(spacing);
+    // A ring without corners begins at its first point.
+    let starts = if corners.is_empty() { vec![0.0] } else { corners };
+    let least: u64 = match starts.len() {
+        1 => 3,
+        2 => 2,
+        _ => 1,
+    };
+    let mut points = Vec::new();
+    for (k, &from) in starts.iter().enumerate() {
+        let to = starts.get(k + 1).copied().unwrap_or(starts[0] + curve.total);
+        let pieces = ((to - from) / spacing).round();
+        let pieces = if pieces > least as f64 { pieces as u64 } else { least };
+        for step in 0..pieces {
+            points.push(curve.at(from + (to - from) * step as f64 / pieces as f64));
+        }
+    }
+    Ring { points, part: ring.part }
+}
+
+/// A closed curve by its length.
+struct Curve<'a> {
+    points: &'a [[f64; 2]],
+    /// Length from the first point to each point [m].
+    from_start: Vec<f64>,
+    /// The whole length [m].
+    total: f64,
+}
+
+impl<'a> Curve<'a> {
+    fn of(ring: &'a Ring) -> Curve<'a> {
+        let mut total = 0.0;
+        let mut from_start = Vec::with_capacity(ring.points.len());
+        for (a, b) in ring.edges() {
+            from_start.push(total);
+            total += distance(a, b);
+        }
+        Curve { points: &ring.points, from_start, total }
+    }
+
+    /// The point at a length from the first one; lengths wrap around.
+    fn at(&self, length: f64) -> [f64; 2] {
+        let mut length = length;
+        while length < 0.0 {
+            length += self.total;
+        }
+        while length >= self.total {
+            length -= self.total;
+        }
+        let next = self.from_start.partition_point(|l| *l <= length);
+        let edge = if next > 0 { next - 1 } else { 0 };
+        let (a, b) = (self.points[edge], self.points[(edge + 1) % self.points.len()]);
+        let whole = self.from_start.get(edge + 1).copied().unwrap_or(self.total) - self.from_start[edge];
+        let t = if whole > 0.0 { (length - self.from_start[edge]) / whole } else { 0.0 };
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+    }
+
+    /// Lengths at which the corners lie, ascending.
+    fn corners(&self, spacing: f64) -> Vec<f64> {
+        let twelfth = self.total / 12.0;
+        let reach = if 0.5 * spacing < twelfth { 0.5 * spacing } else { twelfth };
+        let mut candidates: Vec<(f64, f64)> = Vec::new();
+        for (point, length) in self.points.iter().zip(&self.from_start) {
+            let (before, behind) = (self.at(length - reach), self.at(length + reach));
+            let u = [point[0] - before[0], point[1] - before[1]];
+            let v = [behind[0] - point[0], behind[1] - point[1]];
+            let lengths = distance(before, *point) * distance(*point, behind);
+            let cosine = if lengths > 0.0 { (u[0] * v[0] + u[1] * v[1]) / lengths } else { 1.0 };
+            if cosine < CORNER_COSINE {
+                candidates.push((cosine, *length));
+            }
+        }
+        // The sharpest first; what lies within its reach belongs to it.
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut corners: Vec<f64> = Vec::new();
+        for (_, length) in candidates {
+            let place = corners.partition_point(|c| *c < length);
+            let n = corners.len();
+            let apart = |other: f64| {
+                let gap = (other - length).abs();
+                gap > reach && self.total - gap > reach
+            };
+            let free = n == 0 || (apart(corners[(place + n - 1) % n]) && apart(corners[place % n]));
+            if free {
+                corners.insert(place, length);
+            }
+        }
+        corners
+    }
+}

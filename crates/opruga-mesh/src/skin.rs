@@ -1,0 +1,129 @@
+//! A fine skin that a coarser body carries, for drawing.
+
+use crate::geometry::{dot, subtract, tetrahedron_volume};
+use crate::{Mesh, MeshError};
+
+/// Points that move with a body without being part of its physics: each is a mean of four of its nodes.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Skin {
+    /// Triangles between the points of the skin, outward.
+    pub triangles: Vec<[u32; 3]>,
+    /// The nodes that carry each point.
+    pub carriers: Vec<[u32; 4]>,
+    /// Their weights, which add up to 1.
+    pub weights: Vec<[f64; 4]>,
+}
+
+impl Skin {
+    /// Where the points of the skin are while the body's nodes are at `positions` [m].
+    pub fn positions(&self, positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.carriers
+            .iter()
+            .zip(&self.weights)
+            .map(|(nodes, weights)| mean(nodes, weights, |node| positions[node]))
+            .collect()
+    }
+
+    /// A quantity of the nodes at the points of the skin.
+    pub fn values(&self, values: &[f64]) -> Vec<f64> {
+        let each = |(nodes, weights): (&[u32; 4], &[f64; 4])| {
+            nodes.iter().zip(weights).map(|(node, weight)| weight * values[*node as usize]).sum()
+        };
+        self.carriers.iter().zip(&self.weights).map(each).collect()
+    }
+}
+
+fn mean(nodes: &[u32; 4], weights: &[f64; 4], at: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    for (node, weight) in nodes.iter().zip(weights) {
+        let p = at(*node as usize);
+        for d in 0..3 {
+            out[d] += weight * p[d];
+        }
+    }
+    out
+}
+
+/// Weights of a point in a tetrahedron: volumes of the tetrahedra that it forms with the faces over the whole.
+pub(crate) fn weights([a, b, c, d]: [[f64; 3]; 4], point: [f64; 3]) -> [f64; 4] {
+    let whole = tetrahedron_volume(a, b, c, d);
+    [
+        tetrahedron_volume(point, b, c, d) / whole,
+        tetrahedron_volume(a, point, c, d) / whole,
+        tetrahedron_volume(a, b, point, d) / whole,
+        tetrahedron_volume(a, b, c, point) / whole,
+    ]
+}
+
+/// Whether a ray from a point upwards (z) meets closed facets an odd number of times. Facets are found by a grid in x and y.
+pub(crate) struct Inside<'m> {
+    mesh: &'m Mesh<3>,
+    low: [f64; 2],
+    cell: [f64; 2],
+    counts: [usize; 2],
+    cells: Vec<Vec<u32>>,
+}
+
+impl<'m> Inside<'m> {
+    pub(crate) fn of(mesh: &'m Mesh<3>) -> Result<Inside<'m>, MeshError> {
+        mesh.components()?;
+        let (low, high) = mesh.bounds();
+        // About as many cells as facets.
+        let n = (mesh.facets.len() as f64).sqrt().ceil() as usize + 1;
+        let side = |axis: usize| if high[axis] > low[axis] { (high[axis] - low[axis]) / n as f64 } else { 1.0 };
+        let mut grid =
+            Inside { mesh, low: [low[0], low[1]], cell: [side(0), side(1)], counts: [n + 1, n + 1], cells: Vec::new() };
+        grid.cells = vec![Vec::new(); grid.counts[0] * grid.counts[1]];
+        for (index, facet) in mesh.facets.iter().enumerate() {
+            let corners = facet.map(|node| mesh.positions[node as usize]);
+            let range = |axis: usize| {
+                let places = corners.map(|p| grid.place(axis, p[axis]));
+                let (mut from, mut to) = (places[0], places[0]);
+                for place in places {
+                    from = usize::min(from, place);
+                    to = usize::max(to, place);
+                }
+                from..=to
+            };
+            let (across, along) = (range(0), range(1));
+            for j in along {
+                for i in across.clone() {
+                    grid.cells[i + grid.counts[0] * j].push(index as u32);
+                }
+            }
+        }
+        Ok(grid)
+    }
+
+    fn place(&self, axis: usize, x: f64) -> usize {
+        let place = ((x - self.low[axis]) / self.cell[axis]).floor();
+        if place > 0.0 { usize::min(place as usize, self.counts[axis] - 1) } else { 0 }
+    }
+
+    /// Whether a point is inside.
+    pub(crate) fn contains(&self, point: [f64; 3]) -> bool {
+        let cell = &self.cells[self.place(0, point[0]) + self.counts[0] * self.place(1, point[1])];
+        let mut inside = false;
+        for facet in cell {
+            let [a, b, c] = self.mesh.facets[*facet as usize].map(|node| self.mesh.positions[node as usize]);
+            // Half-open rules on x make a ray through an edge or a node count once.
+            let mut within = false;
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                if (p[1] > point[1]) != (q[1] > point[1]) {
+                    // One direction for both triangles at an edge, so that they agree to the last bit.
+                    let (p, q) = if p[1] < q[1] { (p, q) } else { (q, p) };
+                    let x = p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
+                    within ^= x > point[0];
+                }
+            }
+            if within {
+                let normal = crate::geometry::cross(subtract(b, a), subtract(c, a));
+                if normal[2] != 0.0 {
+                    let height = a[2] + dot(normal, subtract(a, [point[0], point[1], a[2]])) / normal[2];
+                    inside ^= height > point[2];
+                }
+            }
+        }
+        inside
+    }
+}

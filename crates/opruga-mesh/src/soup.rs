@@ -1,0 +1,274 @@
+//! Triangles of space as they come from files: welding, orientation, closing, bodies.
+
+use crate::chambers::Survey;
+use crate::geometry::{lift, norm, subtract, triangle_area};
+use crate::{Mesh, MeshError, signed_volume};
+use std::collections::BTreeMap;
+
+/// Joins points that lie at most `distance` [m] apart (0: at the same place) and lets triangles name the first of each cluster; returns how many
+/// points were joined to another. Points that stay keep their order.
+///
+/// A point joins the first one before it that is near enough, so clusters do not grow along chains.
+///
+/// # Errors
+/// [`MeshError::Size`] for a distance that is negative or not finite, [`MeshError::RepeatedNode`] with the first triangle that collapses;
+/// nothing is changed then.
+pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance: f64) -> Result<usize, MeshError> {
+    if !(distance >= 0.0 && distance.is_finite()) {
+        return Err(MeshError::Size { what: "distance of welding", value: distance, must: "0 or more, and finite" });
+    }
+    let target = if distance == 0.0 { same_place(positions) } else { near_place(positions, distance) };
+
+    // A triangle must keep three corners.
+    for (index, triangle) in triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|node| target[node as usize]);
+        if a == b || b == c || c == a {
+            let node = if a == b || c == a { a } else { b };
+            return Err(MeshError::RepeatedNode { element: crate::Element::Facet, index: index as u32, node });
+        }
+    }
+    let mut numbers = vec![0u32; positions.len()];
+    let mut kept = 0u32;
+    for node in 0..positions.len() {
+        if target[node] as usize == node {
+            numbers[node] = kept;
+            positions[kept as usize] = positions[node];
+            kept += 1;
+        }
+    }
+    let joined = positions.len() - kept as usize;
+    positions.truncate(kept as usize);
+    triangles.iter_mut().flatten().for_each(|node| *node = numbers[target[*node as usize] as usize]);
+    Ok(joined)
+}
+
+/// For every point the first one with the same coordinates; −0 is 0.
+fn same_place(positions: &[[f64; 3]]) -> Vec<u32> {
+    let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
+    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
+    order.sort_unstable_by_key(|node| (key(*node), *node));
+    let mut target = vec![0; positions.len()];
+    for group in order.chunk_by(|p, q| key(*p) == key(*q)) {
+        group.iter().for_each(|node| target[*node as usize] = group[0]);
+    }
+    target
+}
+
+/// For every point the first one before it within a distance that joins no other, or itself.
+fn near_place(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
+    let cell = |x: f64| (x / distance).floor();
+    let mut cells: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
+    let mut target = Vec::with_capacity(positions.len());
+    for (node, position) in positions.iter().enumerate() {
+        let [i, j, k] = position.map(|x| cell(x) as i64);
+        let mut found: Option<u32> = None;
+        for x in -1..=1 {
+            for y in -1..=1 {
+                for z in -1..=1 {
+                    let key = [i.saturating_add(x), j.saturating_add(y), k.saturating_add(z)];
+                    for &other in cells.get(&key).into_iter().flatten() {
+                        let near = norm(subtract(positions[other as usize], *position)) <= distance;
+                        if near && found.is_none_or(|best| other < best) {
+                            found = Some(other);
+                        }
+                    }
+                }
+            }
+        }
+        match found {
+            Some(other) => target.push(other),
+            None => {
+                cells.entry([i, j, k]).or_default().push(node as u32);
+                target.push(node as u32);
+            }
+        }
+    }
+    target
+}
+
+/// What an orientation had to turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// Triangles that faced against their neighbours.
+    pub against: usize,
+    /// Components that were inside out.
+    pub inside_out: usize,
+    /// A triangle of the first component that encloses less than 10⁻¹² of its extent cubed, and what it encloses [m³].
+    pub flat: Option<(u32, f64)>,
+}
+
+/// A component that encloses less than this part of its extent cubed is flat.
+const FLAT: f64 = 1e-12;
+
+impl Mesh<3> {
+    /// Turns the triangles of every closed component outward, those of cavities (an odd number of components around them) inward.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::orient_outward`]. The mesh is then unchanged.
+    pub fn orient_components(&mut self) -> Result<Turned, MeshError> {
+        self.validate()?;
+        let survey = Survey::of(&self.facets)?;
+        survey.closed()?;
+        for facet in survey.minority() {
+            self.facets[*facet as usize].swap(0, 1);
+        }
+        let components = self.components_of(&survey);
+        // How many others are around a component: their winding numbers about a node of it, whichever way they face.
+        let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.bounds_of(&c.facets)).collect();
+        let (mut inside_out, mut flat) = (0, None);
+        for (number, component) in components.iter().enumerate() {
+            let node = self.facets[component.facets[0] as usize][0];
+            let point = self.positions[node as usize];
+            let around = |other: &usize| {
+                let (low, high) = boxes[*other];
+                *other != number && (0..3).all(|d| low[d] <= point[d] && point[d] <= high[d]) && {
+                    let facets = self.gather(&components[*other].facets);
+                    let winding = crate::chambers::winding_number(&facets, &self.positions, &point);
+                    winding.abs() > 0.5
+                }
+            };
+            let cavity = (0..components.len()).filter(around).count() % 2 == 1;
+            if (component.signed_volume < 0.0) != cavity {
+                inside_out += 1;
+                component.facets.iter().for_each(|facet| self.facets[*facet as usize].swap(0, 1));
+            }
+            let (low, high) = boxes[number];
+            let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
+            if flat.is_none() && component.signed_volume.abs() <= FLAT * extent * extent * extent {
+                flat = Some((component.facets[0], component.signed_volume));
+            }
+        }
+        Ok(Turned { against: survey.minority().len(), inside_out, flat })
+    }
+
+    /// Lowest and highest coordinates of some facets [m].
+    fn bounds_of(&self, facets: &[u32]) -> ([f64; 3], [f64; 3]) {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for node in facets.iter().flat_map(|facet| self.facets[*facet as usize]) {
+            for d in 0..3 {
+                let x = self.positions[node as usize][d];
+                if x < low[d] {
+                    low[d] = x;
+                }
+                if x > high[d] {
+                    high[d] = x;
+                }
+            }
+        }
+        (low, high)
+    }
+
+    /// Turns the triangles of open surfaces so that neighbours face alike; the majority of each component decides. Returns how many were turned.
+    ///
+    /// # Errors
+    /// [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`].
+    pub fn orient_alike(&mut self) -> Result<usize, MeshError> {
+        let survey = Survey::of(&self.facets)?;
+        survey.minority().iter().for_each(|facet| self.facets[*facet as usize].swap(0, 1));
+        Ok(survey.minority().len())
+    }
+
+    /// Closes every free boundary by a fan of triangles around the mean of its nodes, which becomes a new node; returns how many were closed.
+    ///
+    /// # Errors
+    /// What orientation refuses, and [`MeshError::NonManifoldNodes`] where a free boundary touches itself.
+    pub fn cap(&mut self) -> Result<usize, MeshError> {
+        self.orient_alike()?;
+        // Free edges run against the boundary of the hole: from each node to the next.
+        let mut sides: Vec<[u32; 2]> =
+            self.facets.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).collect();
+        sides.sort_unstable();
+        let mut free: Vec<[u32; 2]> =
+            sides.iter().copied().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err()).collect();
+        let twice: Vec<u32> = free.windows(2).filter(|pair| pair[0][0] == pair[1][0]).map(|pair| pair[0][0]).collect();
+        if !twice.is_empty() {
+            return Err(MeshError::NonManifoldNodes { nodes: twice });
+        }
+        let mut closed = 0;
+        while let Some(&[first, _]) = free.first() {
+            let mut ring = Vec::new();
+            let mut at = first;
+            while let Ok(place) = free.binary_search_by_key(&at, |edge| edge[0]) {
+                let [from, to] = free.remove(place);
+                ring.push(from);
+                at = to;
+            }
+            let n = ring.len() as f64;
+            let mean =
+                core::array::from_fn(|d| ring.iter().map(|node| self.positions[*node as usize][d]).sum::<f64>() / n);
+            let center = self.positions.len() as u32;
+            self.positions.push(mean);
+            for (k, from) in ring.iter().enumerate() {
+                self.facets.push([ring[(k + 1) % ring.len()], *from, center]);
+            }
+            closed += 1;
+        }
+        Ok(closed)
+    }
+
+    /// The first triangle whose area is below `fraction` of its longest edge squared, with its area [m²].
+    pub fn thin_facet(&self, fraction: f64) -> Option<(u32, f64)> {
+        self.facets.iter().enumerate().find_map(|(index, facet)| {
+            let [a, b, c] = facet.map(|node| lift(&self.positions[node as usize]));
+            let area = triangle_area(a, b, c);
+            let mut longest = norm(subtract(b, a));
+            for other in [norm(subtract(c, b)), norm(subtract(a, c))] {
+                if other > longest {
+                    longest = other;
+                }
+            }
+            (area <= fraction * longest * longest).then_some((index as u32, area))
+        })
+    }
+
+    /// The first two triangles with the same nodes.
+    pub fn duplicate_facets(&self) -> Option<[u32; 2]> {
+        let mut keys: Vec<([u32; 3], u32)> = Vec::with_capacity(self.facets.len());
+        for (index, facet) in self.facets.iter().enumerate() {
+            let mut key = *facet;
+            key.sort_unstable();
+            keys.push((key, index as u32));
+        }
+        keys.sort_unstable();
+        keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
+    }
+
+    /// Leaves out nodes that no element names; returns how many. Groups lose them too.
+    pub fn drop_unreferenced(&mut self) -> usize {
+        let mut used = vec![false; self.nodes()];
+        for (_, _, nodes) in self.elements() {
+            nodes.iter().for_each(|node| used[*node as usize] = true);
+        }
+        let dropped = used.iter().filter(|u| !**u).count();
+        if dropped == 0 {
+            return 0;
+        }
+        let mut numbers = vec![u32::MAX; used.len()];
+        let mut kept = 0;
+        for node in 0..used.len() {
+            if used[node] {
+                numbers[node] = kept;
+                self.positions[kept as usize] = self.positions[node];
+                kept += 1;
+            }
+        }
+        self.positions.truncate(kept as usize);
+        let renumber = |node: &mut u32| *node = numbers[*node as usize];
+        self.facets.iter_mut().flatten().for_each(renumber);
+        self.wires.iter_mut().flatten().for_each(renumber);
+        self.sheets.iter_mut().flatten().for_each(renumber);
+        self.sheet_quadrilaterals.iter_mut().flatten().for_each(renumber);
+        self.cells.tetrahedra.iter_mut().flatten().for_each(renumber);
+        self.cells.hexahedra.iter_mut().flatten().for_each(renumber);
+        for nodes in self.groups.values_mut() {
+            nodes.retain(|node| used[*node as usize]);
+            nodes.iter_mut().for_each(renumber);
+        }
+        dropped
+    }
+
+    /// Volume that the facets enclose [m³], positive for outward ones.
+    pub fn enclosed_volume(&self) -> f64 {
+        signed_volume(&self.facets, &self.positions)
+    }
+}

@@ -1,0 +1,199 @@
+//! Closed curves: holes, spacing, fillings, overlaps.
+#![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
+
+use opruga_mesh::outline::{self, OutlineError, Overlap, Ring};
+use opruga_mesh::signed_volume;
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+fn circle(center: [f64; 2], radius: f64, n: u32) -> Ring {
+    let at = |k: u32| TAU * f64::from(k) / f64::from(n);
+    let points = (0..n).map(|k| [center[0] + radius * libm::cos(at(k)), center[1] + radius * libm::sin(at(k))]);
+    Ring { points: points.collect(), part: 0 }
+}
+
+fn square(low: f64, high: f64, part: u32) -> Ring {
+    Ring { points: vec![[low, low], [high, low], [high, high], [low, high]], part }
+}
+
+fn total(rings: &[Ring]) -> f64 {
+    rings.iter().map(Ring::area).sum()
+}
+
+#[test]
+fn rings_in_rings_are_holes_and_islands_whichever_way_they_run() {
+    for mask in 0..8u32 {
+        let mut rings = vec![square(0.0, 4.0, 0), square(1.0, 3.0, 1), square(1.5, 2.5, 2)];
+        let mut wrong = 0;
+        for (k, ring) in rings.iter_mut().enumerate() {
+            if mask >> k & 1 == 1 {
+                ring.points.reverse();
+            }
+            // Even depth runs counter-clockwise.
+            wrong += usize::from((ring.area() > 0.0) != (k % 2 == 0));
+        }
+        assert_eq!(outline::nest(&mut rings), Ok(wrong));
+        assert_eq!(total(&rings), 16.0 - 4.0 + 1.0);
+        let mesh = outline::skin(&rings).expect("a skin");
+        assert_eq!(mesh.chambers().expect("chambers").len(), 2, "the ring with its hole, and the island in it");
+    }
+}
+
+#[test]
+fn rings_that_cross_or_touch_are_refused_with_the_place() {
+    let mut rings = vec![square(0.0, 2.0, 3), square(1.0, 3.0, 7)];
+    let Err(OutlineError::Meeting { parts, place }) = outline::nest(&mut rings) else { panic!("they cross") };
+    assert_eq!(parts, [3, 7]);
+    assert!([[2.0, 1.0], [1.0, 2.0]].contains(&place), "{place:?}");
+    let mut touching = vec![square(0.0, 1.0, 0), square(1.0, 2.0, 1)];
+    assert!(matches!(outline::nest(&mut touching), Err(OutlineError::Meeting { .. })));
+    let mut eight = vec![Ring { points: vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]], part: 0 }];
+    assert!(matches!(outline::nest(&mut eight), Err(OutlineError::Meeting { .. })));
+}
+
+#[test]
+fn rings_without_area_or_with_broken_numbers_are_refused() {
+    assert_eq!(outline::nest(&mut []), Err(OutlineError::Empty));
+    let line = Ring { points: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], part: 4 };
+    assert!(matches!(outline::nest(&mut [line]), Err(OutlineError::NoArea { part: 4, .. })));
+    let broken = Ring { points: vec![[0.0, 0.0], [1.0, f64::NAN], [2.0, 2.0]], part: 5 };
+    assert!(matches!(outline::nest(&mut [broken]), Err(OutlineError::NotFinite { part: 5, .. })));
+}
+
+#[test]
+fn a_resampled_circle_is_a_regular_polygon() {
+    let rings = outline::resampled(&[circle([3.0, 4.0], 1.0, 5000)], 0.1).expect("a circle");
+    let ring = &rings[0];
+    assert_eq!(ring.points.len(), 63, "2π / 0.1 rounded");
+    let edges: Vec<f64> = (0..63)
+        .map(|k| {
+            let (a, b) = (ring.points[k], ring.points[(k + 1) % 63]);
+            ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+        })
+        .collect();
+    for edge in &edges {
+        assert!((edge / edges[0] - 1.0).abs() < 1e-4, "{edge} and {}", edges[0]);
+    }
+    assert!((ring.area() - 0.5 * 63.0 * (TAU / 63.0).sin()).abs() < 1e-5);
+}
+
+#[test]
+fn corners_stay_where_they_are() {
+    let rings = outline::resampled(&[square(0.0, 1.0, 0)], 0.15).expect("a square");
+    assert_eq!(rings[0].points.len(), 4 * 7);
+    for corner in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+        assert!(rings[0].points.contains(&corner), "{corner:?}");
+    }
+    assert!((rings[0].area() - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_spacing_that_makes_edges_cross_is_refused() {
+    // A square hole that nearly fills its square: between them there is no room for long chords.
+    let mut rings = vec![circle([0.0, 0.0], 1.0, 400), circle([0.0, 0.0], 0.99, 400)];
+    outline::nest(&mut rings).expect("they do not touch");
+    assert!(outline::resampled(&rings, 0.02).is_ok());
+    assert!(matches!(outline::resampled(&rings, 0.5), Err(OutlineError::TooCoarse { .. })));
+}
+
+#[test]
+fn a_filled_disc_has_the_area_of_its_outline_and_good_angles() {
+    for spacing in [0.3, 0.1, 0.05, 0.02] {
+        let rings = outline::resampled(&[circle([1.0, -2.0], 1.0, 2000)], spacing).expect("a circle");
+        let (mesh, quality) = outline::filled(&rings, spacing).expect("a filling");
+        let area = mesh.measure().expect("an area").value();
+        assert!((area / total(&rings) - 1.0).abs() < 1e-12, "{area}");
+        assert!((signed_volume(&mesh.facets, &mesh.positions) / area - 1.0).abs() < 1e-12);
+        assert!(quality.complete && quality.smallest_angle >= 25.0 / 180.0 * PI, "{quality:?}");
+        assert!(quality.longest_edge < 1.75 * spacing && quality.shortest_edge > 0.4 * spacing, "{quality:?}");
+        assert_eq!(mesh.check(), [], "spacing {spacing}");
+        // One disc: V − E + T = 1.
+        let edges = mesh.edges(opruga_mesh::EdgeSet::All).len();
+        assert_eq!(mesh.nodes() as i64 - edges as i64 + mesh.cells.len() as i64, 1);
+        let equilateral = 4.0 * area / 3f64.sqrt() / spacing / spacing;
+        assert!((mesh.cells.len() as f64 / equilateral - 1.0).abs() < 0.25, "{} triangles", mesh.cells.len());
+    }
+}
+
+#[test]
+fn holes_stay_empty_and_islands_in_holes_are_filled() {
+    let mut rings = vec![circle([0.0; 2], 1.0, 300), circle([0.0; 2], 0.6, 200), circle([0.0; 2], 0.3, 100)];
+    outline::nest(&mut rings).expect("rings");
+    let rings = outline::resampled(&rings, 0.05).expect("rings");
+    let (mesh, quality) = outline::filled(&rings, 0.05).expect("a filling");
+    assert!((mesh.measure().expect("an area").value() - total(&rings)).abs() < 1e-12);
+    assert!(quality.smallest_angle >= 25.0 / 180.0 * PI);
+    let edges = mesh.edges(opruga_mesh::EdgeSet::All).len();
+    assert_eq!(mesh.nodes() as i64 - edges as i64 + mesh.cells.len() as i64, 1, "an annulus (0) and a disc (1)");
+}
+
+#[test]
+fn a_filling_is_the_same_bits_every_time() {
+    let rings = outline::resampled(&[circle([0.0; 2], 1.0, 400), circle([3.0, 0.0], 1.0, 400)], 0.07).expect("rings");
+    let (first, _) = outline::filled(&rings, 0.07).expect("a filling");
+    for _ in 0..3 {
+        assert_eq!(outline::filled(&rings, 0.07).expect("a filling").0, first);
+    }
+}
+
+#[test]
+fn a_thin_slanted_outline_is_filled_in_time_with_its_length() {
+    let (far, wide) = (2e3, 3.0);
+    let strip = Ring { points: vec![[0.0, 0.0], [far, far], [far, far + wide], [0.0, wide]], part: 0 };
+    let rings = outline::resampled(&[strip], 1.0).expect("a strip");
+    let (mesh, quality) = outline::filled(&rings, 1.0).expect("a filling");
+    let area = mesh.measure().expect("an area").value();
+    assert!((area / total(&rings) - 1.0).abs() < 1e-9, "{area}, {}, {}", total(&rings), far * wide);
+    assert!(quality.smallest_angle > 10.0 / 180.0 * PI, "{quality:?}");
+}
+
+#[test]
+fn joined_parts_cover_what_they_should() {
+    let parts = [square(0.0, 2.0, 0), square(1.0, 3.0, 1)];
+    let union = outline::joined(&parts, Overlap::Union);
+    assert_eq!(union.len(), 1);
+    assert!((total(&union).abs() - 7.0).abs() < 1e-6);
+    let mut odd = outline::joined(&parts, Overlap::EvenOdd);
+    assert!((odd.iter().map(|r| r.area().abs()).sum::<f64>() - 6.0).abs() < 1e-6);
+    // A hole of one part covered by another is no hole.
+    let mut ring = vec![square(0.0, 4.0, 0), square(1.0, 3.0, 0), square(0.5, 3.5, 1)];
+    ring[1].points.reverse();
+    let filled = outline::joined(&ring, Overlap::Union);
+    assert_eq!(filled.len(), 1);
+    assert!((total(&filled).abs() - 16.0).abs() < 1e-6);
+    // Parts that do not meet stay what they are.
+    odd = outline::joined(&[square(0.0, 1.0, 0), square(5.0, 6.0, 1)], Overlap::Union);
+    assert_eq!(odd.len(), 2);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Stars with any spikes: either refused, or filled with the area of their outline.
+    #[test]
+    fn stars_are_filled_or_refused(radii in proptest::collection::vec(0.2f64..1.0, 3..14), spacing in 0.03f64..0.5) {
+        let n = radii.len() as f64;
+        let points = radii.iter().enumerate().map(|(k, r)| {
+            let angle = TAU * k as f64 / n;
+            [r * libm::cos(angle), r * libm::sin(angle)]
+        });
+        let mut rings = vec![Ring { points: points.collect(), part: 0 }];
+        prop_assume!(outline::nest(&mut rings).is_ok());
+        let Ok(rings) = outline::resampled(&rings, spacing) else { return Ok(()) };
+        let (mesh, quality) = outline::filled(&rings, spacing).expect("rings that do not cross are filled");
+        prop_assert!((mesh.measure().expect("an area").value() / total(&rings) - 1.0).abs() < 1e-9);
+        prop_assert!(mesh.chambers().is_ok());
+        prop_assert!(quality.smallest_angle > 0.0 && quality.longest_edge < 4.0 * spacing, "{:?}", quality);
+    }
+
+    /// Wherever it lies and however large it is, a filling has the same triangles.
+    #[test]
+    fn fillings_move_with_their_outline(power in -3i32..4) {
+        let factor = 2f64.powi(power);
+        let unit = vec![circle([0.0; 2], 1.0, 50)];
+        let larger = vec![Ring { points: unit[0].points.iter().map(|p| p.map(|x| x * factor)).collect(), part: 0 }];
+        let (a, _) = outline::filled(&unit, 0.125).expect("a filling");
+        let (b, _) = outline::filled(&larger, 0.125 * factor).expect("a filling");
+        prop_assert_eq!(a.cells.triangles, b.cells.triangles);
+    }
+}

@@ -1,0 +1,199 @@
+//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces.
+
+use super::CENTER;
+use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+
+const SPACING: Field = Field::new(
+    "spacing",
+    Allowed::POSITIVE,
+    "m",
+    Default::Required,
+    "The distance from node to node, before `scale`; finer detail is left out.",
+);
+const SIZE: Field =
+    Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
+const FILLING: Field = Field::new(
+    "filling",
+    Allowed::Choice(&["none", "triangles"]),
+    "",
+    Default::Text("none"),
+    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing.",
+);
+const OVERLAP: Field = Field::new(
+    "overlap",
+    Allowed::Choice(&["refuse", "union", "even_odd"]),
+    "",
+    Default::Text("refuse"),
+    "What holds where outlines cross: an error, what any part covers, or what an odd number of outlines enclose.",
+);
+const DROP_BELOW: Field = Field::new(
+    "drop_below",
+    Allowed::NOT_NEGATIVE,
+    "m²",
+    Default::Number(0.0),
+    "Outlines of less area are left out, and counted.",
+);
+
+static SVG: Spec = Spec {
+    kind: "svg",
+    summary: "the outline of a drawing",
+    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The SVG file, looked up relative to the scene."),
+        Field::new(
+            "path",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The `id` of one element or group; the whole drawing where the scene is silent.",
+        ),
+        SPACING,
+        SIZE,
+        CENTER,
+        FILLING,
+        OVERLAP,
+        DROP_BELOW,
+    ],
+};
+
+static MAP: Spec = Spec {
+    kind: "map",
+    summary: "a country or any other polygons of a map",
+    documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Neighbours that share a border are joined with `overlap = \"union\"`.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The map, looked up relative to the scene."),
+        Field::new(
+            "feature",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The `id` of a feature, or a text among its properties such as its name; all features where the scene is silent.",
+        ),
+        Field::new("layer", Allowed::Text, "", Default::Absent, "The object of a topology that has several."),
+        Field::new(
+            "projection",
+            Allowed::Choice(&["equirectangular", "mercator", "none"]),
+            "",
+            Default::Text("equirectangular"),
+            "How degrees become lengths; `equirectangular` is true to proportion at the middle latitude, `none` takes coordinates as they are.",
+        ),
+        SPACING,
+        SIZE,
+        CENTER,
+        FILLING,
+        OVERLAP,
+        DROP_BELOW,
+    ],
+};
+
+static TEXT: Spec = Spec {
+    kind: "text",
+    summary: "a word in the letters of a font",
+    documentation: "The outlines of the letters of an OpenType or TrueType font, on one line; counters are holes.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The font, looked up relative to the scene."),
+        Field::new("text", Allowed::Text, "", Default::Required, "What is written."),
+        SPACING,
+        SIZE,
+        CENTER,
+        FILLING,
+        OVERLAP,
+        DROP_BELOW,
+    ],
+};
+
+static BITMAP: Spec = Spec {
+    kind: "bitmap",
+    summary: "the contour of a picture",
+    documentation: "A PNG picture; the contour runs where its pixels cross the threshold, linear between their middles.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The PNG file, looked up relative to the scene."),
+        Field::new(
+            "inside",
+            Allowed::Choice(&["dark", "bright", "opaque"]),
+            "",
+            Default::Text("dark"),
+            "Which pixels are inside: dark ones (on white), bright ones (on black), or opaque ones.",
+        ),
+        Field::new(
+            "threshold",
+            Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Open(1.0) },
+            "",
+            Default::Number(0.5),
+            "How dark, bright or opaque a pixel must be at least.",
+        ),
+        SPACING,
+        SIZE,
+        CENTER,
+        FILLING,
+        OVERLAP,
+        DROP_BELOW,
+    ],
+};
+
+static SURFACE: Spec = Spec {
+    kind: "surface",
+    summary: "a surface of triangles",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary) or glTF (.gltf, .glb), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    dimensions: &[3],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
+        Field::new(
+            "size",
+            Allowed::POSITIVE,
+            "m",
+            Default::Absent,
+            "The longest side of its bounding box; the units of the file are metres where the scene is silent.",
+        ),
+        CENTER,
+        Field::new(
+            "up",
+            Allowed::Choice(&["y", "z"]),
+            "",
+            Default::Text("y"),
+            "Which axis of the file points up, along y.",
+        ),
+        Field::new(
+            "weld",
+            Allowed::NOT_NEGATIVE,
+            "m",
+            Default::Absent,
+            "Vertices at most this far apart in the file are joined, and counted; STL joins those at the same place without being asked.",
+        ),
+        Field::new(
+            "open",
+            Allowed::Choice(&["refuse", "cap", "sheet"]),
+            "",
+            Default::Text("refuse"),
+            "What becomes of a surface with free boundaries: an error, closed by fans of triangles, or cloth.",
+        ),
+        Field::new(
+            "filling",
+            Allowed::Choice(&["none", "lattice"]),
+            "",
+            Default::Text("none"),
+            "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra inside, which carry the surface for drawing.",
+        ),
+        Field::new(
+            "spacing",
+            Allowed::POSITIVE,
+            "m",
+            Default::Absent,
+            "The side of the cubes of the lattice, before `scale`; nodes lie at their corners and middles.",
+        ),
+    ],
+};
+
+/// All of them.
+pub(super) fn all() -> Vec<&'static Spec> {
+    vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE]
+}
+
+/// Whether a shape of this kind is made from a file, which only its reader can do.
+pub fn is_from_file(kind: &str) -> bool {
+    all().iter().any(|spec| spec.kind == kind)
+}
