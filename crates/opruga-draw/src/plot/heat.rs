@@ -96,7 +96,9 @@ fn draw_panel(svg: &mut Svg, map: &HeatMap, panel: &HeatPanel, area: [f64; 4], c
     let middle = 0.5 * (top + bottom);
     let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
     svg.text(&map.y_label, [16.0, middle], SIZE, "middle", INK, &turn);
-    colour_bar(svg, &scale, [right + 14.0, top, right + 30.0, bottom]);
+    if places(map).any(|at| value(panel, at).is_some()) {
+        colour_bar(svg, &scale, [right + 14.0, top, right + 30.0, bottom]);
+    }
 }
 
 /// Draws the colours of a scale from low to high, with ticks at their right.
