@@ -68,7 +68,7 @@ fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_tim
         &["collider.0.restitution=0.3,0.5,0.8,1"],
         &["bounce_height.drop", "low.vy.min", "low.y.max", "energy_drift"],
     );
-    let fall = 0.9; // from 1.4 m to the floor at 0.5 m
+    let fall: f64 = 0.9; // from 1.4 m to the floor at 0.5 m
     for row in rows(&sweep) {
         let e: f64 = row.values[0].as_deref().and_then(opruga::sweep::number).expect("a number");
         let height = value(&row, 0);
@@ -113,7 +113,7 @@ models = [
     assert_eq!(rows.len(), 6);
     for row in &rows {
         let of = |k: usize| row.values[k].as_deref().and_then(opruga::sweep::number).expect("a number");
-        let (gas, k, n) = (of(0), of(1), 24.0);
+        let (gas, k, n): (f64, f64, f64) = (of(0), of(1), 24.0);
         let edge = 2.0 * (std::f64::consts::PI / n).sin();
         let rest = 0.5 * edge;
         let length = 0.5 * (rest + (rest * rest + 8.0 * gas / (k * n)).sqrt());

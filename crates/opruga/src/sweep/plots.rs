@@ -72,7 +72,7 @@ impl Plots<'_> {
                 continue;
             }
             let mut y = axis_of(&metric.name, &metric.unit(self.length_unit));
-            let (low, high) = values().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), y| (l.min(y), h.max(y)));
+            let (low, high) = values().fold((f64::INFINITY, 0.0), wider);
             y.logarithmic = low > 0.0 && high > 100.0 * low;
             // What hardly changes shall look so.
             if metric.is_timing() && !y.logarithmic {
@@ -89,7 +89,7 @@ impl Plots<'_> {
             let named: Vec<String> = words.iter().enumerate().map(|(k, word)| format!("{} {word}", k + 1)).collect();
             label = format!("{label} ({})", named.join(", "));
         }
-        let x = opruga_draw::Axis { logarithmic: axis.logarithmic(), ..axis_of(&label, "") };
+        let x = opruga_draw::Axis { logarithmic: axis.logarithmic(), ..opruga_draw::Axis::linear(label, "") };
         Chart { title: self.sweep.name.clone(), x, panels, ..Chart::default() }.to_svg()
     }
 
@@ -109,7 +109,7 @@ impl Plots<'_> {
                 }
             }
             let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
-            let (low, high) = finite().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), v| (l.min(v), h.max(v)));
+            let (low, high) = finite().fold((f64::INFINITY, 0.0), wider);
             panels.push(HeatPanel {
                 scale: opruga_draw::Axis {
                     logarithmic: low > 0.0 && high > 100.0 * low,
@@ -131,6 +131,11 @@ impl Plots<'_> {
         }
         .to_svg()
     }
+}
+
+/// A range of numbers that holds one more.
+fn wider((low, high): (f64, f64), x: f64) -> (f64, f64) {
+    (if x < low { x } else { low }, if x > high { x } else { high })
 }
 
 /// A linear axis; the words of a name are told apart by spaces.
