@@ -30,7 +30,7 @@ fn value(row: &Row, metric: usize) -> f64 {
     row.numbers[metric].expect("a number")
 }
 
-/// A net of two nodes without strain: it falls as a point does.
+/// Nodes without forces between them, at most 0.2 mm apart: they fall as a point does.
 const FALLING: &str = r#"
 format = "opruga-1"
 dimension = 2
@@ -44,7 +44,7 @@ gravity = [0.0, -9.81]
 kind = "verlet"
 [[body]]
 name = "drop"
-shape = { kind = "ring", radius = 0.1, vertices = 8, center = [0.0, 1.5] }
+shape = { kind = "ring", radius = 1e-4, vertices = 8, center = [0.0, 1.4001] }
 mass = 1.0
 models = [{ kind = "mass_spring", stiffness = 0.0, damping = 0.0 }]
 [[collider]]
@@ -60,7 +60,7 @@ select = { node = 6 }
 record = ["position", "velocity"]
 "#;
 
-/// Without springs the lowest node is a point mass: after a fall from h it rises to e² h, and hits at √(2 g h).
+/// Without forces of springs each node is a point mass: after a fall from h it rises to e² h, and hits at √(2 g h).
 #[test]
 fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_times_that_height() {
     let sweep = sweep(
@@ -72,13 +72,13 @@ fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_tim
     for row in rows(&sweep) {
         let e: f64 = row.values[0].as_deref().and_then(opruga::sweep::number).expect("a number");
         let height = value(&row, 0);
-        // One substep of 0.2 ms at the speed of the impact.
-        let tolerance = 2e-4 * (2.0 * 9.81 * fall).sqrt();
-        assert!((height - e * e * fall).abs() < 2.0 * tolerance, "e = {e}: {height} against {}", e * e * fall);
+        // One substep of 0.2 ms at the speed of the impact and at that of the bounce, and the size of the drop.
+        let tolerance = 2.0 * 2e-4 * (2.0 * 9.81 * fall).sqrt() + 2e-4;
+        assert!((height - e * e * fall).abs() < tolerance, "e = {e}: {height} against {}", e * e * fall);
         // Probes are read at the ends of frames, at most 0.02 s before the impact.
         let speed = (2.0 * 9.81 * fall).sqrt();
         assert!(value(&row, 1) >= -speed * 1.001 && value(&row, 1) <= -speed + 0.02 * 9.81 * 1.001);
-        assert!((value(&row, 2) - 1.4).abs() < 1e-12);
+        assert!((value(&row, 2) - 1.4).abs() < tolerance);
         assert!(value(&row, 3) < 1e-2);
     }
 }
