@@ -121,7 +121,7 @@ fn bad_calls_are_refused_before_anything_is_written() {
     for (arguments, word) in [
         (vec!["sweep", "ball", "--metric=energy_drift", "--out=o"], "no parameter varies"),
         (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--out=o"], "nothing is measured"),
-        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--metric=bounce", "--out=o"], "did you mean"),
+        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--metric=bounce_hight", "--out=o"], "did you mean"),
         (vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--metric=energy_drift", "--out=o"], "how many values"),
         (vec!["sweep", "ball", "--set=body.bell.mass=1,2", "--metric=energy_drift", "--out=o"], "set.path"),
         (vec!["sweep", "bell", "--set=body.ball.mass=1,2", "--metric=energy_drift", "--out=o"], "no such file"),
