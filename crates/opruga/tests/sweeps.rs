@@ -1,4 +1,5 @@
 //! What sweeps measure, against closed forms.
+#![allow(clippy::disallowed_methods)] // no physics here
 
 use opruga::sweep::{Axis, Design, Metric, Row, Status, Sweep};
 use std::sync::atomic::AtomicBool;

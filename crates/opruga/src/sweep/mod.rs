@@ -26,6 +26,8 @@
 //! }
 //! ```
 
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
+
 mod grid;
 mod metrics;
 mod plots;
