@@ -22,6 +22,8 @@ pub(crate) enum Command {
     Run(Run),
     /// Read a scene and report all of its errors, without running it
     Check(Check),
+    /// Run a scene at many values of its parameters and compare what happens
+    Sweep(Sweep),
     /// List models, integrators, shapes, colliders and the scenes that come with the program
     List {
         /// Print JSON
@@ -102,9 +104,73 @@ pub(crate) struct Check {
     /// Shapes may be read from files outside of the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
+    /// Check again whenever the scene file changes, until Ctrl-C
+    #[arg(long)]
+    pub(crate) watch: bool,
 }
 
 #[derive(Args, Debug)]
+pub(crate) struct Sweep {
+    /// A scene file, or the name of a scene that comes with the program
+    #[arg(conflicts_with = "resume", required_unless_present = "resume")]
+    pub(crate) scene: Option<String>,
+    /// The values of a parameter; may be given several times
+    ///
+    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT of them, both ends among them; with :log behind it neighbours
+    /// have the same ratio, with :whole they are rounded. PATH=VALUE changes the parameter for all points. Several
+    /// parameters that vary make a grid, unless --each or --sample says otherwise.
+    #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
+    pub(crate) set: Vec<String>,
+    /// Vary one parameter after the other, while the others are as in the scene
+    #[arg(long, conflicts_with_all = ["resume", "sample"])]
+    pub(crate) each: bool,
+    /// Visit so many random points instead of a grid; ranges then have no COUNT
+    ///
+    /// They are a Latin hypercube: if the range of a parameter is cut into as many parts as there are points, each part
+    /// holds one.
+    #[arg(long, value_name = "COUNT", conflicts_with = "resume")]
+    pub(crate) sample: Option<usize>,
+    /// Random points that know nothing of each other, instead of a Latin hypercube
+    #[arg(long, requires = "sample")]
+    pub(crate) independent: bool,
+    /// The seed of the random points
+    #[arg(long, requires = "sample", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// What is measured of every run; may be given several times
+    ///
+    /// bounce_height[.BODY], settling_time, equilibrium_radius[.BODY], energy_drift, nanoseconds_per_step, or
+    /// PROBE.COLUMN.min, .max, .mean, .last for a column of a probe of the scene, such as top.y.max.
+    #[arg(long = "metric", value_name = "METRIC", conflicts_with = "resume")]
+    pub(crate) metrics: Vec<String>,
+    /// The simulated time at which runs end, instead of what the scene says [s]
+    #[arg(long, allow_negative_numbers = true, conflicts_with = "resume")]
+    pub(crate) seconds: Option<f64>,
+    /// The folder for the output [default: out/SCENE-sweep]
+    ///
+    /// A sweep that was stopped goes on where the same question is asked of the same folder.
+    #[arg(long, value_name = "FOLDER", conflicts_with = "resume")]
+    pub(crate) out: Option<PathBuf>,
+    /// Go on with the sweep of this folder, whose question it holds
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) resume: Option<PathBuf>,
+    /// Begin anew, whatever the folder holds
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) force: bool,
+    /// Runs at the same time, 1 to 256 [default: the number of cores]; the results do not depend on them, speeds do
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: Option<u16>,
+    /// Print the summary, or an error, as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Run even where the step is above the stable limit
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) allow_unstable: bool,
+    /// Unknown fields of the scene are overlooked
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) lenient: bool,
+}
+
+#[derive(Args, Clone, Debug)]
 pub(crate) struct Run {
     /// A scene file, or the name of a scene that comes with the program [default: ball]
     #[arg(conflicts_with = "resume")]
@@ -172,6 +238,9 @@ pub(crate) struct Run {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
+    /// Run again whenever the scene file changes, until Ctrl-C; later runs replace the output of earlier ones
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) watch: bool,
 }
 
 impl Run {
@@ -190,6 +259,7 @@ impl Command {
         match self {
             Command::Run(run) => run.json,
             Command::Check(check) => check.json,
+            Command::Sweep(sweep) => sweep.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,

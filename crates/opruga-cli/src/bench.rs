@@ -170,7 +170,7 @@ pub(crate) fn time(
 }
 
 /// Processor time of this thread [s]; wall time where the system has no such clock.
-fn processor_time() -> f64 {
+pub(crate) fn processor_time() -> f64 {
     #[cfg(unix)]
     {
         let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

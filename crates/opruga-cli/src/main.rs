@@ -5,12 +5,15 @@ mod arguments;
 mod bench;
 mod checkpoints;
 mod failure;
+mod interrupt;
 mod outputs;
 mod plots;
 mod recorder;
 mod reports;
 mod run;
 mod source;
+mod sweep;
+mod watch;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -39,8 +42,9 @@ fn main() -> ExitCode {
     let command = arguments.command.unwrap_or_else(|| Command::Run(arguments::Run::default_scene()));
     let json = command.json();
     let outcome = match &command {
-        Command::Run(run) => run::run(run),
-        Command::Check(check) => reports::check(check),
+        Command::Run(run) => watch::run(run),
+        Command::Check(check) => watch::check(check),
+        Command::Sweep(call) => sweep::sweep(call),
         Command::List { json } => reports::list(*json),
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),

@@ -3,6 +3,7 @@
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
+use crate::interrupt;
 use crate::outputs::{Outputs, counted};
 use crate::recorder::Recorder;
 use crate::source::{Source, Whole, overrides};
@@ -15,7 +16,7 @@ use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Runs a scene.
@@ -78,18 +79,21 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     }
 }
 
+/// The folder for what nobody has chosen a folder for; `out` around it is made.
+pub(crate) fn default_folder(name: &str) -> Result<PathBuf, Failure> {
+    let parent = PathBuf::from("out");
+    if !parent.exists() {
+        let failed = |e: std::io::Error| Failure::Output(format!("the folder `out` cannot be made: {e}"));
+        std::fs::create_dir(&parent).map_err(failed)?;
+    }
+    Ok(parent.join(name))
+}
+
 /// The folder for the output; it is locked, and known to be writable.
 fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
     let folder = match &call.out {
         Some(path) => path.clone(),
-        None => {
-            let parent = PathBuf::from("out");
-            if !parent.exists() {
-                let failed = |e: std::io::Error| Failure::Output(format!("the folder `out` cannot be made: {e}"));
-                std::fs::create_dir(&parent).map_err(failed)?;
-            }
-            parent.join(&source.name)
-        }
+        None => default_folder(&source.name)?,
     };
     // A resumed run writes its own part only: it must not replace the part before it unasked.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
@@ -141,10 +145,7 @@ impl Job<'_> {
             files: self.files,
         };
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
-        let stop = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stop);
-        // A second handler in the same process (tests) is no error: the first one stays.
-        let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+        let stop = interrupt::asked_to_stop();
         let bar = progress_bar(frames);
         let start = Instant::now();
         let first = world.frames();
@@ -180,7 +181,7 @@ impl Job<'_> {
             steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
             told: self.told.into_iter().chain(keeper.warning()).collect(),
-            stop: &stop,
+            stop,
         };
         // What was computed until a failure is written all the same: it shows how the failure came about.
         let summary = outputs.write(&mut world, recorder, &mut keeper)?;

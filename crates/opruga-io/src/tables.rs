@@ -79,7 +79,8 @@ impl NumberTable {
 }
 
 /// A number with 17 significant digits: reading it back gives the same bits.
-struct Digits(f64);
+#[derive(Clone, Copy, Debug)]
+pub struct Digits(pub f64);
 
 impl core::fmt::Display for Digits {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -87,8 +88,8 @@ impl core::fmt::Display for Digits {
     }
 }
 
-/// A text as a cell of a table.
-fn cell(text: &str) -> String {
+/// A text as a cell of a table: in quotes where it holds commas, quotes or ends of lines.
+pub fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_string() }
 }
 

@@ -24,6 +24,7 @@
 
 pub mod pictures;
 pub mod scenes;
+pub mod sweep;
 
 pub use opruga_collide as collide;
 pub use opruga_core as core;

@@ -1,5 +1,6 @@
-//! Plots of lines over a common axis, as SVG text.
+//! Plots of lines over a common axis, and maps over two, as SVG text.
 
+mod heat;
 mod scale;
 mod svg;
 
@@ -105,6 +106,63 @@ pub struct Level {
     pub value: f64,
     /// What the value means.
     pub label: String,
+}
+
+/// A map of quantities over two others: cells in colours, panels above each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatMap {
+    /// The title, which may be empty.
+    pub title: String,
+    /// The width of the whole plot in pixels.
+    pub width: f64,
+    /// What the columns are.
+    pub x_label: String,
+    /// The columns from the left.
+    pub x: Vec<String>,
+    /// What the rows are.
+    pub y_label: String,
+    /// The rows from below.
+    pub y: Vec<String>,
+    /// The panels from the top.
+    pub panels: Vec<HeatPanel>,
+}
+
+impl Default for HeatMap {
+    fn default() -> HeatMap {
+        HeatMap {
+            title: String::new(),
+            width: 720.0,
+            x_label: String::new(),
+            x: Vec::new(),
+            y_label: String::new(),
+            y: Vec::new(),
+            panels: Vec::new(),
+        }
+    }
+}
+
+/// One quantity of a [`HeatMap`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeatPanel {
+    /// The quantity, and how its values become colours.
+    pub scale: Axis,
+    /// The values, row by row; what is not finite has no colour.
+    pub values: Vec<Vec<f64>>,
+    /// Cells, each a column and a row, that have no value because something went wrong.
+    pub failed: Vec<[usize; 2]>,
+}
+
+impl HeatMap {
+    /// The map as the text of an SVG file.
+    ///
+    /// # Errors
+    /// [`DrawError::Empty`] without panels, columns or rows.
+    pub fn to_svg(&self) -> Result<String, DrawError> {
+        if self.panels.is_empty() || self.x.is_empty() || self.y.is_empty() {
+            return Err(DrawError::Empty("a map needs a panel, a column and a row"));
+        }
+        Ok(heat::write(self))
+    }
 }
 
 impl Chart {

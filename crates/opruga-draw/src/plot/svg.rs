@@ -7,30 +7,31 @@ use crate::colour::{INK, OKABE_ITO, SOFT_INK};
 use std::fmt::Write;
 
 /// The size of the letters of labels.
-const SIZE: f64 = 13.0;
+pub(super) const SIZE: f64 = 13.0;
 /// The size of the letters of ticks.
-const TICK_SIZE: f64 = 12.0;
+pub(super) const TICK_SIZE: f64 = 12.0;
 /// The height of a row of names above a panel.
 const NAME_ROW: f64 = 20.0;
 /// The free space between panels.
 const GAP: f64 = 16.0;
 
 /// The text of an SVG file.
-struct Svg {
+#[derive(Default)]
+pub(super) struct Svg {
     /// What is written so far.
     text: String,
 }
 
 impl Svg {
     /// Adds an element.
-    fn add(&mut self, element: std::fmt::Arguments) {
+    pub(super) fn add(&mut self, element: std::fmt::Arguments) {
         self.text.push_str("  ");
         let _ = self.text.write_fmt(element);
         self.text.push('\n');
     }
 
     /// Adds a line.
-    fn line(&mut self, [x1, y1, x2, y2]: [f64; 4], colour: [u8; 3], width: f64, dashes: &str) {
+    pub(super) fn line(&mut self, [x1, y1, x2, y2]: [f64; 4], colour: [u8; 3], width: f64, dashes: &str) {
         let colour = hex(colour);
         let dashes = if dashes.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dashes}""#) };
         self.add(format_args!(
@@ -39,7 +40,7 @@ impl Svg {
     }
 
     /// Adds a text.
-    fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, anchor: &str, colour: [u8; 3], more: &str) {
+    pub(super) fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, anchor: &str, colour: [u8; 3], more: &str) {
         let colour = hex(colour);
         let text = escape(text);
         self.add(format_args!(
@@ -49,7 +50,7 @@ impl Svg {
 }
 
 /// A colour as SVG writes it.
-fn hex([red, green, blue]: [u8; 3]) -> String {
+pub(super) fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
@@ -71,12 +72,12 @@ fn escape(text: &str) -> String {
 }
 
 /// The width of a text.
-fn width_of(text: &str, size: f64) -> f64 {
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
     f64::from(text_width(text, size as f32))
 }
 
 /// The label of an axis with its unit.
-fn axis_text(axis: &Axis) -> String {
+pub(super) fn axis_text(axis: &Axis) -> String {
     match (axis.label.is_empty(), axis.unit.is_empty()) {
         (_, true) => axis.label.clone(),
         (true, false) => format!("[{}]", axis.unit),
@@ -102,7 +103,7 @@ pub(crate) fn write(chart: &Chart) -> String {
     let left = chart.panels.iter().zip(&scales).map(tick_width).fold(20.0, f64::max) + 44.0;
     let right = chart.width - 22.0;
     let mut y = if chart.title.is_empty() { 14.0 } else { 40.0 };
-    let mut svg = Svg { text: String::new() };
+    let mut svg = Svg::default();
     if !chart.title.is_empty() {
         svg.text(&chart.title, [left, 25.0], 16.0, "start", INK, r#" font-weight="600""#);
     }
@@ -115,7 +116,11 @@ pub(crate) fn write(chart: &Chart) -> String {
         y += panel.height + if last { 0.0 } else { GAP };
     }
     svg.text(&axis_text(&chart.x), [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
-    let (width, height) = (chart.width, y + 56.0);
+    document(&svg, chart.width, y + 56.0)
+}
+
+/// A whole SVG file: white, with what was drawn on it.
+pub(super) fn document(svg: &Svg, width: f64, height: f64) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"Inter, Helvetica, Arial, sans-serif\">\n  \
@@ -125,7 +130,7 @@ pub(crate) fn write(chart: &Chart) -> String {
 }
 
 /// The number of ticks which fit along a height.
-fn tick_count(height: f64) -> usize {
+pub(super) fn tick_count(height: f64) -> usize {
     (height / 42.0).clamp(2.0, 10.0) as usize
 }
 

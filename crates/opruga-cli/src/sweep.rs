@@ -1,0 +1,529 @@
+//! `opruga sweep`: many runs of one scene at a time, a table that grows row by row, and what it shows.
+
+use crate::arguments::Sweep as Call;
+use crate::bench::processor_time;
+use crate::failure::{Failure, print_data};
+use crate::interrupt;
+use crate::outputs::counted;
+use crate::run::{default_folder, simd_from_environment};
+use crate::source::{Source, argument};
+use opruga::draw::format_value;
+use opruga::io::overrides;
+use opruga::io::problem::visible;
+use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
+use opruga::io::{Files, SceneError};
+use opruga::sweep::{Axis, Design, Metric, Row, Status, Sweep, head, line, plots, read_rows};
+use opruga::{Simd, sweep::Point};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions};
+use std::io::{IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+const QUESTION: &str = "question.json";
+const TABLE: &str = "results.csv";
+
+/// What was asked: all that decides about the numbers of the table. It lies in the folder, so that a sweep can go on.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+struct Question {
+    schema: u32,
+    name: String,
+    /// Where the scene came from; the same text from elsewhere is the same question.
+    file: String,
+    set: Vec<String>,
+    metrics: Vec<String>,
+    each: bool,
+    sample: Option<usize>,
+    independent: bool,
+    seed: u64,
+    allow_unstable: bool,
+    lenient: bool,
+    scene: String,
+    /// The files that the scene names, their bytes written as pairs of hexadecimal digits.
+    #[serde(default)]
+    files: BTreeMap<String, String>,
+}
+
+fn to_digits(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn from_digits(text: &str) -> Option<Vec<u8>> {
+    let byte = |pair: &[u8]| u8::from_str_radix(core::str::from_utf8(pair).ok()?, 16).ok();
+    text.len().is_multiple_of(2).then(|| text.as_bytes().chunks(2).map(byte).collect()).flatten()
+}
+
+/// Runs a sweep, or the rest of one.
+pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
+    let simd = simd_from_environment()?;
+    let (question, path) = match &call.resume {
+        Some(path) => (Question::open(path)?.ok_or_else(|| no_sweep(path))?, path.clone()),
+        None => {
+            let question = Question::of(call)?;
+            let path = match &call.out {
+                Some(path) => path.clone(),
+                None => default_folder(&format!("{}-sweep", question.name))?,
+            };
+            (question, path)
+        }
+    };
+    let sweep = question.sweep()?;
+    let points = sweep.points()?;
+    let folder = question.folder(&path, call.force)?;
+    let known = known_rows(&folder, &sweep, &points)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = call.threads.map_or(cores.min(256), usize::from);
+    let work = Work { sweep: &sweep, points: &points, folder: &folder, threads, simd };
+    let start = Instant::now();
+    let rows = work.all(known)?;
+    let length_unit = length_unit(&sweep);
+    let mut files = vec![TABLE.to_string(), QUESTION.into()];
+    match plots(&sweep, &rows, &length_unit) {
+        Ok(plots) => {
+            for (name, text) in plots {
+                folder.write(&name, true, |out| out.write_all(text.as_bytes()))?;
+                files.push(name);
+            }
+        }
+        Err(nothing @ opruga::draw::DrawError::Empty(_)) => eprintln!("note: no plots: {nothing}"),
+        Err(error) => return Err(Failure::Draw(error.to_string())),
+    }
+    files.push("summary.json".into());
+    let found = Found { sweep: &sweep, rows: &rows, length_unit: &length_unit };
+    let mut summary = found.to_json();
+    summary["threads"] = threads.into();
+    summary["simd"] = simd.unwrap_or_else(Simd::best).name().into();
+    summary["wall_seconds"] = start.elapsed().as_secs_f64().into();
+    summary["files"] = files.into();
+    let text = serde_json::to_string_pretty(&summary).unwrap_or_default();
+    folder.write("summary.json", true, |out| writeln!(out, "{text}"))?;
+    if call.json {
+        print_data(&format!("{text}\n"))?;
+    } else {
+        print_data(&found.to_string())?;
+        if threads > 1 && sweep.metrics.iter().any(Metric::is_timing) {
+            eprintln!("note: {threads} runs shared the machine; for speeds take --threads 1 (and --force)");
+        }
+        eprintln!("written to {}", folder.path("").display());
+    }
+    Ok(0)
+}
+
+/// What the scene calls its unit of length.
+fn length_unit(sweep: &Sweep) -> String {
+    use opruga::blueprint::AnyBlueprint;
+    let options = opruga::io::scene::Options {
+        lenient: sweep.lenient,
+        overrides: sweep.fixed.clone(),
+        files: sweep.files.clone(),
+        ..opruga::io::scene::Options::default()
+    };
+    match opruga::io::scene::read(sweep.text.as_bytes(), &sweep.file, &opruga::catalogue(), &options) {
+        Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint.length_unit,
+        Ok((AnyBlueprint::Space(blueprint), _)) => blueprint.length_unit,
+        Err(_) => "m".into(),
+    }
+}
+
+fn no_sweep(path: &Path) -> Failure {
+    let shown = path.display().to_string();
+    let error = SceneError::new("read.failed", format!("there is no sweep: {QUESTION} is missing"));
+    Failure::Scene(vec![SceneError { file: shown, ..error }])
+}
+
+impl Question {
+    fn of(call: &Call) -> Result<Question, Failure> {
+        if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
+            return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
+        }
+        let source = Source::find(call.scene.as_deref().unwrap_or_default())?;
+        let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {
+            // The reader says where.
+            let nothing = opruga::io::scene::Options::default();
+            let refused = opruga::io::scene::read(&source.bytes, &source.file, &opruga::catalogue(), &nothing);
+            Failure::Scene(refused.err().unwrap_or_default())
+        })?;
+        // They belong to the question: a sweep goes on with the files that it began with.
+        let options = opruga::io::scene::Options {
+            lenient: true,
+            files: source.files.clone(),
+            ..opruga::io::scene::Options::default()
+        };
+        let named = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options).files;
+        let mut set = call.set.clone();
+        set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
+        Ok(Question {
+            schema: 1,
+            name: source.name,
+            file: source.file,
+            set,
+            metrics: call.metrics.clone(),
+            each: call.each,
+            sample: call.sample,
+            independent: call.independent,
+            seed: call.seed,
+            allow_unstable: call.allow_unstable,
+            lenient: call.lenient,
+            scene,
+            files: named.into_iter().map(|(name, bytes)| (name, to_digits(&bytes))).collect(),
+        })
+    }
+
+    /// The question of the sweep in a folder; none where there is no sweep.
+    fn open(folder: &Path) -> Result<Option<Question>, Failure> {
+        let path = folder.join(QUESTION);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let refuse = |error: SceneError| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
+        let bytes = opruga::io::scene::bytes_of(&path, &opruga::io::scene::Limits::default()).map_err(refuse)?;
+        serde_json::from_slice(&bytes).map(Some).map_err(|e| {
+            refuse(
+                SceneError::new("sweep.damaged", format!("the question of the sweep cannot be read: {e}"))
+                    .hint("--force begins the sweep anew"),
+            )
+        })
+    }
+
+    fn sweep(&self) -> Result<Sweep, Failure> {
+        let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
+        for set in &self.set {
+            match Axis::parse(set) {
+                Ok(Some(axis)) => axes.push(axis),
+                Ok(None) => fixed.extend(overrides::split(set).map_err(|e| errors.push(e))),
+                Err(error) => errors.push(error),
+            }
+        }
+        let metrics = self.metrics.iter().filter_map(|m| Metric::parse(m).map_err(|e| errors.push(e)).ok()).collect();
+        let mut files = BTreeMap::new();
+        for (name, digits) in &self.files {
+            match from_digits(digits) {
+                Some(bytes) => _ = files.insert(name.clone(), bytes.into()),
+                None => errors.push(
+                    SceneError::new("sweep.damaged", format!("the file `{name}` of the sweep cannot be read"))
+                        .hint("--force begins the sweep anew"),
+                ),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(Failure::Scene(errors));
+        }
+        Ok(Sweep {
+            name: self.name.clone(),
+            file: self.file.clone(),
+            text: self.scene.clone(),
+            files: Files::held(files),
+            fixed,
+            axes,
+            design: match self.sample {
+                Some(count) => Design::Sample { count, seed: self.seed, independent: self.independent },
+                None if self.each => Design::Each,
+                None => Design::Grid,
+            },
+            metrics,
+            allow_unstable: self.allow_unstable,
+            lenient: self.lenient,
+        })
+    }
+
+    /// The folder of this question, locked: a new one, or one that holds a part of the answer.
+    fn folder(&self, path: &Path, force: bool) -> Result<OutputFolder, Failure> {
+        let before = if force { None } else { Question::open(path)? };
+        let existing = if force || before.is_some() { Existing::Replace } else { Existing::Refuse };
+        if let Some(before) = before.as_ref().filter(|before| !self.same(before)) {
+            return Err(Failure::Write(WriteError {
+                code: "write.exists",
+                message: format!("the folder holds a sweep with another question: {}", self.difference(before)),
+                path: path.to_path_buf(),
+                bytes: 0,
+                hint: Some("--force begins anew, --out takes another folder".into()),
+            }));
+        }
+        let folder = OutputFolder::open(path, existing)?;
+        if before.is_none() {
+            // The old answer goes before the new question comes.
+            for name in [TABLE, "summary.json"] {
+                folder.remove(name)?;
+            }
+            let text = serde_json::to_string_pretty(self).unwrap_or_default();
+            folder.write(QUESTION, true, |out| writeln!(out, "{text}"))?;
+        }
+        Ok(folder)
+    }
+
+    fn same(&self, other: &Question) -> bool {
+        *self == Question { file: self.file.clone(), ..other.clone() }
+    }
+
+    fn difference(&self, before: &Question) -> String {
+        let lists = |new: &[String], old: &[String]| format!("{} instead of {}", old.join(" "), new.join(" "));
+        let said = if self.scene != before.scene {
+            "the text of the scene was another".to_string()
+        } else if self.files != before.files {
+            "a file that the scene names was another".to_string()
+        } else if self.set != before.set {
+            format!("--set {}", lists(&self.set, &before.set))
+        } else if self.metrics != before.metrics {
+            format!("--metric {}", lists(&self.metrics, &before.metrics))
+        } else {
+            "other points were asked for".to_string()
+        };
+        visible(&said)
+    }
+}
+
+/// The rows that the folder already has.
+fn known_rows(folder: &OutputFolder, sweep: &Sweep, points: &[Point]) -> Result<Vec<Row>, Failure> {
+    let path = folder.path(TABLE);
+    let shown = path.display().to_string();
+    let refuse = |error: SceneError| Failure::Scene(vec![SceneError { file: shown.clone(), ..error }]);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
+        Err(e) => return Err(refuse(SceneError::new("read.failed", format!("the file cannot be read: {e}")))),
+    };
+    read_rows(sweep, points, &text, &shown).map_err(|error| Failure::Scene(vec![error]))
+}
+
+struct Work<'a> {
+    sweep: &'a Sweep,
+    points: &'a [Point],
+    folder: &'a OutputFolder,
+    threads: usize,
+    simd: Option<Simd>,
+}
+
+/// What the threads share.
+struct Shared {
+    table: File,
+    rows: Vec<Row>,
+    failure: Option<Failure>,
+}
+
+impl Work<'_> {
+    /// Measures every point that has no row yet. Each row is on the disk before the next point of its thread begins; at the
+    /// end the table is sorted.
+    fn all(&self, known: Vec<Row>) -> Result<Vec<Row>, Failure> {
+        self.write_table(&known)?;
+        let path = self.folder.path(TABLE);
+        let table = OpenOptions::new().append(true).open(&path).map_err(|e| self.lost(&path, &e))?;
+        let missing: Vec<usize> = {
+            let mut there = vec![false; self.points.len()];
+            known.iter().for_each(|row| there[row.number] = true);
+            (0..there.len()).filter(|number| !there[*number]).collect()
+        };
+        if !known.is_empty() && !missing.is_empty() {
+            eprintln!("{} of {} are done already", known.len(), counted(self.points.len() as u64, "point", "points"));
+        }
+        let bar = progress_bar(self.points.len());
+        bar.set_position(known.len() as u64);
+        bar.reset_eta();
+        let stop = interrupt::asked_to_stop();
+        let shared = Mutex::new(Shared { table, rows: known, failure: None });
+        let next = AtomicUsize::new(0);
+        let lock = || shared.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let worker = || {
+            while let Some(number) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if stop.load(Ordering::Relaxed) {
+                    return;
+                }
+                let point = &self.points[*number];
+                let Some(row) = self.sweep.measure(*number, point, self.simd, &processor_time, stop) else { return };
+                let mut shared = lock();
+                if shared.failure.is_some() {
+                    return;
+                }
+                let written = shared.table.write_all(line(&row).as_bytes()).and_then(|()| shared.table.sync_data());
+                if let Err(error) = written {
+                    shared.failure = Some(self.lost(&path, &error));
+                    return;
+                }
+                shared.rows.push(row);
+                bar.inc(1);
+            }
+        };
+        std::thread::scope(|scope| {
+            (0..self.threads.min(missing.len())).for_each(|_| {
+                scope.spawn(worker);
+            });
+        });
+        bar.finish_and_clear();
+        let Shared { mut rows, failure, .. } = shared.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(failure) = failure {
+            return Err(failure);
+        }
+        rows.sort_by_key(|row| row.number);
+        if rows.len() < self.points.len() {
+            let folder = argument(&self.folder.path("").display().to_string());
+            eprintln!(
+                "{} of {} points are done; `opruga sweep --resume {folder}` goes on",
+                rows.len(),
+                self.points.len()
+            );
+            return Err(Failure::Interrupted);
+        }
+        self.write_table(&rows)?;
+        Ok(rows)
+    }
+
+    fn write_table(&self, rows: &[Row]) -> Result<(), Failure> {
+        self.folder.write(TABLE, true, |out| {
+            out.write_all(head(self.sweep).as_bytes())?;
+            rows.iter().try_for_each(|row| out.write_all(line(row).as_bytes()))
+        })?;
+        Ok(())
+    }
+
+    fn lost(&self, path: &Path, error: &std::io::Error) -> Failure {
+        Failure::Write(WriteError {
+            code: "write.failed",
+            message: format!("a row of the table cannot be written: {error}"),
+            path: PathBuf::from(path),
+            bytes: 0,
+            hint: Some("the rows before it are kept; the same call goes on with the sweep".into()),
+        })
+    }
+}
+
+fn progress_bar(points: usize) -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} points, {eta} left");
+    indicatif::ProgressBar::new(points as u64)
+        .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+}
+
+/// What the table shows.
+struct Found<'a> {
+    sweep: &'a Sweep,
+    rows: &'a [Row],
+    length_unit: &'a str,
+}
+
+/// The lowest and the highest number of a metric, and the rows that have them.
+struct Ends<'a> {
+    lowest: (f64, &'a Row),
+    highest: (f64, &'a Row),
+}
+
+impl Found<'_> {
+    /// The ends of a metric over some rows; none where no row has a number.
+    fn ends<'r>(&self, metric: usize, rows: impl Iterator<Item = &'r Row>) -> Option<Ends<'r>> {
+        rows.filter_map(|row| Some((row.numbers[metric]?, row))).fold(None, |ends, found| match ends {
+            None => Some(Ends { lowest: found, highest: found }),
+            Some(ends) => Some(Ends {
+                lowest: if found.0 < ends.lowest.0 { found } else { ends.lowest },
+                highest: if found.0 > ends.highest.0 { found } else { ends.highest },
+            }),
+        })
+    }
+
+    /// The rows in which a parameter varies; one after the other each has its own.
+    fn rows_of(&self, axis: usize) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.values[axis].is_some())
+    }
+
+    fn failed(&self) -> Vec<(&str, usize)> {
+        let mut counts: Vec<(&str, usize)> = Vec::new();
+        for row in self.rows.iter().filter(|row| row.status != Status::Done) {
+            match counts.iter_mut().find(|(code, _)| *code == row.status.word()) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((row.status.word(), 1)),
+            }
+        }
+        counts
+    }
+
+    fn to_json(&self) -> serde_json::Value {
+        let end = |(value, row): (f64, &Row)| {
+            let at = self.sweep.axes.iter().zip(&row.values);
+            let at: serde_json::Map<_, _> =
+                at.filter_map(|(axis, value)| Some((axis.path.clone(), value.clone()?.into()))).collect();
+            json!({"value": value, "point": row.number, "at": at})
+        };
+        let ends = |ends: Ends<'_>| json!({"lowest": end(ends.lowest), "highest": end(ends.highest)});
+        let metrics = self.sweep.metrics.iter().enumerate().map(|(place, metric)| {
+            let mut object = self.ends(place, self.rows.iter()).map_or_else(|| json!({}), ends);
+            object["name"] = metric.name.clone().into();
+            object["unit"] = metric.unit(self.length_unit).into();
+            object["numbers"] = self.rows.iter().filter(|row| row.numbers[place].is_some()).count().into();
+            if self.sweep.design == Design::Each {
+                let of = (0..self.sweep.axes.len()).map(|axis| {
+                    let mut object = self.ends(place, self.rows_of(axis)).map_or_else(|| json!({}), ends);
+                    object["parameter"] = self.sweep.axes[axis].path.clone().into();
+                    object
+                });
+                object["parameters"] = of.collect::<Vec<_>>().into();
+            }
+            object
+        });
+        let failed = self.failed();
+        json!({
+            "schema": 1,
+            "scene": self.sweep.name,
+            "parameters": self.sweep.axes.iter().map(|axis| &axis.path).collect::<Vec<_>>(),
+            "points": self.rows.len(),
+            "done": self.rows.iter().filter(|row| row.status == Status::Done).count(),
+            "failed": failed.iter().map(|(code, count)| json!({"code": code, "count": count})).collect::<Vec<_>>(),
+            "metrics": metrics.collect::<Vec<_>>(),
+        })
+    }
+
+    /// A line for a metric over some rows.
+    fn say(
+        &self,
+        f: &mut core::fmt::Formatter<'_>,
+        name: &str,
+        metric: usize,
+        axis: Option<usize>,
+    ) -> core::fmt::Result {
+        let unit = self.sweep.metrics[metric].unit(self.length_unit);
+        let ends = match axis {
+            Some(axis) => self.ends(metric, self.rows_of(axis)),
+            None => self.ends(metric, self.rows.iter()),
+        };
+        let Some(Ends { lowest, highest }) = ends else { return writeln!(f, "  {name:<30} no numbers") };
+        let at = |row: &Row| {
+            let named = self.sweep.axes.iter().zip(&row.values);
+            let values: Vec<String> = named
+                .filter_map(|(axis, value)| {
+                    let value = value.as_deref()?;
+                    let value = opruga::sweep::number(value).map_or_else(|| visible(value), format_value);
+                    let word = axis.path.rsplit('.').next().unwrap_or_default();
+                    Some(format!("{} = {value}", visible(word)))
+                })
+                .collect();
+            values.join(", ")
+        };
+        let (low, high) = (format_value(lowest.0), format_value(highest.0));
+        writeln!(f, "  {name:<30} {low:>8} to {high:>8} {unit:<4} (at {}; at {})", at(lowest.1), at(highest.1))
+    }
+}
+
+impl core::fmt::Display for Found<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let done = self.rows.iter().filter(|row| row.status == Status::Done).count();
+        writeln!(f, "{}: {} of {} done", self.sweep.name, done, counted(self.rows.len() as u64, "point", "points"))?;
+        for (code, count) in self.failed() {
+            writeln!(f, "  {count} × {code}")?;
+        }
+        if self.sweep.design == Design::Each {
+            for (axis, about) in self.sweep.axes.iter().enumerate() {
+                writeln!(f, "{}", visible(&about.path))?;
+                for (place, metric) in self.sweep.metrics.iter().enumerate() {
+                    self.say(f, &metric.name, place, Some(axis))?;
+                }
+            }
+            return Ok(());
+        }
+        for (place, metric) in self.sweep.metrics.iter().enumerate() {
+            self.say(f, &metric.name, place, None)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,169 @@
+//! `opruga sweep` as a program: the same table for any number of threads and after a kill, and what it refuses.
+
+mod common;
+
+use common::{code, contents, opruga, printed, program, said, until};
+use serde_json::Value;
+use std::path::Path;
+
+/// Twelve short runs of the ball.
+const CALL: [&str; 11] = [
+    "sweep",
+    "ball",
+    "--set",
+    "collider.0.restitution=0..1:4",
+    "--set",
+    "body.ball.mass=0.5,1,2",
+    "--metric",
+    "bounce_height",
+    "--metric",
+    "top.y.min",
+    "--seconds=1",
+];
+
+fn table(folder: &Path) -> String {
+    std::fs::read_to_string(folder.join("results.csv")).expect("a table")
+}
+
+fn swept(folder: &Path, more: &[&str]) {
+    let output = opruga(folder, &[&CALL, more].concat());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_table_and_the_same_plots() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    swept(at, &["--threads=1", "--out=one"]);
+    swept(at, &["--threads=2", "--out=two"]);
+    swept(at, &["--threads=5", "--out=five"]);
+    let one = table(&at.join("one"));
+    assert_eq!(one.lines().count(), 13);
+    assert!(one.starts_with("point,collider.0.restitution,body.ball.mass,status,bounce_height,top.y.min,message\n"));
+    for other in ["two", "five"] {
+        assert_eq!(table(&at.join(other)), one);
+        let plot = |folder: &str| std::fs::read(at.join(folder).join("plots.svg")).expect("a plot");
+        assert_eq!(plot(other), plot("one"));
+    }
+}
+
+#[test]
+fn a_sweep_that_was_stopped_anywhere_goes_on_to_the_same_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    swept(at, &["--threads=1", "--out=whole"]);
+    let whole = table(&at.join("whole"));
+    // As a kill leaves it: some rows, in any order, the last one torn.
+    let lines: Vec<&str> = whole.lines().collect();
+    let torn = format!("{}\n{}\n{}\n{}", lines[0], lines[7], lines[2], &lines[5][..9]);
+    for again in ["question", "folder"] {
+        std::fs::create_dir(at.join("part")).expect("a folder");
+        std::fs::copy(at.join("whole/question.json"), at.join("part/question.json")).expect("a copy");
+        std::fs::write(at.join("part/results.csv"), &torn).expect("a file");
+        let output = match again {
+            "question" => opruga(at, &[&CALL[..], &["--out=part"]].concat()),
+            _ => opruga(at, &["sweep", "--resume=part"]),
+        };
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        assert!(said(&output).contains("2 of 12 points are done already"), "{}", said(&output));
+        assert_eq!(table(&at.join("part")), whole);
+        std::fs::remove_dir_all(at.join("part")).expect("it goes");
+    }
+}
+
+#[test]
+fn a_killed_sweep_has_every_row_that_was_done_and_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let long = ["--set=time.substeps=256", "--threads=2", "--out=killed"];
+    let mut child = program(at, &[&CALL[..], &long].concat()).spawn().expect("it starts");
+    let rows = || std::fs::read_to_string(at.join("killed/results.csv")).map_or(0, |text| text.lines().count());
+    until("two rows are written", || rows() > 2);
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    let before = rows();
+    let output = opruga(at, &[&CALL[..], &long].concat());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(before < 3 || said(&output).contains("are done already") || before == 13);
+    swept(at, &["--set=time.substeps=256", "--out=whole"]);
+    assert_eq!(table(&at.join("killed")), table(&at.join("whole")));
+}
+
+#[test]
+fn another_question_a_foreign_folder_and_a_damaged_table_are_refused_and_left_as_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    swept(at, &["--out=done"]);
+    let before = contents(&at.join("done"));
+    let refused = |arguments: &[&str], exit: i32, word: &str| {
+        let output = opruga(at, arguments);
+        assert_eq!(code(&output), exit, "{arguments:?}: {}", said(&output));
+        assert!(said(&output).contains(word), "{arguments:?}: {}", said(&output));
+    };
+    refused(&[&CALL[..], &["--metric=energy_drift", "--out=done"]].concat(), 4, "another question: --metric");
+    refused(&[&CALL[..], &["--set=world.drag=1", "--out=done"]].concat(), 4, "another question: --set");
+    assert_eq!(contents(&at.join("done")), before);
+    std::fs::create_dir(at.join("foreign")).expect("a folder");
+    std::fs::write(at.join("foreign/thesis.txt"), "years of work").expect("a file");
+    refused(&[&CALL[..], &["--out=foreign"]].concat(), 4, "write.exists");
+    refused(&["sweep", "--resume=foreign"], 4, "there is no sweep");
+    assert_eq!(contents(&at.join("foreign")).len(), 1);
+    std::fs::write(at.join("done/results.csv"), "point,what\n1,2\n").expect("a file");
+    refused(&[&CALL[..], &["--out=done"]].concat(), 2, "sweep.damaged");
+    assert_eq!(table(&at.join("done")), "point,what\n1,2\n");
+    swept(at, &["--out=done", "--force"]);
+    assert_eq!(table(&at.join("done")).lines().count(), 13);
+}
+
+#[test]
+fn bad_calls_are_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, word) in [
+        (vec!["sweep", "ball", "--metric=energy_drift", "--out=o"], "no parameter varies"),
+        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--out=o"], "nothing is measured"),
+        (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--metric=bounce_hight", "--out=o"], "did you mean"),
+        (vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--metric=energy_drift", "--out=o"], "how many values"),
+        (vec!["sweep", "ball", "--set=body.bell.mass=1,2", "--metric=energy_drift", "--out=o"], "set.path"),
+        (vec!["sweep", "bell", "--set=body.ball.mass=1,2", "--metric=energy_drift", "--out=o"], "no such file"),
+    ] {
+        let output = opruga(folder.path(), &arguments);
+        assert!(matches!(code(&output), 2 | 4), "{arguments:?}");
+        assert!(said(&output).contains(word), "{arguments:?}: {}", said(&output));
+        assert!(!folder.path().join("o").exists(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_failed_point_is_counted_and_the_others_are_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let set = "--set=body.ball.models.mass_spring.stiffness=100,1e9";
+    let call = ["sweep", "ball", set, "--metric=energy_drift", "--seconds=0.1", "--json", "--out=o"];
+    let output = opruga(folder.path(), &call);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    assert_eq!((&summary["points"], &summary["done"]), (&2.into(), &1.into()));
+    assert_eq!(summary["failed"][0]["code"], "step.unstable");
+    assert_eq!(summary["metrics"][0]["lowest"]["at"]["body.ball.models.mass_spring.stiffness"], "100");
+    assert!(table(&folder.path().join("o")).lines().nth(2).is_some_and(|row| row.starts_with("1,1e9,step.unstable,,")));
+}
+
+#[test]
+fn the_sweep_of_the_thesis_runs_as_its_scene_says() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sweeps");
+    let text = std::fs::read_to_string(scenes.join("thesis-4-3.toml")).expect("the scene");
+    let said_there = text.lines().skip_while(|line| !line.contains("opruga sweep")).take_while(|l| l.starts_with('#'));
+    let call: String = said_there.map(|line| line.trim_start_matches('#').trim_end_matches('\\')).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("thesis-4-3.toml"), &text).expect("a file");
+    let mut words: Vec<&str> = call.split_whitespace().skip(1).collect();
+    words[1] = "thesis-4-3.toml";
+    let out = words.iter().position(|word| *word == "--out").expect("a folder");
+    words.drain(out..out + 2);
+    // The points are those of the scene, the time is not.
+    let words: Vec<&str> = words.into_iter().chain(["--seconds=0.02", "--json", "--out=o"]).collect();
+    let output = opruga(folder.path(), &words);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    assert_eq!(summary["parameters"].as_array().map(Vec::len), Some(4));
+    assert_eq!(summary["done"], summary["points"], "{summary}");
+}

@@ -1,0 +1,388 @@
+//! What a sweep measures of every run.
+
+use opruga_core::spec::nearest;
+use opruga_io::SceneError;
+use opruga_io::problem::visible;
+use opruga_world::World;
+use opruga_world::blueprint::{Blueprint, Recorded};
+
+/// The words for what can be measured, and what they mean.
+pub const WORDS: [(&str, &str); 5] = [
+    ("bounce_height", "the largest rise of the lowest node of a body above the lowest place where it has been"),
+    ("settling_time", "the time after which the kinetic energy stays below a hundredth of its largest value"),
+    (
+        "equilibrium_radius",
+        "the mean distance of the nodes of a body from their middle, over the last tenth of the run",
+    ),
+    ("energy_drift", "what the ledger of energy cannot explain, relative to the largest energy in motion"),
+    ("nanoseconds_per_step", "processor time of a substep of the whole world"),
+];
+
+/// Below this part of its largest value the kinetic energy counts as settled.
+const SETTLED: f64 = 0.01;
+
+/// A number that is measured of every run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metric {
+    /// Its name, as it was asked for and as the table calls it.
+    pub name: String,
+    quantity: Quantity,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Quantity {
+    /// Of a body; none: the first one.
+    BounceHeight(Option<String>),
+    SettlingTime,
+    EquilibriumRadius(Option<String>),
+    EnergyDrift,
+    NanosecondsPerStep,
+    /// A column of a probe, over all frames.
+    Probe(String, Statistic),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Statistic {
+    Least,
+    Largest,
+    Mean,
+    Last,
+}
+
+impl Metric {
+    /// Reads a word of [`WORDS`], with `.BODY` behind it where it is that of a body, or `PROBE.COLUMN.min`, `.max`, `.mean` or
+    /// `.last` for a column of a probe, such as `top.y.max`.
+    ///
+    /// # Errors
+    /// `sweep.metric` where there is no such metric.
+    pub fn parse(text: &str) -> Result<Metric, SceneError> {
+        let (word, body) = match text.split_once('.') {
+            Some((word, body)) if !body.is_empty() => (word, Some(body.to_string())),
+            _ => (text, None),
+        };
+        let quantity = match (word, &body) {
+            ("bounce_height", _) => Quantity::BounceHeight(body),
+            ("equilibrium_radius", _) => Quantity::EquilibriumRadius(body),
+            ("settling_time", None) => Quantity::SettlingTime,
+            ("energy_drift", None) => Quantity::EnergyDrift,
+            ("nanoseconds_per_step", None) => Quantity::NanosecondsPerStep,
+            _ => {
+                let (column, statistic) = match text.rsplit_once('.') {
+                    Some((column, "min")) => (column, Statistic::Least),
+                    Some((column, "max")) => (column, Statistic::Largest),
+                    Some((column, "mean")) => (column, Statistic::Mean),
+                    Some((column, "last")) => (column, Statistic::Last),
+                    _ => return Err(unknown(text)),
+                };
+                Quantity::Probe(column.to_string(), statistic)
+            }
+        };
+        Ok(Metric { name: text.to_string(), quantity })
+    }
+
+    /// Whether a scene has what is measured.
+    ///
+    /// # Errors
+    /// `sweep.metric` where there is no such body or no such column of a probe.
+    pub fn check<const D: usize>(&self, blueprint: &Blueprint<D>) -> Result<(), SceneError> {
+        let missing = |what: &str, name: &str, known: Vec<String>| {
+            let allowed = if known.is_empty() { "the scene has none".to_string() } else { known.join(", ") };
+            Err(SceneError::new("sweep.metric", format!("there is no {what} `{}`", visible(name)))
+                .value(visible(&self.name))
+                .allowed(visible(&allowed))
+                .nearest(nearest(name, known.iter().map(String::as_str))))
+        };
+        match &self.quantity {
+            Quantity::BounceHeight(body) | Quantity::EquilibriumRadius(body) => {
+                let names: Vec<String> = blueprint.bodies.iter().map(|b| b.name.clone()).collect();
+                match body {
+                    Some(name) if !names.contains(name) => return missing("body", name, names),
+                    None if names.is_empty() => return missing("body", "", names),
+                    _ => {}
+                }
+                if matches!(self.quantity, Quantity::BounceHeight(_)) && upwards(blueprint).is_none() {
+                    return Err(SceneError::new("sweep.metric", "nothing says what is up")
+                        .value(visible(&self.name))
+                        .allowed("scenes with gravity or a half-space"));
+                }
+                Ok(())
+            }
+            Quantity::Probe(column, _) => {
+                let columns = probe_columns(blueprint);
+                if columns.contains(column) { Ok(()) } else { missing("column of a probe", column, columns) }
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The unit, where a scene calls its unit of length so.
+    pub fn unit(&self, length: &str) -> String {
+        match &self.quantity {
+            Quantity::BounceHeight(_) | Quantity::EquilibriumRadius(_) => length.to_string(),
+            Quantity::SettlingTime => "s".into(),
+            Quantity::EnergyDrift => String::new(),
+            Quantity::NanosecondsPerStep => "ns".into(),
+            Quantity::Probe(column, _) => match column.rsplit('.').next().map(str::len) {
+                Some(1) => length.to_string(),
+                Some(_) if column.rsplit('.').next().is_some_and(|word| word.starts_with('v')) => format!("{length}/s"),
+                _ if length == "m" => "N".into(),
+                _ => format!("kg {length}/s²"),
+            },
+        }
+    }
+
+    /// Whether it is a time on the clock, which differs from run to run.
+    pub fn is_timing(&self) -> bool {
+        self.quantity == Quantity::NanosecondsPerStep
+    }
+}
+
+fn unknown(text: &str) -> SceneError {
+    let words: Vec<&str> = WORDS.iter().map(|w| w.0).collect();
+    SceneError::new("sweep.metric", format!("there is no metric `{}`", visible(text)))
+        .value(visible(text))
+        .allowed(format!("{}, and PROBE.COLUMN.min, .max, .mean, .last", words.join(", ")))
+        .nearest(nearest(text.split('.').next().unwrap_or(text), words.iter().copied()))
+}
+
+/// The names of the columns of all probes, as tables have them.
+fn probe_columns<const D: usize>(blueprint: &Blueprint<D>) -> Vec<String> {
+    let mut out = Vec::new();
+    for probe in &blueprint.probes {
+        for what in &probe.record {
+            let word = match what {
+                Recorded::Position => "",
+                Recorded::Velocity => "v",
+                Recorded::Reaction => "r",
+            };
+            out.extend(["x", "y", "z"].iter().take(D).map(|axis| format!("{}.{word}{axis}", probe.name)));
+        }
+    }
+    out
+}
+
+/// The direction of up: against gravity; without gravity that out of the first half-space.
+fn upwards<const D: usize>(blueprint: &Blueprint<D>) -> Option<[f64; D]> {
+    let unit = |vector: [f64; D]| {
+        let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+        (length > 0.0).then(|| vector.map(|x| x / length))
+    };
+    unit(blueprint.surroundings.gravity.map(|g| -g)).or_else(|| {
+        let floor = blueprint.colliders.iter().find(|c| c.values.kind() == "half_space")?;
+        unit(floor.values.vector("normal"))
+    })
+}
+
+/// Watches a run and measures it.
+pub(crate) struct Meter<const D: usize> {
+    gauges: Vec<Gauge<D>>,
+    /// The frames of the whole run.
+    frames: u64,
+}
+
+enum Gauge<const D: usize> {
+    Bounce {
+        body: Option<String>,
+        up: [f64; D],
+        lowest: f64,
+        rise: f64,
+    },
+    Settling {
+        kinetic: Vec<[f64; 2]>,
+    },
+    Radius {
+        body: Option<String>,
+        sum: f64,
+        count: f64,
+    },
+    Drift {
+        closure: f64,
+    },
+    /// Measured by the clock, elsewhere.
+    Speed,
+    Probe {
+        number: usize,
+        place: usize,
+        statistic: Statistic,
+        least: f64,
+        largest: f64,
+        sum: f64,
+        count: f64,
+        last: f64,
+    },
+}
+
+impl<const D: usize> Meter<D> {
+    pub(crate) fn new(metrics: &[Metric], world: &World<D>, frames: u64) -> Meter<D> {
+        let blueprint = world.blueprint();
+        let gauges = metrics
+            .iter()
+            .map(|metric| match &metric.quantity {
+                Quantity::BounceHeight(body) => Gauge::Bounce {
+                    body: body.clone(),
+                    up: upwards(blueprint).unwrap_or([0.0; D]),
+                    lowest: f64::INFINITY,
+                    rise: 0.0,
+                },
+                Quantity::SettlingTime => Gauge::Settling { kinetic: Vec::new() },
+                Quantity::EquilibriumRadius(body) => Gauge::Radius { body: body.clone(), sum: 0.0, count: 0.0 },
+                Quantity::EnergyDrift => Gauge::Drift { closure: 0.0 },
+                Quantity::NanosecondsPerStep => Gauge::Speed,
+                Quantity::Probe(column, statistic) => {
+                    let mut place = probe_columns(blueprint).iter().position(|c| c == column).unwrap_or(usize::MAX);
+                    let mut number = 0;
+                    while let Some(probe) = blueprint.probes.get(number) {
+                        if place < probe.record.len() * D {
+                            break;
+                        }
+                        place -= probe.record.len() * D;
+                        number += 1;
+                    }
+                    Gauge::Probe {
+                        number,
+                        place,
+                        statistic: *statistic,
+                        least: f64::INFINITY,
+                        largest: f64::NEG_INFINITY,
+                        sum: 0.0,
+                        count: 0.0,
+                        last: f64::NAN,
+                    }
+                }
+            })
+            .collect();
+        Meter { gauges, frames }
+    }
+
+    /// Whether what happens within frames matters: an impact lasts one substep.
+    pub(crate) fn looks_within(&self) -> bool {
+        self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Bounce { .. }))
+    }
+
+    /// Looks at the world within a frame.
+    pub(crate) fn look(&mut self, world: &World<D>) {
+        for gauge in &mut self.gauges {
+            let Gauge::Bounce { body, up, lowest, rise } = gauge else { continue };
+            let Some(body) = found(world, body.as_deref()) else { continue };
+            let mut height = f64::INFINITY;
+            for node in 0..world.node_count(body) as u32 {
+                let x = world.position(body, node);
+                let along = (0..D).map(|d| x[d] * up[d]).sum::<f64>();
+                if along < height {
+                    height = along;
+                }
+            }
+            if height < *lowest {
+                *lowest = height;
+            }
+            if height - *lowest > *rise {
+                *rise = height - *lowest;
+            }
+        }
+    }
+
+    /// Looks at the world at the start and at the end of each frame.
+    pub(crate) fn frame(&mut self, world: &mut World<D>) {
+        self.look(world);
+        let late = world.frames() * 10 >= self.frames * 9;
+        for gauge in &mut self.gauges {
+            match gauge {
+                Gauge::Bounce { .. } | Gauge::Speed => {}
+                Gauge::Settling { kinetic } => kinetic.push([world.time(), world.energy().kinetic]),
+                Gauge::Radius { body, sum, count } => {
+                    if let Some(body) = found(world, body.as_deref()).filter(|_| late) {
+                        *sum += radius(world, body);
+                        *count += 1.0;
+                    }
+                }
+                Gauge::Drift { closure } => *closure = world.energy().closure,
+                Gauge::Probe { number, place, least, largest, sum, count, last, .. } => {
+                    let Some((_, x)) = world.probe(*number).get(*place).cloned().filter(|(_, x)| x.is_finite()) else {
+                        continue;
+                    };
+                    *least = if x < *least { x } else { *least };
+                    *largest = if x > *largest { x } else { *largest };
+                    (*sum, *count, *last) = (*sum + x, *count + 1.0, x);
+                }
+            }
+        }
+    }
+
+    /// What was measured, in the order of the metrics; none where the run has no such number, and for times on the clock.
+    pub(crate) fn finish(self) -> Vec<Option<f64>> {
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        self.gauges
+            .into_iter()
+            .map(|gauge| match gauge {
+                Gauge::Bounce { rise, lowest, .. } => finite(lowest).map(|_| rise),
+                Gauge::Settling { kinetic } => settled(&kinetic),
+                Gauge::Radius { sum, count, .. } => finite(sum / count),
+                Gauge::Drift { closure } => finite(closure),
+                Gauge::Speed => None,
+                Gauge::Probe { statistic, least, largest, sum, count, last, .. } => finite(match statistic {
+                    Statistic::Least => least,
+                    Statistic::Largest => largest,
+                    Statistic::Mean => sum / count,
+                    Statistic::Last => last,
+                }),
+            })
+            .collect()
+    }
+}
+
+/// A body by its name; without a name the first one that is there.
+fn found<const D: usize>(world: &World<D>, name: Option<&str>) -> Option<usize> {
+    match name {
+        Some(name) => world.body(name),
+        None => world.bodies().next(),
+    }
+}
+
+/// The mean distance of the nodes of a body from their middle.
+fn radius<const D: usize>(world: &World<D>, body: usize) -> f64 {
+    let nodes = world.node_count(body) as u32;
+    let mut middle = [0.0; D];
+    for node in 0..nodes {
+        let x = world.position(body, node);
+        (0..D).for_each(|d| middle[d] += x[d] / f64::from(nodes));
+    }
+    let distance = |node| {
+        let x = world.position(body, node);
+        (0..D).map(|d| (x[d] - middle[d]) * (x[d] - middle[d])).sum::<f64>().sqrt()
+    };
+    (0..nodes).map(distance).sum::<f64>() / f64::from(nodes)
+}
+
+/// The first of these times from which on the kinetic energy stays below its part; none where it does not settle.
+fn settled(kinetic: &[[f64; 2]]) -> Option<f64> {
+    let largest = kinetic.iter().fold(0.0, |largest, row| if row[1] > largest { row[1] } else { largest });
+    match kinetic.iter().rposition(|row| row[1] > SETTLED * largest) {
+        None => kinetic.first().map(|row| row[0]),
+        Some(last) => kinetic.get(last + 1).map(|row| row[0]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metrics_are_told_apart_by_their_words() {
+        let of = |text: &str| Metric::parse(text).expect("a metric").quantity;
+        assert_eq!(of("bounce_height"), Quantity::BounceHeight(None));
+        assert_eq!(of("bounce_height.ball"), Quantity::BounceHeight(Some("ball".into())));
+        assert_eq!(of("top.y.max"), Quantity::Probe("top.y".into(), Statistic::Largest));
+        assert_eq!(Metric::parse("top.vy.mean").expect("a metric").unit("m"), "m/s");
+        assert_eq!(Metric::parse("top.ry.mean").expect("a metric").unit("m"), "N");
+        let error = Metric::parse("bounce_hight").expect_err("misspelt");
+        assert_eq!((error.code, error.hint.as_deref()), ("sweep.metric", Some("did you mean `bounce_height`?")));
+    }
+
+    #[test]
+    fn settling_is_when_the_kinetic_energy_stays_small() {
+        let swing = [[0.0, 0.0], [1.0, 5.0], [2.0, 0.0], [3.0, 1.0], [4.0, 0.01], [5.0, 0.0]];
+        assert_eq!(settled(&swing), Some(4.0));
+        assert_eq!(settled(&swing[..4]), None, "it still moves at the end");
+        assert_eq!(settled(&[[0.0, 0.0], [1.0, 0.0]]), Some(0.0), "it has never moved");
+    }
+}

@@ -1,0 +1,244 @@
+//! Sweeps: one scene run at many values of its parameters, and what was measured of every run.
+//!
+//! ```
+//! use opruga::sweep::{Axis, Design, Metric, Status, Sweep};
+//! use std::sync::atomic::AtomicBool;
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let sweep = Sweep {
+//!         name: "ball".into(),
+//!         file: "ball.toml".into(),
+//!         text: opruga::scenes::find("ball").ok_or("there is no such scene")?.into(),
+//!         files: opruga::io::Files::default(),
+//!         fixed: vec![("time.seconds".into(), "2".into())],
+//!         axes: Axis::parse("collider.0.restitution=0,0.6")?.into_iter().collect(),
+//!         design: Design::Grid,
+//!         metrics: vec![Metric::parse("bounce_height.ball")?],
+//!         allow_unstable: false,
+//!         lenient: false,
+//!     };
+//!     let points = sweep.points().map_err(|errors| errors[0].to_string())?;
+//!     for (number, point) in points.iter().enumerate() {
+//!         let row = sweep.measure(number, point, None, &|| 0.0, &AtomicBool::new(false)).ok_or("stopped")?;
+//!         assert_eq!(row.status, Status::Done);
+//!         println!("restitution {:?}: the ball rises by {:?} m", point[0], row.numbers[0]);
+//!     }
+//!     Ok(())
+//! }
+//! ```
+
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
+
+mod grid;
+mod metrics;
+mod plots;
+mod table;
+
+pub use grid::{Axis, Design, MOST_POINTS, Point, Range, Values, number};
+pub use metrics::{Metric, WORDS};
+pub use plots::plots;
+pub use table::{Row, Status, head, line, read_rows};
+
+use crate::{Options, Simd, World, WorldError};
+use metrics::Meter;
+use opruga_io::{Files, SceneError, scene};
+use opruga_world::blueprint::{AnyBlueprint, Blueprint};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Processor time after which a speed is known well enough [s].
+const TIMED: f64 = 0.1;
+
+/// The question that a sweep asks; the same question has the same answer, times on the clock apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The name of the scene.
+    pub name: String,
+    /// Where the scene came from, for errors.
+    pub file: String,
+    /// The text of the scene.
+    pub text: String,
+    /// Where the files are that it names.
+    pub files: Files,
+    /// Parameters that are changed for all points, each a path and a value.
+    pub fixed: Vec<(String, String)>,
+    /// The parameters that vary.
+    pub axes: Vec<Axis>,
+    /// Which points are visited.
+    pub design: Design,
+    /// What is measured.
+    pub metrics: Vec<Metric>,
+    /// Steps above the stable limit are run all the same.
+    pub allow_unstable: bool,
+    /// Unknown fields are overlooked.
+    pub lenient: bool,
+}
+
+impl Sweep {
+    /// The points, after the question was checked: whether the scene can be read, has every parameter that varies, and has
+    /// what is measured.
+    ///
+    /// A point that the scene refuses for its value alone is no error: its row says so.
+    ///
+    /// # Errors
+    /// Those of the scene, of [`Axis`] and of [`Metric`].
+    pub fn points(&self) -> Result<Vec<Point>, Vec<SceneError>> {
+        let mut errors = Vec::new();
+        if self.metrics.is_empty() {
+            let words: Vec<&str> = WORDS.iter().map(|w| w.0).collect();
+            errors.push(
+                SceneError::new("sweep.metric", "nothing is measured")
+                    .allowed(format!("--metric {}, and PROBE.COLUMN.min, .max, .mean, .last", words.join(", ")))
+                    .hint("for example --metric bounce_height --metric settling_time"),
+            );
+        }
+        for (place, metric) in self.metrics.iter().enumerate() {
+            if self.metrics[..place].contains(metric) {
+                errors.push(SceneError::new("sweep.metric", "a metric is asked for twice").value(&metric.name));
+            }
+        }
+        let points = grid::points(&self.axes, self.design).map_err(|e| errors.push(e)).unwrap_or_default();
+        match self.read(&vec![None; self.axes.len()]) {
+            Err(mut of_scene) => errors.append(&mut of_scene),
+            Ok(AnyBlueprint::Plane(blueprint)) => self.check(&blueprint, &points, &mut errors),
+            Ok(AnyBlueprint::Space(blueprint)) => self.check(&blueprint, &points, &mut errors),
+        }
+        if errors.is_empty() { Ok(points) } else { Err(errors) }
+    }
+
+    fn check<const D: usize>(&self, blueprint: &Blueprint<D>, points: &[Point], errors: &mut Vec<SceneError>) {
+        errors.extend(self.metrics.iter().filter_map(|metric| metric.check(blueprint).err()));
+        for place in 0..self.axes.len() {
+            // The first value of each parameter by itself: a path that leads nowhere does so for all of them.
+            let Some(value) = points.iter().find_map(|point| point[place].clone()) else { continue };
+            let mut point = vec![None; self.axes.len()];
+            point[place] = Some(value);
+            let found = self.read(&point).err().unwrap_or_default();
+            errors.extend(found.into_iter().find(|e| e.code.starts_with("set.") || e.code.contains("unknown")));
+        }
+    }
+
+    fn read(&self, point: &[Option<String>]) -> Result<AnyBlueprint, Vec<SceneError>> {
+        let varied = self.axes.iter().zip(point);
+        let overrides = self.fixed.iter().cloned();
+        let overrides = overrides.chain(varied.filter_map(|(axis, value)| Some((axis.path.clone(), value.clone()?))));
+        let options = scene::Options {
+            lenient: self.lenient,
+            overrides: overrides.collect(),
+            files: self.files.clone(),
+            ..scene::Options::default()
+        };
+        scene::read(self.text.as_bytes(), &self.file, &crate::catalogue(), &options).map(|(blueprint, _)| blueprint)
+    }
+
+    /// Runs one point on the calling thread and measures it; none where `stop` was set meanwhile.
+    ///
+    /// `clock` gives processor time of this thread [s]. It is read for speeds alone; nothing else depends on it.
+    pub fn measure(
+        &self,
+        number: usize,
+        point: &[Option<String>],
+        simd: Option<Simd>,
+        clock: &dyn Fn() -> f64,
+        stop: &AtomicBool,
+    ) -> Option<Row> {
+        let options = Options { threads: 1, simd, allow_unstable: self.allow_unstable, batches: true };
+        let run = Run { sweep: self, options, clock, stop };
+        let outcome = match self.read(point) {
+            Ok(AnyBlueprint::Plane(blueprint)) => run.measure(&blueprint),
+            Ok(AnyBlueprint::Space(blueprint)) => run.measure(&blueprint),
+            Err(errors) => {
+                let first = errors.into_iter().next();
+                Err(first.map_or_else(|| Failed::of("scene", ""), |e| Failed::of(e.code, &e.message)))
+            }
+        };
+        let nothing = || vec![None; self.metrics.len()];
+        let (status, message, numbers) = match outcome {
+            Ok(numbers) => (Status::Done, String::new(), numbers),
+            Err(Failed::Stopped) => return None,
+            Err(Failed::Refused(code, message)) => (Status::Failed(code), message, nothing()),
+        };
+        Some(Row { number, values: point.to_vec(), status, message, numbers })
+    }
+}
+
+/// Why a point has no numbers.
+enum Failed {
+    Stopped,
+    Refused(String, String),
+}
+
+impl Failed {
+    fn of(code: &str, message: &str) -> Failed {
+        Failed::Refused(code.into(), message.into())
+    }
+}
+
+impl From<WorldError> for Failed {
+    fn from(error: WorldError) -> Failed {
+        Failed::of(error.code(), &error.to_string())
+    }
+}
+
+struct Run<'a> {
+    sweep: &'a Sweep,
+    options: Options,
+    clock: &'a dyn Fn() -> f64,
+    stop: &'a AtomicBool,
+}
+
+impl Run<'_> {
+    fn measure<const D: usize>(&self, blueprint: &Blueprint<D>) -> Result<Vec<Option<f64>>, Failed> {
+        let frames = (blueprint.time.seconds / blueprint.time.frame - 1e-9).ceil();
+        let frames = if frames > 0.0 { frames as u64 } else { 0 };
+        let mut world = World::new(blueprint.clone(), self.options.clone())?;
+        let mut meter = Meter::new(&self.sweep.metrics, &world, frames);
+        if meter.looks_within() {
+            world.keep_looks(1);
+        }
+        meter.frame(&mut world);
+        while world.frames() < frames {
+            self.frame(&mut world)?;
+            world.look_within(|world| meter.look(world));
+            meter.frame(&mut world);
+        }
+        let mut numbers = meter.finish();
+        if self.sweep.metrics.iter().any(Metric::is_timing) {
+            let speed = self.speed(blueprint, frames)?;
+            for (metric, number) in self.sweep.metrics.iter().zip(&mut numbers) {
+                if metric.is_timing() {
+                    *number = speed;
+                }
+            }
+        }
+        Ok(numbers)
+    }
+
+    fn frame<const D: usize>(&self, world: &mut World<D>) -> Result<(), Failed> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(Failed::Stopped);
+        }
+        Ok(world.frame()?)
+    }
+
+    /// Processor time of a substep [ns]: that of the fastest of as many runs as fit a tenth of a second, at least of one.
+    /// They are runs of their own, which nobody looks at.
+    fn speed<const D: usize>(&self, blueprint: &Blueprint<D>, frames: u64) -> Result<Option<f64>, Failed> {
+        let steps = frames as f64 * f64::from(blueprint.time.substeps);
+        let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
+        // A clock that stands still is read a few times only.
+        for _ in 0..50 {
+            let mut world = World::new(blueprint.clone(), self.options.clone())?;
+            let start = (self.clock)();
+            while world.frames() < frames {
+                self.frame(&mut world)?;
+            }
+            let took = (self.clock)() - start;
+            spent += took;
+            fastest = if took < fastest { took } else { fastest };
+            if spent >= TIMED {
+                break;
+            }
+        }
+        Ok((steps > 0.0 && fastest > 0.0).then(|| fastest * 1e9 / steps))
+    }
+}

@@ -1,0 +1,144 @@
+//! Plots of a sweep: lines over one parameter, maps over two.
+
+use super::table::Status;
+use super::{Axis, Design, Row, Sweep, number};
+use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Panel, format_value};
+
+/// The names and texts (SVG) of all plots.
+///
+/// One parameter, or one after the other: each metric over it. Two of a grid: a map for each metric, with marks where a run has
+/// failed. More, or a sample: each metric over each parameter, as points.
+///
+/// # Errors
+/// [`DrawError`] where nothing can be drawn.
+pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str) -> Result<Vec<(String, String)>, DrawError> {
+    let sweep_plots = Plots { sweep, rows, length_unit };
+    match (sweep.design, sweep.axes.as_slice()) {
+        (Design::Grid, [x, y]) => Ok(vec![("plots.svg".into(), sweep_plots.map(x, y)?)]),
+        (_, axes) => {
+            let alone = axes.len() == 1;
+            let one = |(place, axis)| -> Result<_, DrawError> {
+                let name = if alone { "plots.svg".into() } else { format!("plots-{}.svg", file_name(axes, place)) };
+                Ok((name, sweep_plots.over(place, axis)?))
+            };
+            axes.iter().enumerate().map(one).collect()
+        }
+    }
+}
+
+/// The last word of a path where that is enough to tell the parameters apart, else the whole path.
+fn file_name(axes: &[Axis], place: usize) -> String {
+    let last = |axis: &Axis| axis.path.rsplit('.').next().unwrap_or_default().to_string();
+    let word = last(&axes[place]);
+    let alone = axes.iter().filter(|axis| last(axis) == word).count() == 1;
+    let name = if alone { word } else { axes[place].path.clone() };
+    name.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '_' }).collect()
+}
+
+struct Plots<'a> {
+    sweep: &'a Sweep,
+    rows: &'a [Row],
+    length_unit: &'a str,
+}
+
+impl Plots<'_> {
+    /// Every metric over one parameter.
+    fn over(&self, place: usize, axis: &Axis) -> Result<String, DrawError> {
+        let listed = match self.sweep.design {
+            Design::Sample { .. } => None,
+            _ => Some(axis.listed()),
+        };
+        let words = axis.numbers().is_none().then_some(listed).flatten();
+        let lines = !matches!(self.sweep.design, Design::Sample { .. })
+            && (self.sweep.axes.len() == 1 || self.sweep.design == Design::Each);
+        // Words stand at 1, 2, 3, ….
+        let at = |value: &str| match &words {
+            Some(words) => words.iter().position(|word| word == value).map(|k| k as f64 + 1.0),
+            None => number(value),
+        };
+        let mut panels = Vec::new();
+        for (column, metric) in self.sweep.metrics.iter().enumerate() {
+            let mut points = Vec::new();
+            for row in self.rows {
+                let Some(x) = row.values[place].as_deref().and_then(at) else { continue };
+                points.push([x, row.numbers[column].unwrap_or(f64::NAN)]);
+                if !lines {
+                    // A gap: points that are no neighbours are not joined.
+                    points.push([f64::NAN; 2]);
+                }
+            }
+            let values = || points.iter().map(|point| point[1]).filter(|y| y.is_finite());
+            if values().next().is_none() {
+                continue;
+            }
+            let mut y = axis_of(&metric.name, &metric.unit(self.length_unit));
+            let (low, high) = values().fold((f64::INFINITY, 0.0), wider);
+            y.logarithmic = low > 0.0 && high > 100.0 * low;
+            // What hardly changes shall look so.
+            if metric.is_timing() && !y.logarithmic {
+                y.range = Some([0.0, 1.15 * high]);
+            }
+            let line = Line { points, marker: Some(Marker::Circle), ..Line::default() };
+            panels.push(Panel { y, lines: vec![line], ..Panel::default() });
+        }
+        if panels.is_empty() {
+            return Err(DrawError::Empty("no point of the sweep has a number to plot"));
+        }
+        let mut label = axis.path.clone();
+        if let Some(words) = &words {
+            let named: Vec<String> = words.iter().enumerate().map(|(k, word)| format!("{} {word}", k + 1)).collect();
+            label = format!("{label} ({})", named.join(", "));
+        }
+        let x = opruga_draw::Axis { logarithmic: axis.logarithmic(), ..opruga_draw::Axis::linear(label, "") };
+        Chart { title: self.sweep.name.clone(), x, panels, ..Chart::default() }.to_svg()
+    }
+
+    /// Every metric as a map over two parameters.
+    fn map(&self, x: &Axis, y: &Axis) -> Result<String, DrawError> {
+        let (columns, rows) = (x.listed(), y.listed());
+        let mut panels = Vec::new();
+        for (place, metric) in self.sweep.metrics.iter().enumerate() {
+            let mut values = vec![vec![f64::NAN; columns.len()]; rows.len()];
+            let mut failed = Vec::new();
+            for row in self.rows {
+                // The points of a grid: its last parameter varies fastest.
+                let (column, line) = (row.number / rows.len(), row.number % rows.len());
+                values[line][column] = row.numbers[place].unwrap_or(f64::NAN);
+                if row.status != Status::Done {
+                    failed.push([column, line]);
+                }
+            }
+            let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
+            let (low, high) = finite().fold((f64::INFINITY, 0.0), wider);
+            panels.push(HeatPanel {
+                scale: opruga_draw::Axis {
+                    logarithmic: low > 0.0 && high > 100.0 * low,
+                    ..axis_of(&metric.name, &metric.unit(self.length_unit))
+                },
+                values,
+                failed,
+            });
+        }
+        let short = |values: Vec<String>| values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
+        HeatMap {
+            title: self.sweep.name.clone(),
+            x_label: x.path.clone(),
+            x: short(columns),
+            y_label: y.path.clone(),
+            y: short(rows),
+            panels,
+            ..HeatMap::default()
+        }
+        .to_svg()
+    }
+}
+
+/// A range of numbers that holds one more.
+fn wider((low, high): (f64, f64), x: f64) -> (f64, f64) {
+    (if x < low { x } else { low }, if x > high { x } else { high })
+}
+
+/// A linear axis; the words of a name are told apart by spaces.
+fn axis_of(name: &str, unit: &str) -> opruga_draw::Axis {
+    opruga_draw::Axis::linear(name.replace('_', " "), unit)
+}

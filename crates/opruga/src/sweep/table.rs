@@ -1,0 +1,215 @@
+//! The table of a sweep: one row for each point, written when the point is done and read again when a sweep goes on.
+
+use super::Sweep;
+use super::grid::Point;
+use opruga_io::SceneError;
+use opruga_io::problem::visible;
+use opruga_io::tables::{Digits, cell};
+
+/// One row of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The number of the point, from 0.
+    pub number: usize,
+    /// The values of the parameters that vary; none: as in the scene.
+    pub values: Point,
+    /// How the run ended.
+    pub status: Status,
+    /// What went wrong, in a sentence; empty where nothing did.
+    pub message: String,
+    /// What was measured, in the order of the metrics; none where the run has no such number.
+    pub numbers: Vec<Option<f64>>,
+}
+
+/// How the run of a point ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// It ran to its end.
+    Done,
+    /// It was refused or diverged: the code of the error.
+    Failed(String),
+}
+
+impl Status {
+    /// The word of the table: `done` or the code of the error.
+    pub fn word(&self) -> &str {
+        match self {
+            Status::Done => "done",
+            Status::Failed(code) => code,
+        }
+    }
+}
+
+/// The head of the table: `point`, the paths, `status`, the metrics, `message`.
+pub fn head(sweep: &Sweep) -> String {
+    let paths = sweep.axes.iter().map(|axis| cell(&axis.path));
+    let metrics = sweep.metrics.iter().map(|metric| cell(&metric.name));
+    let ends = |word: &str| std::iter::once(word.to_string());
+    let cells: Vec<String> =
+        ends("point").chain(paths).chain(ends("status")).chain(metrics).chain(ends("message")).collect();
+    cells.join(",") + "\n"
+}
+
+/// A row as a line of the table; what is not known is empty. Numbers have 17 significant digits.
+pub fn line(row: &Row) -> String {
+    let flat = |text: &str| cell(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+    let mut cells = vec![row.number.to_string()];
+    cells.extend(row.values.iter().map(|value| value.as_deref().map_or(String::new(), cell)));
+    cells.push(flat(row.status.word()));
+    cells.extend(row.numbers.iter().map(|x| x.map_or(String::new(), |x| Digits(x).to_string())));
+    cells.push(flat(&row.message));
+    cells.join(",") + "\n"
+}
+
+/// Reads the rows of a table of this sweep that was written as far as somebody or something let it; a last line without
+/// its end was being written then, and is left out. Rows are sorted by their points.
+///
+/// # Errors
+/// `sweep.damaged` where the table is not one of this sweep.
+pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Result<Vec<Row>, SceneError> {
+    let damaged = |line: usize, what: &str, content: &str| SceneError {
+        file: file.to_string(),
+        line: Some(line),
+        column: Some(1),
+        ..SceneError::new("sweep.damaged", what)
+            .value(visible(content))
+            .hint("--force begins the sweep anew, --out takes another folder")
+    };
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    let mut lines = whole.lines();
+    match lines.next() {
+        None => return Ok(Vec::new()),
+        Some(first) if format!("{first}\n") == head(sweep) => {}
+        Some(first) => return Err(damaged(1, "the head of the table is not that of this sweep", first)),
+    }
+    let mut rows: Vec<Option<Row>> = vec![None; points.len()];
+    for (number, content) in lines.enumerate() {
+        let row = read_row(sweep, points, content).map_err(|what| damaged(number + 2, what, content))?;
+        let place = row.number;
+        if rows[place].replace(row).is_some() {
+            return Err(damaged(number + 2, "this point has two rows", content));
+        }
+    }
+    Ok(rows.into_iter().flatten().collect())
+}
+
+fn read_row(sweep: &Sweep, points: &[Point], line: &str) -> Result<Row, &'static str> {
+    let cells = split(line).ok_or("a quote is not closed")?;
+    let (axes, metrics) = (sweep.axes.len(), sweep.metrics.len());
+    if cells.len() != axes + metrics + 3 {
+        return Err("the row has another number of cells than the head");
+    }
+    let number: usize = cells[0].parse().map_err(|_| "the number of the point is none")?;
+    let point = points.get(number).ok_or("the sweep has no such point")?;
+    if point.iter().zip(&cells[1..]).any(|(value, cell)| value.as_deref().unwrap_or("") != cell) {
+        return Err("the values are not those of the point");
+    }
+    let numbers = cells[axes + 2..axes + 2 + metrics].iter().map(|cell| match cell.as_str() {
+        "" => Ok(None),
+        text => text.parse().map(Some).map_err(|_| "a number cannot be read"),
+    });
+    Ok(Row {
+        number,
+        values: point.clone(),
+        status: match cells[axes + 1].as_str() {
+            "done" => Status::Done,
+            "" => return Err("the status is missing"),
+            code => Status::Failed(code.to_string()),
+        },
+        message: cells[axes + metrics + 2].clone(),
+        numbers: numbers.collect::<Result<_, _>>()?,
+    })
+}
+
+/// The cells of a line.
+fn split(line: &str) -> Option<Vec<String>> {
+    let (mut out, mut quoted) = (vec![String::new()], false);
+    let mut signs = line.chars().peekable();
+    while let Some(sign) = signs.next() {
+        match sign {
+            '"' if quoted && signs.peek() == Some(&'"') => {
+                signs.next();
+                out.last_mut()?.push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => out.push(String::new()),
+            sign => out.last_mut()?.push(sign),
+        }
+    }
+    (!quoted).then_some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, Design, Metric};
+    use super::*;
+
+    fn sweep() -> Sweep {
+        Sweep {
+            name: "s".into(),
+            file: "s.toml".into(),
+            text: String::new(),
+            files: opruga_io::Files::default(),
+            fixed: Vec::new(),
+            axes: Axis::parse("world.gravity=[0, -9.81],[0, \"a\"]").expect("it can be read").into_iter().collect(),
+            design: Design::Grid,
+            metrics: vec![
+                Metric::parse("energy_drift").expect("a metric"),
+                Metric::parse("settling_time").expect("one"),
+            ],
+            allow_unstable: false,
+            lenient: false,
+        }
+    }
+
+    fn rows(points: &[Point]) -> Vec<Row> {
+        let failed = Status::Failed("run.diverged".into());
+        vec![
+            Row {
+                number: 0,
+                values: points[0].clone(),
+                status: Status::Done,
+                message: String::new(),
+                numbers: vec![Some(0.1), None],
+            },
+            Row {
+                number: 1,
+                values: points[1].clone(),
+                status: failed,
+                message: "a \"b\", c".into(),
+                numbers: vec![None, None],
+            },
+        ]
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_and_a_torn_line_is_left_out() {
+        let sweep = sweep();
+        let points = super::super::grid::points(&sweep.axes, sweep.design).expect("points");
+        let rows = rows(&points);
+        let text = format!("{}{}{}", head(&sweep), line(&rows[1]), line(&rows[0]));
+        assert_eq!(read_rows(&sweep, &points, &text, "f").expect("a table"), rows, "sorted by their points");
+        for cut in text.len() - line(&rows[0]).len()..text.len() {
+            assert_eq!(read_rows(&sweep, &points, &text[..cut], "f").expect("a table"), rows[1..], "{cut}");
+        }
+        assert_eq!(read_rows(&sweep, &points, "poi", "f"), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn a_table_of_something_else_is_refused_with_its_line() {
+        let sweep = sweep();
+        let points = super::super::grid::points(&sweep.axes, sweep.design).expect("points");
+        let row = line(&rows(&points)[0]);
+        for (text, at) in [
+            ("a,b\n".to_string(), 1),
+            (format!("{}7{}", head(&sweep), &row[1..]), 2),
+            (format!("{}1{}", head(&sweep), &row[1..]), 2),
+            (format!("{}{row}{row}", head(&sweep)), 3),
+            (format!("{}{}", head(&sweep), row.replace("done", "")), 2),
+            (format!("{}{}", head(&sweep), row.replace("1.0", "one")), 2),
+        ] {
+            let error = read_rows(&sweep, &points, &text, "f").expect_err(&text);
+            assert_eq!((error.code, error.line), ("sweep.damaged", Some(at)), "{text}");
+        }
+    }
+}
