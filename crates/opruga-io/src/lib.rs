@@ -8,6 +8,7 @@ pub mod checkpoint;
 mod document;
 pub mod overrides;
 pub mod problem;
+pub mod recording;
 pub mod reference;
 pub mod refusals;
 pub mod safe_write;
