@@ -8,6 +8,8 @@ mod failure;
 mod outputs;
 mod plots;
 mod recorder;
+mod recordings;
+mod replay;
 mod reports;
 mod run;
 mod source;
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
     let json = command.json();
     let outcome = match &command {
         Command::Run(run) => run::run(run),
+        Command::Replay(replay) => replay::replay(replay),
         Command::Check(check) => reports::check(check),
         Command::List { json } => reports::list(*json),
         Command::New { name, force, .. } => reports::new(name, *force),

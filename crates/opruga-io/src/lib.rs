@@ -14,6 +14,7 @@ pub mod refusals;
 pub mod safe_write;
 pub mod scene;
 pub mod schema;
+pub mod series;
 mod source;
 pub mod tables;
 pub mod template;
