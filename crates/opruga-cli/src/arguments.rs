@@ -1,5 +1,6 @@
 //! What can be said on the command line.
 
+use crate::recorder::Wanted;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -24,6 +25,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Run a scene at many values of its parameters and compare what happens
     Sweep(Sweep),
+    /// Make the pictures of a recorded run again, export its frames, or compute it again and compare
+    Replay(Replay),
     /// List models, integrators, shapes, colliders and the scenes that come with the program
     List {
         /// Print JSON
@@ -223,6 +226,12 @@ pub(crate) struct Run {
     /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
+    /// Record every frame to this file, for `opruga replay`
+    ///
+    /// The file holds the scene and needs no other. A run that is killed leaves all frames up to its last twentieth of a
+    /// second. --force replaces a file that is there.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,
@@ -243,7 +252,69 @@ pub(crate) struct Run {
     pub(crate) watch: bool,
 }
 
+#[derive(Args, Debug)]
+pub(crate) struct Replay {
+    /// A recording: a file that `opruga run --record` has written
+    pub(crate) file: PathBuf,
+    /// Compute every frame again and compare it bit by bit; exit code 1 where one differs
+    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "vtk", "obj", "ply", "no_pictures"])]
+    pub(crate) verify: bool,
+    /// The simulated time to begin at [s] [default: the first frame]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// The simulated time to end at [s] [default: the last frame]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// Pictures, and exported frames, for each second of simulated time
+    ///
+    /// Above 0 up to 240; never more than the recording has frames.
+    #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
+    pub(crate) fps: f64,
+    /// The folder for the output [default: out/SCENE-replay]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace the output that is there
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Write the animation as video.gif instead of video.mp4
+    #[arg(long, conflicts_with = "no_pictures")]
+    pub(crate) gif: bool,
+    /// Draw arrows, as `opruga run --arrows` does
+    #[arg(long, conflicts_with = "no_pictures")]
+    pub(crate) arrows: bool,
+    /// No strip, video and plots
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// Write every picture's frame as VTK too (frame-000012.vtk …; ParaView opens frames.vtk.series)
+    #[arg(long)]
+    pub(crate) vtk: bool,
+    /// Write every picture's frame as Wavefront OBJ too
+    #[arg(long)]
+    pub(crate) obj: bool,
+    /// Write every picture's frame as Stanford PLY too
+    #[arg(long)]
+    pub(crate) ply: bool,
+    /// Threads, 1 to 256; the results do not depend on them
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: u16,
+    /// Print what was found, or an error, as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Replay {
+    /// What shall be seen.
+    pub(crate) fn wanted(&self) -> Wanted {
+        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, gif: self.gif }
+    }
+}
+
 impl Run {
+    /// What shall be seen.
+    pub(crate) fn wanted(&self) -> Wanted {
+        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, gif: self.gif }
+    }
+
     /// What `opruga` without a command does.
     pub(crate) fn default_scene() -> Run {
         match Arguments::parse_from(["opruga", "run"]).command {
@@ -260,6 +331,7 @@ impl Command {
             Command::Run(run) => run.json,
             Command::Check(check) => check.json,
             Command::Sweep(sweep) => sweep.json,
+            Command::Replay(replay) => replay.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,

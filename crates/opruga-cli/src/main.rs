@@ -9,6 +9,8 @@ mod interrupt;
 mod outputs;
 mod plots;
 mod recorder;
+mod recordings;
+mod replay;
 mod reports;
 mod run;
 mod source;
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
         Command::Run(run) => watch::run(run),
         Command::Check(check) => watch::check(check),
         Command::Sweep(call) => sweep::sweep(call),
+        Command::Replay(replay) => replay::replay(replay),
         Command::List { json } => reports::list(*json),
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),

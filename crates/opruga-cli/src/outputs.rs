@@ -114,7 +114,12 @@ impl Outputs<'_> {
     }
 
     /// Strip, video and plots.
-    fn pictures(&self, scenery: &Scenery, recorder: &Recorder, files: &mut Vec<String>) -> Result<(), Failure> {
+    pub(crate) fn pictures(
+        &self,
+        scenery: &Scenery,
+        recorder: &Recorder,
+        files: &mut Vec<String>,
+    ) -> Result<(), Failure> {
         let draw_failed = |e: draw::DrawError| Failure::Draw(e.to_string());
         let plots = crate::plots::of_run(&recorder.seen, &recorder.columns, &self.source.name).map_err(draw_failed)?;
         self.folder.write("plots.svg", false, |out| out.write_all(plots.as_bytes()))?;

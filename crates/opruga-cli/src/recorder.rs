@@ -1,6 +1,5 @@
 //! What is kept of a run while it runs: rows of tables, and moments for pictures.
 
-use crate::arguments::Run;
 use crate::failure::Failure;
 use opruga::blueprint::{BodyBlueprint, Recorded};
 use opruga::io::tables::NumberTable;
@@ -19,6 +18,17 @@ const LOOKED_AT: u64 = 4_000_000;
 
 /// The most rows that plots are drawn from.
 const MOST_ROWS: u64 = 60_000;
+
+/// What shall be seen of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    /// Pictures for each second of simulated time.
+    pub(crate) fps: f64,
+    /// Whether there are strip, video and plots.
+    pub(crate) pictures: bool,
+    pub(crate) arrows: bool,
+    pub(crate) gif: bool,
+}
 
 /// What is kept of every frame.
 pub(crate) struct Recorder {
@@ -54,7 +64,8 @@ pub(crate) struct Columns {
 
 impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
-    pub(crate) fn new<const D: usize>(world: &mut World<D>, call: &Run, frames: u64) -> Result<Recorder, Failure> {
+    pub(crate) fn new<const D: usize>(world: &mut World<D>, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
+        let Wanted { fps, pictures: drawn, arrows, gif } = wanted;
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
@@ -88,7 +99,7 @@ impl Recorder {
         }
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
         let frame = world.blueprint().time.frame;
-        let wanted = ((1.0 / call.fps / frame).round() as u64).max(1);
+        let wanted = ((1.0 / fps / frame).round() as u64).max(1);
         let pictures = frames / wanted + 1;
         let bytes = pictures * (nodes * (D + 1) * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
@@ -99,16 +110,13 @@ impl Recorder {
             );
         }
         let rate = film_rate(every, frame);
-        if !call.no_pictures && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
+        if drawn && draw::Mp4Writer::new(std::io::sink(), [16, 16], rate).is_err() {
             return Err(Failure::Call {
-                message: format!(
-                    "no film can have {rate:e} pictures per second: --fps {}, frames of {frame} s",
-                    call.fps
-                ),
+                message: format!("no film can have {rate:e} pictures per second: --fps {fps}, frames of {frame} s"),
                 hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
             });
         }
-        let scenery = (!call.no_pictures).then(|| Scenery::new(world));
+        let scenery = (drawn).then(|| Scenery::new(world));
         if scenery.is_some() {
             world.keep_looks(look_every(frames, world.blueprint().time.substeps, nodes as u64));
         }
@@ -127,8 +135,8 @@ impl Recorder {
             moments: Vec::new(),
             every,
             frame,
-            arrows: call.arrows,
-            gif: call.gif,
+            arrows,
+            gif,
         })
     }
 

@@ -6,9 +6,10 @@ use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::outputs::{Outputs, counted};
 use crate::recorder::Recorder;
+use crate::recordings::Tape;
 use crate::source::{Source, Whole, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
 use opruga::{Options, Simd};
@@ -136,7 +137,7 @@ impl Job<'_> {
         if let Some(saved) = &self.resumed {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
-        let mut recorder = Recorder::new(&mut world, call, frames)?;
+        let mut recorder = Recorder::new(&mut world, call.wanted(), frames)?;
         let folder = output_folder(call, source)?;
         let calling = Calling {
             overrides: self.reading.overrides.clone(),
@@ -144,15 +145,16 @@ impl Job<'_> {
             allow_unstable: self.world.allow_unstable,
             files: self.files,
         };
+        let mut tape = Tape::begin(call.record.as_deref(), call.force, source, &calling, frame)?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = interrupt::asked_to_stop();
         let bar = progress_bar(frames);
         let start = Instant::now();
         let first = world.frames();
-        let mut failure = None;
+        let mut failure = tape.push(&world).err().map(unrecorded);
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut world);
-        while world.frames() < frames {
+        while failure.is_none() && world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
                 failure = Some(Failure::Interrupted);
                 break;
@@ -161,6 +163,7 @@ impl Job<'_> {
                 failure = Some(source.run_error(&error, world.time()));
                 break;
             }
+            failure = tape.push(&world).err().map(unrecorded);
             looking += recorder.record(&mut world);
             if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
                 bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", world.time()));
@@ -172,6 +175,8 @@ impl Job<'_> {
                 bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
             }
         }
+        let taped = tape.finish().err().map(unrecorded);
+        failure = failure.or(taped);
         let wall = (start.elapsed() - looking).as_secs_f64();
         bar.finish_and_clear();
         let outputs = Outputs {
@@ -198,6 +203,12 @@ impl Job<'_> {
         }
         Ok(0)
     }
+}
+
+/// The recording can go no further, and the run ends: its state is kept, so that it can go on elsewhere.
+fn unrecorded(error: WriteError) -> Failure {
+    let hint = "the run has ended here; --resume goes on from its checkpoint, with --record to another file";
+    Failure::Write(WriteError { hint: Some(hint.into()), ..error })
 }
 
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.

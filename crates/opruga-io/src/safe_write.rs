@@ -20,10 +20,10 @@ pub struct WriteError {
 }
 
 impl WriteError {
-    fn new(code: &'static str, path: &Path, message: impl Into<String>) -> WriteError {
+    pub(crate) fn new(code: &'static str, path: &Path, message: impl Into<String>) -> WriteError {
         WriteError { code, message: message.into(), path: path.to_path_buf(), bytes: 0, hint: None }
     }
-    fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
+    pub(crate) fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
         WriteError {
             bytes,
             ..WriteError::new(
@@ -189,7 +189,7 @@ fn fill_and_sync<W: Target>(
 const WRITING: &str = ".writing";
 
 /// The name under which this process writes a file before it gets its own.
-fn aside_name(name: &std::ffi::OsStr) -> std::ffi::OsString {
+pub(crate) fn aside_name(name: &std::ffi::OsStr) -> std::ffi::OsString {
     let mut aside = std::ffi::OsString::from(".");
     aside.push(name);
     aside.push(format!(".{}{WRITING}", std::process::id()));
@@ -203,14 +203,15 @@ fn is_aside(name: &str) -> bool {
 }
 
 /// Makes a renaming last; only where folders can be opened.
-fn sync_folder(folder: &Path) -> io::Result<()> {
+pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
 /// Counts the bytes that went through.
-struct Counted<W> {
-    inner: W,
-    bytes: u64,
+#[derive(Debug)]
+pub(crate) struct Counted<W> {
+    pub(crate) inner: W,
+    pub(crate) bytes: u64,
 }
 
 impl<W: Write> Write for Counted<W> {

@@ -8,15 +8,17 @@ use crate::ledger::Flows;
 use crate::rebuild::Touched;
 use crate::world::World;
 use opruga_core::spec::Value;
+use opruga_core::state::Columns;
+use opruga_core::system::System;
+use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// Little-endian numbers, one after the other.
-#[derive(Default)]
-struct Writer(Vec<u8>);
+struct Writer<'a>(&'a mut Vec<u8>);
 
-impl Writer {
+impl Writer<'_> {
     fn count(&mut self, n: u64) {
         self.0.extend(n.to_le_bytes());
     }
@@ -69,6 +71,17 @@ impl Writer {
         self.count(vectors.len() as u64);
         for x in vectors.iter().flatten() {
             self.number(*x);
+        }
+    }
+    /// The vectors of the nodes of one body; room is made once, for this is most of a snapshot.
+    fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
+        self.count(system.nodes as u64);
+        let from = self.0.len();
+        self.0.resize(from + system.nodes * D * 8, 0);
+        let (bytes, _) = self.0[from..].as_chunks_mut::<8>();
+        let (nodes, _) = bytes.as_chunks_mut::<D>();
+        for (node, to) in nodes.iter_mut().enumerate() {
+            *to = columns.at(system.layout.place(node, lane)).map(f64::to_le_bytes);
         }
     }
 }
@@ -154,8 +167,15 @@ impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
     ///
     /// A world built from the same blueprint that restores it goes on bit for bit, on any number of threads.
-    pub fn snapshot(&mut self) -> Vec<u8> {
-        let mut out = Writer::default();
+    pub fn snapshot(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        self.snapshot_into(&mut out);
+        out
+    }
+
+    /// Appends the bytes of [`World::snapshot`]: for those who take one every frame.
+    pub fn snapshot_into(&self, out: &mut Vec<u8>) {
+        let mut out = Writer(out);
         out.count(VERSION);
         out.count(D as u64);
         out.count(self.frames);
@@ -183,13 +203,16 @@ impl<const D: usize> World<D> {
             if !alive {
                 continue;
             }
-            let state = self.state_of(body);
-            out.vectors(&state.x);
-            out.vectors(&state.v);
-            out.count(state.memory.len() as u64);
-            for memory in &state.memory {
+            let (island, lane) = self.place[body];
+            let system = &self.islands[island].system;
+            out.columns(&system.state.x, system, lane);
+            out.columns(&system.state.v, system, lane);
+            let models = self.blueprint.bodies[body].models.len();
+            out.count(models as u64);
+            for member in &system.members[..models] {
+                let memory = member.memory.iter().skip(lane).step_by(WIDTH);
                 out.count(memory.len() as u64);
-                memory.iter().for_each(|m| out.number(*m));
+                memory.for_each(|m| out.number(*m));
             }
         }
         out.count(self.running.len() as u64);
@@ -215,7 +238,6 @@ impl<const D: usize> World<D> {
         for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
             out.count(n);
         }
-        out.0
     }
 
     /// Goes to the state of a snapshot of a world with the same blueprint.

@@ -260,7 +260,7 @@ fn a_snapshot_of_a_changed_scene_can_be_restored() {
     let whole = run(changing(), Options::default(), 60);
     let mut hashes = Vec::new();
     for frames in [3, 9, 15, 20, 28, 40] {
-        let mut first = run(changing(), Options::default(), frames);
+        let first = run(changing(), Options::default(), frames);
         let bytes = first.snapshot();
         let mut second = World::new(changing(), Options { threads: 2, ..Options::default() }).expect("a world");
         second.restore(&bytes).unwrap_or_else(|e| panic!("after {frames} frames: {e}"));

@@ -1,0 +1,86 @@
+//! `opruga run --record`: what goes into a recording, frame by frame; and how one is opened.
+
+use crate::checkpoints::Calling;
+use crate::failure::Failure;
+use crate::source::Source;
+use opruga::World;
+use opruga::io::recording::{Asset, Header, Recording, RecordingError, RecordingFile};
+use opruga::io::safe_write::WriteError;
+use opruga::io::{Files, SceneError};
+use std::fs::File;
+use std::path::Path;
+
+/// This program, as a recording names it.
+pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
+
+/// The recording of a run, if one is wanted.
+pub(crate) struct Tape(Option<RecordingFile>);
+
+impl Tape {
+    /// Begins a recording: the file is there with its header before the run begins.
+    pub(crate) fn begin(
+        path: Option<&Path>,
+        force: bool,
+        source: &Source,
+        calling: &Calling,
+        frame: f64,
+    ) -> Result<Tape, WriteError> {
+        let Some(path) = path else { return Ok(Tape(None)) };
+        let header = Header {
+            program: PROGRAM.into(),
+            name: source.name.clone(),
+            file: source.file.clone(),
+            scene: source.bytes.clone(),
+            frame,
+            overrides: calling.overrides.clone(),
+            lenient: calling.lenient,
+            allow_unstable: calling.allow_unstable,
+            assets: calling
+                .files
+                .iter()
+                .map(|(name, bytes)| Asset { name: name.clone(), bytes: bytes.to_vec() })
+                .collect(),
+        };
+        Ok(Tape(Some(RecordingFile::create(path, force, &header)?)))
+    }
+
+    /// Adds the present frame.
+    pub(crate) fn push<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {
+        match &mut self.0 {
+            Some(file) => file.push(world.frames(), |out| world.snapshot_into(out)),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the end.
+    pub(crate) fn finish(self) -> Result<(), WriteError> {
+        self.0.map_or(Ok(()), |file| file.finish().map(|_| ()))
+    }
+}
+
+/// Opens a recording for reading; its scene is inside.
+pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
+    let refuse = |error: SceneError| Failure::Run(Box::new(SceneError { file: path.display().to_string(), ..error }));
+    let about = std::fs::metadata(path).and_then(|about| Ok((about, File::open(path)?)));
+    let (about, file) = about.map_err(|e| refuse(SceneError::from(&RecordingError::from(e))))?;
+    if !about.is_file() {
+        return Err(refuse(SceneError::new("read.not_regular_file", "this is no regular file")));
+    }
+    let recording = Recording::open(file).map_err(|e| {
+        let hint = match &e {
+            RecordingError::NotOne => Some("opruga run SCENE --record FILE writes one"),
+            RecordingError::Version { .. } => Some("the version of the program that wrote it can read it"),
+            _ => None,
+        };
+        let error = SceneError::from(&e);
+        refuse(match hint {
+            Some(hint) => error.hint(hint),
+            None => error,
+        })
+    })?;
+    let header = recording.header();
+    let file = format!("scene {} (in {})", header.name, path.display());
+    let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
+    let source = Source { name: header.name.clone(), file, bytes: header.scene.clone(), files: Files::held(held) };
+    Ok((recording, source))
+}

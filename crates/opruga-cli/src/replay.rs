@@ -1,0 +1,304 @@
+//! `opruga replay`: a recorded run seen again, exported, or computed again and compared.
+
+use crate::arguments::Replay;
+use crate::failure::{Failure, print_data};
+use crate::interrupt;
+use crate::outputs::{Outputs, counted};
+use crate::recorder::Recorder;
+use crate::recordings;
+use crate::run::simd_from_environment;
+use crate::source::Source;
+use core::ops::RangeInclusive;
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::io::recording::{Ending, Recording, RecordingError};
+use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::io::series::{Format, Shape, write_vtk_series};
+use opruga::io::tables::WarningSummary;
+use opruga::io::{SceneError, scene};
+use opruga::{Options, World};
+use serde_json::json;
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Replays a recording.
+pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
+    for (option, time) in [("--from", call.from), ("--to", call.to)] {
+        if let Some(time) = time.filter(|time| !(0.0..=1e9).contains(time)) {
+            return Err(Failure::range(option, time, "0 to 1e9"));
+        }
+    }
+    if !(call.fps > 0.0 && call.fps <= 240.0) {
+        return Err(Failure::range("--fps", call.fps, "numbers above 0 up to 240"));
+    }
+    let simd = simd_from_environment()?;
+    let (recording, source) = recordings::open(&call.file)?;
+    let frames = wanted_frames(call, &recording)?;
+    let told = oddities(&recording);
+    if !call.json {
+        told.iter().for_each(|warning| eprintln!("warning[{}]: {}", warning.code, warning.message));
+    }
+    let header = recording.header();
+    let reading = scene::Options {
+        lenient: header.lenient,
+        overrides: header.overrides.clone(),
+        files: source.files.clone(),
+        ..scene::Options::default()
+    };
+    let options = Options { threads: call.threads.into(), simd, allow_unstable: header.allow_unstable, batches: true };
+    let blueprint = source.read(&reading, &options)?.blueprint;
+    let job = Job { call, source: &source, reading, options, recording, frames, told };
+    match blueprint {
+        AnyBlueprint::Plane(blueprint) => job.run(blueprint),
+        AnyBlueprint::Space(blueprint) => job.run(blueprint),
+    }
+}
+
+/// A recording that cannot be replayed as it was asked for.
+fn refused(call: &Replay, error: SceneError) -> Failure {
+    Failure::Run(Box::new(SceneError { file: call.file.display().to_string(), ..error }))
+}
+
+/// The frames from `--from` to `--to`. A recording that goes on with damage is replayed only up to a time before it.
+fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeInclusive<u64>, Failure> {
+    let (frames, length) = (recording.frames(), recording.header().frame);
+    let last = frames.end.checked_sub(1).filter(|last| *last >= frames.start);
+    let time = |frame: u64| frame as f64 * length;
+    if let Ending::Damaged(error) = recording.ending() {
+        let before = last.filter(|last| call.to.is_none_or(|to| (to / length + 1e-9).floor() > *last as f64));
+        if before.is_some() || last.is_none() {
+            let hint = match last {
+                Some(last) => format!("the frames before are whole: --to {} shows them", time(last)),
+                None => "no whole frame lies before".into(),
+            };
+            return Err(refused(call, SceneError::from(error).hint(hint)));
+        }
+    }
+    let Some(last) = last else {
+        let error = RecordingError::NoFrame { frame: 0, frames };
+        return Err(refused(
+            call,
+            SceneError::from(&error).hint("the run was killed before its first frame was written"),
+        ));
+    };
+    let from = call.from.map_or(frames.start, |from| (from / length - 1e-9).ceil() as u64).max(frames.start);
+    let to = call.to.map_or(last, |to| (to / length + 1e-9).floor() as u64).min(last);
+    if from > to {
+        let message = format!(
+            "no frame lies from {} s to {} s: the recording has those from {} s to {} s, {length} s apart",
+            call.from.unwrap_or(0.0),
+            call.to.unwrap_or(time(last)),
+            time(frames.start),
+            time(last)
+        );
+        return Err(Failure::call(message));
+    }
+    Ok(from..=to)
+}
+
+/// What is odd about a recording, and no error.
+fn oddities(recording: &Recording<File>) -> Vec<WarningSummary> {
+    let mut out = Vec::new();
+    let mut tell = |code: &str, message: String| out.push(WarningSummary { code: code.into(), message, count: 1 });
+    let header = recording.header();
+    if let Ending::Open { lost } = recording.ending() {
+        let frames = recording.frames();
+        let until = frames.end.saturating_sub(1) as f64 * header.frame;
+        tell(
+            "recording.open",
+            format!(
+                "the recording has no end: its run was killed or still runs; {} up to t = {until} s are whole, {} behind them are no whole frame",
+                counted(frames.end - frames.start, "frame", "frames"),
+                counted(*lost, "byte", "bytes"),
+            ),
+        );
+    }
+    let now = recordings::PROGRAM;
+    if header.program != now {
+        tell("recording.program", format!("{} wrote the recording; this is {now}", header.program));
+    }
+    if std::fs::read(&header.file).is_ok_and(|bytes| bytes != header.scene) {
+        let message = format!("{} has changed since; the recording goes by its own copy", header.file);
+        tell("scene.changed", message);
+    }
+    out
+}
+
+struct Job<'a> {
+    call: &'a Replay,
+    source: &'a Source,
+    reading: scene::Options,
+    options: Options,
+    recording: Recording<File>,
+    frames: RangeInclusive<u64>,
+    told: Vec<WarningSummary>,
+}
+
+impl Job<'_> {
+    fn run<const D: usize>(self, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
+        blueprint.name.clone_from(&self.source.name);
+        let mut world = self.source.build(blueprint, &self.reading, &self.options)?;
+        let stop = interrupt::asked_to_stop();
+        if self.call.verify { self.verify(&mut world, stop) } else { self.show(&mut world, stop) }
+    }
+
+    /// The bytes of a frame.
+    fn state(&mut self, frame: u64) -> Result<&[u8], Failure> {
+        let call = self.call;
+        self.recording.read(frame).map_err(|e| refused(call, SceneError::from(&e)))
+    }
+
+    /// Brings a world to a frame, without stepping.
+    fn go_to<const D: usize>(&mut self, world: &mut World<D>, frame: u64) -> Result<(), Failure> {
+        let source = self.source;
+        let restored = world.restore(self.state(frame)?);
+        restored.map_err(|error| source.run_error(&error, frame as f64 * self.recording.header().frame))
+    }
+
+    /// Computes every frame again, from the beginning of the scene or from the first frame that is wanted, and compares.
+    fn verify<const D: usize>(mut self, world: &mut World<D>, stop: &AtomicBool) -> Result<u8, Failure> {
+        let (first, last) = (*self.frames.start(), *self.frames.end());
+        if first > 0 {
+            self.go_to(world, first)?;
+        }
+        let mut different = None;
+        for frame in first..=last {
+            if stop.load(Ordering::Relaxed) {
+                return Err(Failure::Interrupted);
+            }
+            if frame > first {
+                world.frame().map_err(|error| self.source.run_error(&error, world.time()))?;
+            }
+            let computed = world.snapshot();
+            if self.state(frame)? != computed {
+                different = Some((frame, world.state_hash()));
+                break;
+            }
+        }
+        let hash = |hash: u64| format!("{hash:016x}");
+        let time = |frame: u64| frame as f64 * self.recording.header().frame;
+        let span = json!({"first": first, "last": last, "from": time(first), "to": time(last)});
+        let Some((frame, computed)) = different else {
+            let same = hash(world.state_hash());
+            if self.call.json {
+                let row = json!({"schema": 1, "scene": self.source.name, "frames": span, "pass": true,
+                                 "state_hash": same, "warnings": self.told});
+                print_data(&format!("{row}\n"))?;
+            } else {
+                let count = counted(last - first + 1, "frame", "frames");
+                eprintln!("{}: {count} computed again, all the same to the bit; state {same}", self.source.name);
+            }
+            return Ok(0);
+        };
+        let time = time(frame);
+        self.go_to(world, frame)?;
+        let recorded = world.state_hash();
+        if self.call.json {
+            let row = json!({"schema": 1, "scene": self.source.name, "frames": span, "pass": false,
+                             "differs_at": {"frame": frame, "time": time, "recorded": hash(recorded), "computed": hash(computed)},
+                             "warnings": self.told});
+            print_data(&format!("{row}\n"))?;
+        } else {
+            let what = match recorded == computed {
+                true => "positions and velocities are the same, the rest of the state is not".to_string(),
+                false => format!("recorded {}, computed {}", hash(recorded), hash(computed)),
+            };
+            eprintln!("{}: frame {frame}, t = {time} s, is the first that differs: {what}", self.source.name);
+        }
+        Ok(1)
+    }
+
+    /// Tables, pictures and exported frames, from recorded states alone.
+    fn show<const D: usize>(mut self, world: &mut World<D>, stop: &AtomicBool) -> Result<u8, Failure> {
+        let call = self.call;
+        let (first, last) = (*self.frames.start(), *self.frames.end());
+        self.go_to(world, first)?;
+        let mut recorder = Recorder::new(world, call.wanted(), last - first)?;
+        let folder = self.folder()?;
+        let formats: Vec<Format> = [(call.vtk, Format::Vtk), (call.obj, Format::Obj), (call.ply, Format::Ply)]
+            .into_iter()
+            .filter_map(|(wanted, format)| wanted.then_some(format))
+            .collect();
+        let (mut files, mut series) = (vec!["diagnostics.csv".to_string()], Vec::new());
+        for frame in first..=last {
+            if stop.load(Ordering::Relaxed) {
+                return Err(Failure::Interrupted);
+            }
+            self.go_to(world, frame)?;
+            recorder.record(world);
+            if !frame.is_multiple_of(recorder.every) {
+                continue;
+            }
+            for format in &formats {
+                let name = format!("frame-{frame:06}.{}", format.ending());
+                export(world, *format, &folder, &name)?;
+                if *format == Format::Vtk {
+                    series.push((name.clone(), world.time()));
+                }
+                files.push(name);
+            }
+        }
+        if !series.is_empty() {
+            folder.write("frames.vtk.series", false, |out| write_vtk_series(out, &series))?;
+            files.push("frames.vtk.series".into());
+        }
+        folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
+        let outputs = Outputs {
+            folder: &folder,
+            source: self.source,
+            wall: 0.0,
+            steps: 0,
+            resumed_at: None,
+            told: Vec::new(),
+            stop,
+        };
+        if let Some(scenery) = &recorder.scenery {
+            outputs.pictures(scenery, &recorder, &mut files)?;
+        }
+        if call.json {
+            let length = self.recording.header().frame;
+            let (from, to) = (first as f64 * length, last as f64 * length);
+            let row = json!({"schema": 1, "scene": self.source.name, "warnings": self.told, "files": files,
+                             "frames": {"first": first, "last": last, "from": from, "to": to},
+                             "state_hash": format!("{:016x}", world.state_hash())});
+            print_data(&format!("{row}\n"))?;
+        } else {
+            outputs.say_where();
+        }
+        Ok(0)
+    }
+
+    fn folder(&self) -> Result<OutputFolder, Failure> {
+        let path = match &self.call.out {
+            Some(path) => path.clone(),
+            None => {
+                let parent = PathBuf::from("out");
+                if !parent.exists() {
+                    let failed = |e: std::io::Error| Failure::Output(format!("the folder `out` cannot be made: {e}"));
+                    std::fs::create_dir(&parent).map_err(failed)?;
+                }
+                parent.join(format!("{}-replay", self.source.name))
+            }
+        };
+        let existing = if self.call.force { Existing::Replace } else { Existing::Refuse };
+        Ok(OutputFolder::open(&path, existing)?)
+    }
+}
+
+/// Writes the present frame of a world for other programs.
+fn export<const D: usize>(world: &World<D>, format: Format, folder: &OutputFolder, name: &str) -> Result<(), Failure> {
+    let bodies: Vec<usize> = world.bodies().collect();
+    let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
+        bodies.iter().map(|&b| (0..world.node_count(b) as u32).map(|n| vector(b, n)).collect()).collect()
+    };
+    let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
+    let blueprint = world.blueprint();
+    let shape = |(&body, (positions, velocities))| {
+        let body: &opruga::blueprint::BodyBlueprint<D> = &blueprint.bodies[body];
+        let (positions, velocities): (&Vec<[f64; D]>, &Vec<[f64; D]>) = (positions, velocities);
+        Shape { name: &body.name, mesh: &body.mesh, positions, velocities }
+    };
+    let shapes: Vec<Shape<'_, D>> = bodies.iter().zip(x.iter().zip(&v)).map(shape).collect();
+    folder.write(name, false, |out| format.write(out, &blueprint.name, world.time(), &shapes))?;
+    Ok(())
+}

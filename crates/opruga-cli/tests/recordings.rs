@@ -1,0 +1,160 @@
+//! Recorded runs: killed, damaged, replayed, exported, computed again. The numbers are rows of a list of torments.
+#![cfg(unix)]
+#![allow(clippy::disallowed_methods)] // no physics here
+
+mod common;
+use common::*;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::Duration;
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("no JSON: {}", said(output)))
+}
+
+fn verified(folder: &Path, more: &[&str]) -> Value {
+    let output = opruga(folder, &[&["replay", "r", "--verify", "--json"], more].concat());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let row = json(&output);
+    assert_eq!(row["pass"], true);
+    row
+}
+
+/// Without a step being computed, a recording gives the pictures and tables of its run again, byte by byte; computed
+/// again, also on other threads and from the middle, every frame is the same. The scene is not needed any more.
+#[test]
+fn a_replay_gives_the_files_of_its_run_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let text = printed(&opruga(folder, &["new", "mine", "--json"]));
+    assert!(text.is_empty());
+    let run = ["run", "mine.toml", "--seconds", "0.5", "--set", "time.substeps=40", "--out", "o", "--record", "r"];
+    let output = opruga(folder, &[&run[..], &["--json"]].concat());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let summary = json(&output);
+    // Row 90: the scene changes, and is told of; then it is gone.
+    std::fs::write(folder.join("mine.toml"), "else").expect("a file");
+    let row = verified(folder, &[]);
+    assert_eq!(row["state_hash"], summary["state_hash"]);
+    assert_eq!(row["warnings"][0]["code"], "scene.changed");
+    std::fs::remove_file(folder.join("mine.toml")).expect("a file");
+    assert_eq!(
+        verified(folder, &["--from", "0.2", "--to", "0.3", "--threads", "2"])["warnings"],
+        serde_json::json!([])
+    );
+
+    let output = opruga(folder, &["replay", "r", "--out", "again", "--vtk", "--obj", "--ply"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    for name in ["strip.png", "video.mp4", "diagnostics.csv"] {
+        let of = |run: &str| std::fs::read(folder.join(run).join(name)).expect("a file");
+        assert!(of("again") == of("o"), "{name} is another one");
+    }
+    let names: Vec<String> = contents(&folder.join("again")).into_iter().map(|f| f.0).collect();
+    for ending in ["vtk", "obj", "ply"] {
+        let count = names.iter().filter(|n| n.starts_with("frame-") && n.ends_with(ending)).count();
+        assert_eq!(count, 11, "20 pictures a second for half a second and one at the start: {names:?}");
+    }
+    // The last exported frame has the positions of the end of the run.
+    let last = std::fs::read_to_string(folder.join("again/frame-000030.obj")).expect("a file");
+    let table = std::fs::read_to_string(folder.join("o/final.csv")).expect("a table");
+    let number = |text: &str| text.parse::<f64>().expect("a number").to_bits();
+    let exported: Vec<u64> = last
+        .lines()
+        .filter_map(|line| line.strip_prefix("v "))
+        .flat_map(|line| line.split(' ').take(2).map(number).collect::<Vec<_>>())
+        .collect();
+    let reached: Vec<u64> =
+        table.lines().skip(1).flat_map(|row| row.split(',').skip(2).take(2).map(number).collect::<Vec<_>>()).collect();
+    assert!(!exported.is_empty() && exported == reached);
+}
+
+/// Bodies that come and go, pulls and parameters that are set: all of it is in the states. A run that goes on from a
+/// checkpoint records the rest.
+#[test]
+fn commands_and_resumed_runs_are_verified_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    summary(folder, &["run", "pressures", "--seconds", "0.2", "--out", "o"]);
+    summary(folder, &["run", "--resume", "o/checkpoint", "--seconds", "0.5", "--out", "p", "--record", "r"]);
+    let row = verified(folder, &[]);
+    assert!(row["frames"]["first"].as_u64() > Some(0), "{row}");
+    // `ball` is pulled by a pointer.
+    summary(folder, &["run", "ball", "--seconds", "4", "--out", "q", "--record", "r", "--force"]);
+    verified(folder, &[]);
+}
+
+/// Rows 79 and 87: killed or interrupted at any moment, a run leaves a recording whose frames are whole and right.
+#[test]
+fn a_run_that_is_killed_leaves_its_frames() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let mut most = 0;
+    for round in 0..12u64 {
+        let arguments =
+            ["run", "pressures", "--seconds", "1e5", "--no-pictures", "--out", "o", "--force", "--record", "r"];
+        let _ = std::fs::remove_file(folder.join("r"));
+        let mut child = program(folder, &arguments).spawn().expect("the program runs");
+        until("no recording begins", || folder.join("r").exists());
+        std::thread::sleep(Duration::from_micros(60_000 + round * 7_919_777 % 90_000));
+        signal(&child, if round < 10 { "KILL" } else { "INT" });
+        child.wait().expect("it ends");
+        let output = opruga(folder, &["replay", "r", "--verify", "--json", "--to", "0.5"]);
+        if code(&output) != 0 {
+            assert!(said(&output).contains("recording.no_frame"), "{round}: {}", said(&output));
+            continue;
+        }
+        let row = json(&output);
+        let killed = row["warnings"].as_array().is_some_and(|w| w.iter().any(|w| w["code"] == "recording.open"));
+        assert!(row["pass"] == true && killed == (round < 10), "{round}: {row}");
+        most = most.max(row["frames"]["last"].as_u64().expect("a number"));
+    }
+    assert!(most >= 5, "frames reach the file on the way: {most}");
+}
+
+/// Rows 82 to 85: damage, other files and full disks are errors with their place; nothing old is lost.
+#[test]
+fn faults_of_recordings_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let run = ["run", "pressures", "--seconds", "0.5", "--no-pictures", "--out", "o", "--record", "r"];
+    assert_eq!(code(&opruga(folder, &run)), 0);
+    let good = std::fs::read(folder.join("r")).expect("a recording");
+    let refused = |arguments: &[&str], expected: i32, text: &str| {
+        let output = opruga(folder, arguments);
+        assert_eq!(code(&output), expected, "{arguments:?}: {}", said(&output));
+        assert!(said(&output).contains(text), "{arguments:?}: {}", said(&output));
+    };
+    let again = ["run", "pressures", "--seconds", "0.5", "--no-pictures", "--out", "p", "--record", "r"];
+    refused(&again, 4, "error[write.exists]");
+    assert!(std::fs::read(folder.join("r")).expect("a recording") == good);
+    for place in [30, good.len() / 2, good.len() - 30, good.len() - 3] {
+        let mut bad = good.clone();
+        bad[place] ^= 4;
+        std::fs::write(folder.join("bad"), bad).expect("a file");
+        refused(&["replay", "bad", "--verify"], 2, "bad: error[recording.damaged]");
+    }
+    // The end is damaged, the beginning can be seen.
+    assert_eq!(code(&opruga(folder, &["replay", "bad", "--verify", "--to", "0.1"])), 0);
+    std::fs::write(folder.join("bad"), "notes").expect("a file");
+    refused(&["replay", "bad"], 2, "error[recording.not_one]");
+    refused(&["replay", "nowhere"], 4, "error[read.failed]");
+    refused(&["replay", "."], 4, "error[read.not_regular_file]");
+    refused(&["replay", "r", "--from", "9"], 2, "no frame lies from 9 s");
+    refused(&["replay", "r", "--to", "nan"], 2, "--to is NaN; allowed: 0 to 1e9");
+    refused(&["replay", "r", "--fps", "0"], 2, "--fps is 0");
+    if Path::new("/dev/full").exists() {
+        refused(&[&run[..5], &["--out", "f", "--record", "/dev/full", "--force"]].concat(), 4, "no regular file");
+    }
+    // The disk is full in mid run: the run ends, says so, and its state is kept.
+    let call = format!(
+        "ulimit -f 64; trap '' XFSZ; exec {} run pressures --no-pictures --out full --record s",
+        env!("CARGO_BIN_EXE_opruga"),
+    );
+    let output = Command::new("bash").args(["-c", &call]).current_dir(folder).output().expect("a shell");
+    assert_eq!(code(&output), 4, "{}", said(&output));
+    assert!(said(&output).contains("s: error[write.failed]: writing stopped after 65536 bytes"), "{}", said(&output));
+    assert!(said(&output).contains("--resume goes on"), "{}", said(&output));
+    assert!(folder.join("full/checkpoint").exists());
+    refused(&["replay", "s", "--verify"], 0, "warning[recording.open]");
+}

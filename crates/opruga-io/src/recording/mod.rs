@@ -1,0 +1,41 @@
+//! Recordings: every frame of a run in one file that needs no other, survives a kill at any moment, and is checked byte
+//! by byte.
+//!
+//! ```text
+//! 0    8  "OPRREC\x1a\n"        refuses texts and files that a transfer has changed
+//! 8    4  version               little-endian, as all numbers
+//! 12   8  bytes of the header
+//! 20   4  CRC-32 of bytes 0 … 19
+//! 24      the header: program, scene, how the run was called, files that the scene had named; then CRC-32 of it
+//!
+//! every frame is a chunk:
+//! 0    4  "FRAM"
+//! 4    4  0: the state itself, 1: its difference from the frame before
+//! 8    8  the number of the frame
+//! 16   8  bytes of the state
+//! 24   8  bytes of the payload
+//! 32   4  CRC-32 of the payload
+//! 36   4  CRC-32 of the header's CRC-32 and of bytes 0 … 35: a chunk of another recording does not fit
+//! 40      the payload
+//!
+//! a run that ends adds a chunk "INDX" with the place of every 64th frame, and
+//! 0    8  the place of that chunk
+//! 8    4  CRC-32 of the header's CRC-32 and of bytes 0 … 7
+//! 12   8  "OPREND\x1a\n"
+//! ```
+//! All places are of 64 bits. A file without the end, of a run that was killed, is read chunk by chunk, and the index made
+//! again; a chunk that was not written to its end is left out, and said to be. What the bytes of a state mean is the matter
+//! of the world that wrote them. The same run gives the same bytes.
+
+mod codec;
+mod error;
+mod file;
+mod format;
+mod reader;
+mod writer;
+
+pub use error::RecordingError;
+pub use file::RecordingFile;
+pub use format::{Asset, Header, VERSION};
+pub use reader::{Ending, Recording};
+pub use writer::Writer;

@@ -1,0 +1,263 @@
+//! Frames for other programs: legacy VTK (ParaView), Wavefront OBJ (Blender) and Stanford PLY (MeshLab), one file a frame.
+
+use opruga_mesh::Mesh;
+use std::io::{self, Write};
+
+/// A body in one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a, const D: usize> {
+    /// Its name.
+    pub name: &'a str,
+    /// What spans its nodes.
+    pub mesh: &'a Mesh<D>,
+    /// Positions, node by node [m].
+    pub positions: &'a [[f64; D]],
+    /// Velocities, node by node [m/s].
+    pub velocities: &'a [[f64; D]],
+}
+
+/// A kind of file that frames are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Legacy VTK, ASCII: cells, surfaces and lines, with velocities, the number of the body, and the time.
+    Vtk,
+    /// Wavefront OBJ: surfaces and lines, body by body.
+    Obj,
+    /// Stanford PLY, ASCII: surfaces and lines, with velocities.
+    Ply,
+}
+
+impl Format {
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Format::Vtk => "vtk",
+            Format::Obj => "obj",
+            Format::Ply => "ply",
+        }
+    }
+
+    /// Writes one frame. In the plane z is zero. Numbers have all their digits.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write<const D: usize>(
+        self,
+        out: &mut dyn Write,
+        title: &str,
+        time: f64,
+        shapes: &[Shape<'_, D>],
+    ) -> io::Result<()> {
+        match self {
+            Format::Vtk => vtk(out, title, time, shapes),
+            Format::Obj => obj(out, title, time, shapes),
+            Format::Ply => ply(out, title, time, shapes),
+        }
+    }
+}
+
+/// Writes the list of a series of VTK files with their times, as ParaView reads it (`NAME.vtk.series`).
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_vtk_series(out: &mut dyn Write, files: &[(String, f64)]) -> io::Result<()> {
+    let rows: Vec<_> = files.iter().map(|(name, time)| serde_json::json!({"name": name, "time": time})).collect();
+    let series = serde_json::json!({"file-series-version": "1.0", "files": rows});
+    serde_json::to_writer_pretty(&mut *out, &series)?;
+    writeln!(out)
+}
+
+/// What is drawn of a body: nodes of every element, counted from the first node of the first body.
+struct Elements {
+    /// Elements with their VTK type.
+    all: Vec<(u8, Vec<usize>)>,
+}
+
+const LINE: u8 = 3;
+const TRIANGLE: u8 = 5;
+const QUADRILATERAL: u8 = 9;
+const TETRAHEDRON: u8 = 10;
+const HEXAHEDRON: u8 = 12;
+
+impl Elements {
+    /// Filled bodies by their cells where `filled` wants them, others by what bounds them; wires always.
+    fn of<const D: usize>(mesh: &Mesh<D>, filled: bool, first: usize) -> Elements {
+        let mut all = Vec::new();
+        let mut add = |kind: u8, nodes: &[u32]| all.push((kind, nodes.iter().map(|n| first + *n as usize).collect()));
+        if !mesh.cells.is_empty() && (filled || D == 2) {
+            mesh.cells.triangles.iter().for_each(|c| add(TRIANGLE, c));
+            mesh.cells.quadrilaterals.iter().for_each(|c| add(QUADRILATERAL, c));
+            mesh.cells.tetrahedra.iter().for_each(|c| add(TETRAHEDRON, c));
+            mesh.cells.hexahedra.iter().for_each(|c| add(HEXAHEDRON, c));
+        } else {
+            mesh.facets.iter().for_each(|f| add(if D == 2 { LINE } else { TRIANGLE }, f));
+        }
+        mesh.sheets.iter().for_each(|s| add(TRIANGLE, s));
+        mesh.wires.iter().for_each(|w| add(LINE, w));
+        Elements { all }
+    }
+
+    fn lines(&self) -> impl Iterator<Item = &[usize]> {
+        self.all.iter().filter(|e| e.0 == LINE).map(|e| &e.1[..])
+    }
+
+    fn faces(&self) -> impl Iterator<Item = &[usize]> {
+        self.all.iter().filter(|e| e.0 != LINE).map(|e| &e.1[..])
+    }
+}
+
+/// Elements of all bodies, body by body.
+fn elements<const D: usize>(shapes: &[Shape<'_, D>], filled: bool) -> Vec<Elements> {
+    let mut first = 0;
+    let of = |shape: &Shape<'_, D>| {
+        let elements = Elements::of(shape.mesh, filled, first);
+        first += shape.positions.len();
+        elements
+    };
+    shapes.iter().map(of).collect()
+}
+
+/// Three numbers, the third zero in the plane.
+fn three<const D: usize>(x: &[f64; D]) -> String {
+    let z = x.get(2).copied().unwrap_or(0.0);
+    format!("{:e} {:e} {z:e}", x[0], x[1])
+}
+
+/// A text that stays on its line; spaces would end a name.
+fn word(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() || c.is_whitespace() { '_' } else { c }).collect()
+}
+
+fn line(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(200).collect()
+}
+
+fn joined(nodes: &[usize], shift: usize) -> String {
+    nodes.iter().map(|n| (n + shift).to_string()).collect::<Vec<_>>().join(" ")
+}
+
+fn vtk<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+    let elements = elements(shapes, true);
+    let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
+    let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
+    let (count, size) = all().fold((0, 0), |(count, size), (_, e)| (count + 1, size + 1 + e.1.len()));
+    // The first line but one may have 256 bytes.
+    let title: String = line(title).chars().filter(char::is_ascii).collect();
+    writeln!(out, "# vtk DataFile Version 3.0\n{title}\nASCII\nDATASET UNSTRUCTURED_GRID")?;
+    writeln!(out, "FIELD FieldData 1\nTIME 1 1 double\n{time:e}")?;
+    writeln!(out, "POINTS {points} double")?;
+    for x in shapes.iter().flat_map(|s| s.positions) {
+        writeln!(out, "{}", three(x))?;
+    }
+    writeln!(out, "CELLS {count} {size}")?;
+    for (_, (_, nodes)) in all() {
+        writeln!(out, "{} {}", nodes.len(), joined(nodes, 0))?;
+    }
+    writeln!(out, "CELL_TYPES {count}")?;
+    for (_, (kind, _)) in all() {
+        writeln!(out, "{kind}")?;
+    }
+    writeln!(out, "CELL_DATA {count}\nSCALARS body int 1\nLOOKUP_TABLE default")?;
+    for (body, _) in all() {
+        writeln!(out, "{body}")?;
+    }
+    writeln!(out, "POINT_DATA {points}\nVECTORS velocity double")?;
+    for v in shapes.iter().flat_map(|s| s.velocities) {
+        writeln!(out, "{}", three(v))?;
+    }
+    Ok(())
+}
+
+fn obj<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+    writeln!(out, "# {}\n# t = {time} s", line(title))?;
+    for (shape, elements) in shapes.iter().zip(elements(shapes, false)) {
+        writeln!(out, "o {}", word(shape.name))?;
+        for x in shape.positions {
+            writeln!(out, "v {}", three(x))?;
+        }
+        for nodes in elements.faces() {
+            writeln!(out, "f {}", joined(nodes, 1))?;
+        }
+        for nodes in elements.lines() {
+            writeln!(out, "l {}", joined(nodes, 1))?;
+        }
+    }
+    Ok(())
+}
+
+fn ply<const D: usize>(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_, D>]) -> io::Result<()> {
+    let elements = elements(shapes, false);
+    let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
+    let faces: usize = elements.iter().map(|e| e.faces().count()).sum();
+    let edges: usize = elements.iter().map(|e| e.lines().count()).sum();
+    writeln!(out, "ply\nformat ascii 1.0\ncomment {}\ncomment t = {time} s", line(title))?;
+    writeln!(out, "element vertex {points}")?;
+    for name in ["x", "y", "z", "vx", "vy", "vz"] {
+        writeln!(out, "property double {name}")?;
+    }
+    writeln!(out, "element face {faces}\nproperty list uchar int vertex_indices")?;
+    writeln!(out, "element edge {edges}\nproperty int vertex1\nproperty int vertex2\nend_header")?;
+    for (x, v) in shapes.iter().flat_map(|s| s.positions.iter().zip(s.velocities)) {
+        writeln!(out, "{} {}", three(x), three(v))?;
+    }
+    for nodes in elements.iter().flat_map(Elements::faces) {
+        writeln!(out, "{} {}", nodes.len(), joined(nodes, 0))?;
+    }
+    for nodes in elements.iter().flat_map(Elements::lines) {
+        writeln!(out, "{}", joined(nodes, 0))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(format: Format) -> String {
+        let square = Mesh { positions: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], ..Mesh::<2>::default() };
+        let ring = Mesh { facets: vec![[0, 1], [1, 2], [2, 0]], ..square.clone() };
+        let wire = Mesh { wires: vec![[0, 1]], positions: vec![[0.0; 2]; 2], ..Mesh::default() };
+        let shapes = [
+            Shape { name: "a ring", mesh: &ring, positions: &ring.positions, velocities: &[[0.1, -2.0]; 3] },
+            Shape { name: "wire", mesh: &wire, positions: &[[5.0, 1e-9], [6.0, 0.0]], velocities: &[[0.0; 2]; 2] },
+        ];
+        let mut out = Vec::new();
+        format.write(&mut out, "two\nbodies", 0.25, &shapes).expect("memory does not fail");
+        String::from_utf8(out).expect("text")
+    }
+
+    /// Nodes of the second body count on behind those of the first; OBJ counts from one, the others from zero.
+    #[test]
+    fn elements_name_the_nodes_of_their_own_body() {
+        let obj = written(Format::Obj);
+        assert!(obj.contains("# twobodies\n# t = 0.25 s\no a_ring\nv 0e0 0e0 0e0\nv 1e0 0e0 0e0\n"), "{obj}");
+        assert!(obj.ends_with("l 1 2\nl 2 3\nl 3 1\no wire\nv 5e0 1e-9 0e0\nv 6e0 0e0 0e0\nl 4 5\n"), "{obj}");
+        let ply = written(Format::Ply);
+        assert!(ply.contains("element vertex 5\n") && ply.contains("element face 0\n"), "{ply}");
+        assert!(ply.contains("end_header\n0e0 0e0 0e0 1e-1 -2e0 0e0\n") && ply.ends_with("2 0\n3 4\n"), "{ply}");
+        let vtk = written(Format::Vtk);
+        assert!(vtk.contains("TIME 1 1 double\n2.5e-1\nPOINTS 5 double\n"), "{vtk}");
+        assert!(vtk.contains("CELLS 4 12\n2 0 1\n2 1 2\n2 2 0\n2 3 4\nCELL_TYPES 4\n3\n3\n3\n3\n"), "{vtk}");
+        assert!(vtk.contains("LOOKUP_TABLE default\n0\n0\n0\n1\nPOINT_DATA 5\n"), "{vtk}");
+    }
+
+    /// A solid is exported with its inside to VTK, by its surface to the others.
+    #[test]
+    fn solids_have_cells_in_vtk_and_surfaces_elsewhere() {
+        let mut mesh = Mesh::<3> {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            facets: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+            ..Mesh::default()
+        };
+        mesh.cells.tetrahedra.push([0, 1, 2, 3]);
+        let shape = Shape { name: "t", mesh: &mesh, positions: &mesh.positions, velocities: &[[0.0; 3]; 4] };
+        let text = |format: Format| {
+            let mut out = Vec::new();
+            format.write(&mut out, "", 0.0, &[shape]).expect("memory does not fail");
+            String::from_utf8(out).expect("text")
+        };
+        assert!(text(Format::Vtk).contains("CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"));
+        assert!(text(Format::Obj).ends_with("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+        assert!(text(Format::Ply).ends_with("3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
+    }
+}

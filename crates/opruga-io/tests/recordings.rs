@@ -1,0 +1,417 @@
+//! Recordings: every frame comes back, a cut costs its chunk at most, and no damage goes unnoticed. The numbers are rows of
+//! a list of torments.
+
+use opruga_io::recording::{Asset, Ending, Header, Recording, RecordingError, RecordingFile, Writer};
+use opruga_io::safe_write::{Failing, Target};
+use proptest::prelude::*;
+use std::fs::{File, OpenOptions};
+use std::io::{Cursor, Read, Seek, SeekFrom, Write};
+use std::path::PathBuf;
+
+fn folder(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("opruga-recordings-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir(&path).expect("a folder for the test");
+    path
+}
+
+/// A target in memory.
+#[derive(Debug, Default)]
+struct Memory(Vec<u8>);
+
+impl Write for Memory {
+    fn write(&mut self, buffer: &[u8]) -> std::io::Result<usize> {
+        self.0.write(buffer)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Target for &mut Memory {
+    fn sync(&self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+fn header() -> Header {
+    Header {
+        program: "opruga 0.1.0".into(),
+        name: "balls".into(),
+        file: "scenes/balls.toml".into(),
+        scene: b"format = \"opruga-1\"\n".to_vec(),
+        frame: 1.0 / 60.0,
+        overrides: vec![("time.substeps".into(), "64".into()), ("world.gravity".into(), "[0, 0]".into())],
+        lenient: true,
+        allow_unstable: false,
+        assets: vec![Asset { name: "beam.msh".into(), bytes: vec![0, 255, 10] }],
+    }
+}
+
+/// The state of a frame: numbers that move; a body comes at frame 70, and a text of five bytes at frame 90.
+fn state(frame: u64) -> Vec<u8> {
+    let nodes = if frame < 70 { 6 } else { 9 };
+    let mut out: Vec<u8> = frame.to_le_bytes().to_vec();
+    out.extend((0..nodes).flat_map(|k| (f64::from(k) + 0.01 * frame as f64).to_le_bytes()));
+    if frame >= 90 {
+        out.extend(b"pulls");
+    }
+    out
+}
+
+/// The bytes of a recording of some frames, with its end or without.
+fn recorded(frames: core::ops::Range<u64>, closed: bool) -> Vec<u8> {
+    let mut memory = Memory::default();
+    let mut writer = Writer::new(&mut memory, &header()).expect("memory does not fail");
+    for frame in frames {
+        writer.push(frame, &state(frame)).expect("frames in order");
+    }
+    writer.flush().expect("memory does not fail");
+    if closed {
+        writer.finish().expect("memory does not fail");
+    }
+    memory.0
+}
+
+fn open(bytes: &[u8]) -> Result<Recording<Cursor<&[u8]>>, RecordingError> {
+    Recording::open(Cursor::new(bytes))
+}
+
+#[test]
+fn every_frame_comes_back_in_any_order() {
+    for closed in [true, false] {
+        for frames in [0..200u64, 7..8, 5..5] {
+            let bytes = recorded(frames.clone(), closed);
+            let mut recording = open(&bytes).expect("a recording");
+            assert_eq!(recording.header(), &header());
+            let ending = if closed { Ending::Closed } else { Ending::Open { lost: 0 } };
+            assert_eq!(recording.ending(), &ending);
+            if frames.is_empty() {
+                assert!(recording.frames().is_empty());
+                continue;
+            }
+            assert_eq!(recording.frames(), frames);
+            let scattered = frames.clone().map(|k| frames.start + (k * 61 + 17) % (frames.end - frames.start));
+            for frame in frames.clone().chain(scattered) {
+                assert_eq!(recording.read(frame), Ok(&state(frame)[..]), "frame {frame}");
+            }
+            let error = recording.read(frames.end).expect_err("no such frame");
+            assert_eq!(error, RecordingError::NoFrame { frame: frames.end, frames: frames.clone() });
+        }
+    }
+}
+
+#[test]
+fn frames_out_of_order_are_refused_and_left_out() {
+    let mut memory = Memory::default();
+    let mut writer = Writer::new(&mut memory, &header()).expect("memory does not fail");
+    writer.push(3, &state(3)).expect("the first may have any number");
+    for wrong in [0, 3, 5] {
+        assert!(writer.push(wrong, &state(wrong)).is_err(), "frame {wrong}");
+    }
+    writer.push(4, &state(4)).expect("the next one");
+    writer.finish().expect("memory does not fail");
+    assert_eq!(open(&memory.0).expect("a recording").frames(), 3..5);
+}
+
+/// Row 79: cut off at any byte, as by a kill, a recording loses the chunk that was cut and nothing else.
+#[test]
+fn a_recording_that_is_cut_anywhere_keeps_all_frames_before() {
+    for closed in [true, false] {
+        let whole = recorded(60..75, closed);
+        let mut kept = 0;
+        let mut heads = 0;
+        for length in 0..whole.len() {
+            match open(&whole[..length]) {
+                Err(error) => {
+                    assert!(kept == 0 && length < 400, "{length}: {error}");
+                    let code = error.code();
+                    assert!(code == "recording.cut_off" || length == 0 && code == "recording.not_one", "{error}");
+                    heads += 1;
+                }
+                Ok(mut recording) => {
+                    let Ending::Open { lost } = *recording.ending() else { panic!("{:?}", recording.ending()) };
+                    let frames = recording.frames();
+                    assert!((lost as usize) < 200 && frames.end.saturating_sub(60) >= kept, "{length}: lost {lost}");
+                    kept = frames.end.saturating_sub(60);
+                    for frame in frames {
+                        assert_eq!(recording.read(frame), Ok(&state(frame)[..]), "frame {frame} of {length} bytes");
+                    }
+                }
+            }
+        }
+        assert!(heads > 24 && kept == if closed { 15 } else { 14 }, "{kept} frames");
+    }
+}
+
+/// Row 82: one flipped bit anywhere, of any byte, is an error, or (where the end is gone) said; no frame is ever wrong.
+#[test]
+fn a_flipped_bit_anywhere_is_found() {
+    let good = recorded(60..75, true);
+    for place in 0..good.len() {
+        for bit in [1, 16, 128] {
+            let mut bad = good.clone();
+            bad[place] ^= bit;
+            let mut recording = match open(&bad) {
+                Err(error) => {
+                    assert!(place < 300, "{place}: {error}");
+                    continue;
+                }
+                Ok(recording) => recording,
+            };
+            assert_eq!(recording.header(), &header(), "byte {place}");
+            let mut errors = u32::from(matches!(recording.ending(), Ending::Damaged(_)));
+            assert!(!matches!(recording.ending(), Ending::Open { .. }), "byte {place} is taken for a kill");
+            for frame in recording.frames() {
+                match recording.read(frame) {
+                    Ok(read) => assert_eq!(read, state(frame), "byte {place}, frame {frame}"),
+                    Err(error) => {
+                        let RecordingError::Damaged { from, to } = error else { panic!("{error}") };
+                        assert!((from..to).contains(&(place as u64)), "byte {place}: {error}");
+                        errors += 1;
+                    }
+                }
+            }
+            assert!(errors > 0, "byte {place} was flipped unnoticed");
+        }
+    }
+    let other = [&good[..], b"x"].concat();
+    assert!(matches!(open(&other).expect("whole frames").ending(), Ending::Damaged(_)), "something follows the end");
+}
+
+/// A chunk of another recording, whole in itself, does not fit.
+#[test]
+fn chunks_of_another_recording_are_refused() {
+    let mine = recorded(0..4, false);
+    let mut memory = Memory::default();
+    let foreign = Header { name: "cubes".into(), ..header() };
+    let mut writer = Writer::new(&mut memory, &foreign).expect("memory does not fail");
+    (0..8).for_each(|frame| writer.push(frame, &state(frame)).expect("in order"));
+    writer.flush().expect("memory does not fail");
+    // Names of the same length: the chunks lie at the same places.
+    let joined = [&mine[..], &memory.0[mine.len()..]].concat();
+    let recording = open(&joined).expect("the head is whole");
+    assert_eq!(recording.frames(), 0..4);
+    assert!(matches!(recording.ending(), Ending::Damaged(_)), "{:?}", recording.ending());
+}
+
+#[test]
+fn other_files_and_other_versions_are_refused() {
+    for bytes in [&b""[..], b"PK\x03\x04 this is an archive", b"OPRUGA\x1a\n and so on", &[0; 300]] {
+        assert_eq!(open(bytes).err(), Some(RecordingError::NotOne));
+    }
+    let mut newer = recorded(0..2, true);
+    newer[8] = 2;
+    let sum = crc32fast::hash(&newer[..20]);
+    newer[20..24].copy_from_slice(&sum.to_le_bytes());
+    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 2 }));
+}
+
+/// Row 83: the disk fails at any byte, or only when the bytes shall last: an error with the number of bytes, and a file
+/// whose frames are right.
+#[test]
+fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
+    let folder = folder("failing");
+    let whole = recorded(68..72, true);
+    let path = folder.join("r");
+    for k in 0..=whole.len() as u64 {
+        let _ = std::fs::remove_file(&path);
+        let outcome = RecordingFile::create_through(&path, false, &header(), |file| Failing::after(k, file)).and_then(
+            |mut file| {
+                for frame in 68..72 {
+                    file.push(frame, |out| out.extend(state(frame)))?;
+                }
+                file.finish()
+            },
+        );
+        if k == whole.len() as u64 {
+            assert_eq!(outcome, Ok(k));
+            assert_eq!(std::fs::read(&path).expect("a file"), whole, "the same frames are the same bytes");
+            continue;
+        }
+        let error = outcome.expect_err("the disk is full");
+        assert_eq!((error.code, error.exit_code(), &error.path), ("write.failed", 4, &path), "{k}");
+        match File::open(&path) {
+            // It does not get its name before its head is whole.
+            Err(_) => assert!(k < 300 && std::fs::read_dir(&folder).expect("a folder").count() == 0, "{k}"),
+            Ok(file) => {
+                assert_eq!(error.bytes, k);
+                let mut recording = Recording::open(file).expect("a whole head");
+                assert!(matches!(recording.ending(), Ending::Open { .. }), "{k}: {:?}", recording.ending());
+                for frame in recording.frames() {
+                    assert_eq!(recording.read(frame), Ok(&state(frame)[..]));
+                }
+            }
+        }
+    }
+    std::fs::remove_file(&path).expect("the last one");
+    let error = RecordingFile::create_through(&path, false, &header(), |file| Failing::at_sync(5, file))
+        .expect_err("it does not last");
+    assert!(error.code == "write.failed" && !path.exists(), "{error}");
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Rows 84 to 86: what is there stays, unless it shall be replaced; nobody else's recording is taken over; no device.
+#[test]
+fn an_earlier_file_stays_until_the_new_one_has_begun() {
+    let folder = folder("earlier");
+    let path = folder.join("r");
+    std::fs::write(&path, b"old").expect("a file");
+    let create = |path: &std::path::Path, force| RecordingFile::create(path, force, &header());
+    assert_eq!(create(&path, false).expect_err("it is there").code, "write.exists");
+    for k in 0..100 {
+        RecordingFile::create_through(&path, true, &header(), |file| Failing::after(k, file)).expect_err("no space");
+        assert_eq!(std::fs::read(&path).expect("still there"), b"old");
+    }
+    let first = create(&path, true).expect("it is replaced");
+    let error = create(&path, true).expect_err("it is being written");
+    assert_eq!((error.code, error.hint.is_some()), ("write.locked", true));
+    drop(first);
+    create(&path, true).and_then(RecordingFile::finish).expect("it is free again");
+    for (path, text) in [(folder.as_path(), "a folder"), (folder.join("no/r").as_path(), "cannot be made")] {
+        let error = create(path, true).expect_err("no place for a file");
+        assert!(error.code == "write.failed" && error.message.contains(text), "{error}");
+    }
+    #[cfg(target_os = "linux")]
+    {
+        let full = std::path::Path::new("/dev/full");
+        let error = create(full, true).expect_err("a device");
+        assert!(error.message.contains("no regular file") && full.exists(), "{error}");
+    }
+    assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// A file whose bytes from a place on lie 6 GiB farther: a hole that takes no room on the disk.
+struct Sparse {
+    file: File,
+    at: u64,
+    hole: u64,
+}
+
+const GAP: u64 = 6 << 30;
+
+impl Write for Sparse {
+    fn write(&mut self, buffer: &[u8]) -> std::io::Result<usize> {
+        if self.at == self.hole {
+            self.file.seek(SeekFrom::Current(GAP as i64))?;
+        }
+        let n = self.file.write(buffer)?;
+        self.at += n as u64;
+        Ok(n)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Target for &mut Sparse {
+    fn sync(&self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Row 89: places beyond 4 GiB and frames beyond 2³² are found. One chunk is 6 GiB long, most of it a hole.
+#[test]
+fn places_and_frames_beyond_32_bits_are_found() {
+    let folder = folder("sparse");
+    let path = folder.join("r");
+    let first = (1u64 << 32) + 3;
+    let mut plain = Memory::default();
+    let mut writer = Writer::new(&mut plain, &header()).expect("memory does not fail");
+    let start = writer.bytes();
+    writer.push(first, &state(80)).expect("the first");
+    writer.flush().expect("memory does not fail");
+    let second = writer.bytes();
+    drop(writer);
+    // The head of the first chunk, made to say that its payload is longer by the hole.
+    let identity = crc32fast::hash(&plain.0[24..start as usize - 4]);
+    let head = &mut plain.0[start as usize..];
+    let payload = second - start - 40 + GAP;
+    head[24..32].copy_from_slice(&payload.to_le_bytes());
+    let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], &head[..36]].concat());
+    head[36..40].copy_from_slice(&sum.to_le_bytes());
+
+    let file = OpenOptions::new().read(true).write(true).create_new(true).open(&path).expect("a file");
+    let mut sparse = Sparse { file, at: 0, hole: second };
+    let mut writer = Writer::new(&mut sparse, &header()).expect("a file");
+    writer.push(first, &state(80)).expect("the first");
+    writer.flush().expect("a file");
+    for k in 1..130 {
+        writer.push(first + k, &state(60 + k)).expect("in order");
+    }
+    writer.flush().expect("a file");
+    drop(writer);
+    let mut file = sparse.file;
+    file.seek(SeekFrom::Start(start)).expect("a place");
+    file.write_all(&plain.0[start as usize..start as usize + 40]).expect("a head");
+    assert!(file.metadata().expect("a file").len() > GAP);
+
+    let mut recording = Recording::open(&file).expect("a recording");
+    assert_eq!(recording.frames(), first..first + 130);
+    assert_eq!(recording.ending(), &Ending::Open { lost: 0 });
+    for k in [129, 64, 100, 65] {
+        assert_eq!(recording.read(first + k), Ok(&state(60 + k)[..]), "frame {k} behind the first");
+    }
+    // With its end the same file is read by its index.
+    let mut pairs = Vec::new();
+    let end = file.seek(SeekFrom::End(0)).expect("a place");
+    let mut place = start;
+    while place < end {
+        let mut head = [0; 40];
+        file.seek(SeekFrom::Start(place)).and_then(|_| file.read_exact(&mut head)).expect("a head");
+        if head[4] == 0 {
+            pairs.extend([&head[8..16], &place.to_le_bytes()].concat());
+        }
+        place += 40 + u64::from_le_bytes(head[24..32].try_into().expect("eight bytes"));
+    }
+    let sealed = |bytes: &[u8]| {
+        let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], bytes].concat());
+        [bytes, &sum.to_le_bytes()].concat()
+    };
+    let length = (pairs.len() as u64).to_le_bytes();
+    let head = [b"INDX\x02\0\0\0", &(first + 130).to_le_bytes()[..], &length, &length];
+    let head = [&head.concat()[..], &crc32fast::hash(&pairs).to_le_bytes()].concat();
+    let tail = [&sealed(&head)[..], &pairs, &sealed(&end.to_le_bytes()), b"OPREND\x1a\n"].concat();
+    file.seek(SeekFrom::End(0)).and_then(|_| file.write_all(&tail)).expect("the end");
+    let mut recording = Recording::open(&file).expect("a recording");
+    assert_eq!((recording.frames(), recording.ending()), (first..first + 130, &Ending::Closed));
+    for k in [129, 64, 100, 65] {
+        assert_eq!(recording.read(first + k), Ok(&state(60 + k)[..]), "frame {k} behind the first");
+    }
+    drop(file);
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_bytes_are_refused(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        prop_assert!(open(&bytes).is_err());
+    }
+
+    #[test]
+    fn mutated_recordings_give_right_frames_or_errors(changes in proptest::collection::vec((any::<u16>(), 0..3u8, any::<u8>(), 0..80usize), 1..5)) {
+        let mut bytes = recorded(60..75, true);
+        for (at, how, byte, length) in changes {
+            let at = usize::from(at) % bytes.len();
+            let end = (at + length).min(bytes.len());
+            match how {
+                0 => bytes[at] = byte,
+                1 => drop(bytes.drain(at..end)),
+                _ => { let piece = bytes[at..end].to_vec(); bytes.splice(at..at, piece); }
+            }
+            if bytes.is_empty() {
+                break;
+            }
+        }
+        if let Ok(mut recording) = open(&bytes) {
+            for frame in recording.frames() {
+                if let Ok(read) = recording.read(frame) {
+                    prop_assert_eq!(read, &state(frame)[..]);
+                }
+            }
+        }
+    }
+}
