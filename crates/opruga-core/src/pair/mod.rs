@@ -10,12 +10,14 @@
 //! ```
 
 mod chain;
+mod pull;
 
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
 use crate::tile::{TILE, Tile};
 use chain::Chain;
 use core::ops::Range;
 use opruga_math::{Lane, Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
+use pull::{Gather, Pull};
 
 /// The law of a pair: the force on its first node as a function of the differences of its ends.
 pub trait PairLaw<const D: usize>: Copy {
@@ -142,25 +144,6 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
     }
 }
 
-/// Pairs outside of long runs.
-struct Gather<'a, 'v, 't, L, const D: usize> {
-    table: &'a PairTable,
-    pull: &'a Pull,
-    law: L,
-    view: &'a View<'v, D>,
-    tile: &'a mut Tile<'t, D>,
-    power: &'a mut [f64; WIDTH],
-}
-impl<L: PairLaw<D>, const D: usize> Work for Gather<'_, '_, '_, L, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        let mut power = P::load(self.power);
-        self.table.pull::<P, L, D>(self.pull, self.law, self.view, self.tile, &mut power);
-        power.store(self.power);
-    }
-}
-
 /// A stretch of pairs (a + k, b + k); `first` is the number of its first pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
@@ -168,57 +151,6 @@ struct Run {
     b: u32,
     first: u32,
     count: u32,
-}
-
-/// Pairs gathered node by node: up to `width` partners of every node of a range.
-#[derive(Clone, Debug, PartialEq)]
-struct Pull {
-    width: usize,
-    /// `[node / 8][slot][node % 8]`: the partner, or the node itself where there is none.
-    partner: Vec<u32>,
-    /// The number of the pair, or that of a pair without effect.
-    pair: Vec<u32>,
-    /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, follow each other: then they are read at once.
-    together: Vec<bool>,
-    /// The pulled pairs by number, padded to packs with the pair without effect, and their two ends.
-    loose: Vec<u32>,
-    ends: [Vec<u32>; 2],
-}
-
-/// Partners of a node that are looked at together.
-const AT_ONCE: usize = 6;
-
-impl Pull {
-    /// The partners of eight places in a slot, and the pairs.
-    #[inline(always)]
-    fn slot(&self, layout: Layout, place: usize, slot: usize) -> (At<'_>, At<'_>) {
-        let pack = place / WIDTH;
-        match layout {
-            Layout::Single => {
-                let at = (pack * self.width + slot) * WIDTH;
-                let (partner, pair) = (&self.partner[at..at + WIDTH], &self.pair[at..at + WIDTH]);
-                if self.together[at / WIDTH] {
-                    (At::Run(partner[0] as usize), At::Run(pair[0] as usize))
-                } else {
-                    (At::Each(partner), At::Each(pair))
-                }
-            }
-            Layout::Batch => {
-                // A pack is one node of eight bodies.
-                let at = (pack / WIDTH * self.width + slot) * WIDTH + pack % WIDTH;
-                (At::Run(self.partner[at] as usize * WIDTH), At::Run(self.pair[at] as usize * WIDTH))
-            }
-        }
-    }
-}
-
-/// The numbers of a column at eight places.
-#[inline(always)]
-fn read<P: Pack>(column: &[f64], at: At) -> P {
-    match at {
-        At::Run(place) => P::load(&column[place..]),
-        At::Each(places) => P::gather(column, places),
-    }
 }
 
 /// The pairs of a body, sorted for evaluation.
@@ -521,49 +453,6 @@ impl PairTable {
             if overlap {
                 let (slot_a, slot_b) = (slot_of(both.start, a, all.start), slot_of(both.start, b, all.start));
                 add_slots::<P, true>(into, both.start - start, both.len(), column, slot_a, slot_b, L::SECOND);
-            }
-        }
-    }
-
-    /// Evaluates the pulled pairs of the nodes of a tile.
-    #[inline(always)]
-    fn pull<P: Pack, L: PairLaw<D>, const D: usize>(
-        &self,
-        pull: &Pull,
-        law: L,
-        view: &View<D>,
-        tile: &mut Tile<D>,
-        power: &mut P,
-    ) {
-        let half = P::splat(0.5);
-        for place in tile.range.clone().step_by(WIDTH) {
-            let x: [P; D] = load(&view.x, place);
-            let v: [P; D] = if L::DAMPED { load(&view.v, place) } else { [P::zero(); D] };
-            let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][place - tile.range.start..]));
-            for from in (0..pull.width).step_by(AT_ONCE) {
-                let slots = from..(from + AT_ONCE).min(pull.width);
-                // First what takes long, for all partners; meanwhile the rest of the first ones is worked out.
-                let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
-                for slot in slots.clone() {
-                    let (partner, _) = pull.slot(self.layout, place, slot);
-                    d[slot - from] = lanes!(P, i => x[i] - read::<P>(view.x[i], partner));
-                    ahead[slot - from] = law.ahead(d[slot - from]);
-                }
-                for slot in slots {
-                    let (partner, pair) = pull.slot(self.layout, place, slot);
-                    let rate = lanes!(P, i => if L::DAMPED { v[i] - read::<P>(view.v[i], partner) } else { P::zero() });
-                    let (f, dissipated) =
-                        law.force(law_parameters(&law, pair), d[slot - from], rate, ahead[slot - from]);
-                    for i in 0..D {
-                        force[i] += f[i];
-                    }
-                    if L::DAMPED {
-                        *power += half * dissipated;
-                    }
-                }
-            }
-            for i in 0..D {
-                force[i].store(&mut tile.force[i][place - tile.range.start..]);
             }
         }
     }
