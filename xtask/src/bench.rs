@@ -43,6 +43,27 @@ pub(crate) fn compare() -> Result<(), String> {
             println!("| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {:.2} |", theirs / ours);
         }
     }
+    start_time(&opruga)
+}
+
+/// How long the program takes until a body of 100,000 vertices could make its first step.
+fn start_time(opruga: &Path) -> Result<(), String> {
+    let folder = std::env::temp_dir().join(format!("opruga-start-{}", std::process::id()));
+    let mut best = f64::INFINITY;
+    for _ in 0..5 {
+        let begin = std::time::Instant::now();
+        let run = Command::new(opruga)
+            .args(["run", "giant-ring", "--seconds", "0", "--no-pictures", "--force", "--out"])
+            .arg(&folder)
+            .output()
+            .map_err(|e| e.to_string())?;
+        best = best.min(begin.elapsed().as_secs_f64());
+        if !run.status.success() {
+            return Err(String::from_utf8_lossy(&run.stderr).into_owned());
+        }
+    }
+    let _ = std::fs::remove_dir_all(&folder);
+    println!("\nfrom the call to the initial state of 100,000 vertices, written: {best:.2} s");
     Ok(())
 }
 

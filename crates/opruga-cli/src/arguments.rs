@@ -247,6 +247,9 @@ pub(crate) struct Run {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
+    /// Draw every spring and node, also on surfaces, in crowds and under skins
+    #[arg(long, conflicts_with = "no_pictures")]
+    pub(crate) springs: bool,
     /// Run again whenever the scene file changes, until Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
@@ -257,7 +260,7 @@ pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
     /// Compute every frame again and compare it bit by bit; exit code 1 where one differs
-    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "vtk", "obj", "ply", "no_pictures"])]
+    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "springs", "vtk", "obj", "ply", "no_pictures"])]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
@@ -282,6 +285,9 @@ pub(crate) struct Replay {
     /// Draw arrows, as `opruga run --arrows` does
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
+    /// Draw every spring and node, as `opruga run --springs` does
+    #[arg(long, conflicts_with = "no_pictures")]
+    pub(crate) springs: bool,
     /// No strip, video and plots
     #[arg(long)]
     pub(crate) no_pictures: bool,
@@ -305,14 +311,14 @@ pub(crate) struct Replay {
 impl Replay {
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, gif: self.gif }
+        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
     }
 }
 
 impl Run {
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, gif: self.gif }
+        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
     }
 
     /// What `opruga` without a command does.

@@ -27,6 +27,7 @@ pub(crate) struct Wanted {
     /// Whether there are strip, video and plots.
     pub(crate) pictures: bool,
     pub(crate) arrows: bool,
+    pub(crate) springs: bool,
     pub(crate) gif: bool,
 }
 
@@ -65,7 +66,7 @@ pub(crate) struct Columns {
 impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
     pub(crate) fn new<const D: usize>(world: &mut World<D>, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
-        let Wanted { fps, pictures: drawn, arrows, gif } = wanted;
+        let Wanted { fps, pictures: drawn, arrows, springs, gif } = wanted;
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
@@ -116,7 +117,10 @@ impl Recorder {
                 hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
             });
         }
-        let scenery = (drawn).then(|| Scenery::new(world));
+        let mut scenery = drawn.then(|| Scenery::new(world));
+        if springs {
+            scenery.iter_mut().for_each(|scenery| scenery.show_springs(world));
+        }
         if scenery.is_some() {
             world.keep_looks(look_every(frames, world.blueprint().time.substeps, nodes as u64));
         }

@@ -46,6 +46,17 @@ pub enum Definiteness {
     Clamped,
 }
 
+/// How often something happened in a model, per substep and body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Count {
+    /// The code of the warning.
+    pub code: &'static str,
+    /// What happened.
+    pub message: &'static str,
+    /// How often.
+    pub count: u64,
+}
+
 /// Where a model delivers its Hessian.
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
@@ -70,6 +81,10 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     }
     /// Calls back with the lowest and highest node of every stencil whose nodes read one another's state.
     fn spans(&self, visit: &mut dyn FnMut(u32, u32));
+    /// Pairs of nodes that a spring ties to each other, for pictures.
+    fn bonds(&self) -> &[[u32; 2]] {
+        &[]
+    }
     /// What is remembered at the start.
     fn initial_memory(&self) -> Vec<f64> {
         Vec::new()
@@ -119,8 +134,8 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
-    /// How often a limit of the model acted (a cap on pressure): a name and a count kept in the memory.
-    fn counts(&self, _memory: &[f64]) -> Vec<(&'static str, u64)> {
+    /// How often something happened that a user should know of (a limit acted): counts kept in the memory.
+    fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
     /// Bytes on the heap.

@@ -5,7 +5,7 @@ use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
-use opruga_core::potential::Account;
+use opruga_core::potential::{Account, Count};
 use opruga_core::stability::Stability;
 
 impl<const D: usize> World<D> {
@@ -182,19 +182,19 @@ impl<const D: usize> World<D> {
              integrator (more substeps make it smaller, `verlet` and `runge_kutta` make less of it)",
             self.flows.open_frames,
         );
-        let mut counts: Vec<(&'static str, u64)> = Vec::new();
+        let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
             for member in &island.system.members {
-                for (name, n) in member.potential.counts(&member.memory) {
-                    match counts.iter_mut().find(|c| c.0 == name) {
-                        Some(entry) => entry.1 += n,
-                        None => counts.push((name, n)),
+                for new in member.potential.counts(&member.memory) {
+                    match counts.iter_mut().find(|known| known.code == new.code) {
+                        Some(known) => known.count += new.count,
+                        None => counts.push(new),
                     }
                 }
             }
         }
-        for (name, n) in counts {
-            count(name, "a limit of the model acted, counted per substep and body", n);
+        for Count { code, message, count: n } in counts {
+            count(code, message, n);
         }
         out
     }

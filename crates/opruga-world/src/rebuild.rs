@@ -145,10 +145,24 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError`] where a model refuses the body.
     pub fn reading_names(&self, body: &BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> {
+        let mut island = self.island_alone(body)?;
+        Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
+    }
+
+    /// The pairs of nodes that springs of a body tie to each other, also of one that is not there yet.
+    ///
+    /// # Errors
+    /// [`WorldError`] where a model refuses the body.
+    pub fn springs(&self, body: &BodyBlueprint<D>) -> Result<Vec<[u32; 2]>, WorldError> {
+        let island = self.island_alone(body)?;
+        Ok(island.system.members.iter().flat_map(|member| member.potential.bonds()).copied().collect())
+    }
+
+    /// A body by itself as it would start now.
+    fn island_alone(&self, body: &BodyBlueprint<D>) -> Result<Island<D>, WorldError> {
         let blueprint = self.blueprint.part(vec![body.clone()], Vec::new(), Vec::new());
         let builder =
             Builder { blueprint: &blueprint, registry: &self.registry, simd: self.simd, integrator: &self.integrator };
-        let mut island = builder.island(&[0], &[&crate::build::initial_state(body)], self.time())?;
-        Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
+        builder.island(&[0], &[&crate::build::initial_state(body)], self.time())
     }
 }

@@ -259,7 +259,9 @@ pub const PIN: Section = Section {
     spec: &section(
         "pin",
         "Nodes held at their place, or moved in a prescribed way",
-        "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant.",
+        "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant. A held \
+         node is where its pin leads it, through obstacles too: these stop its neighbours, not the node. What the pin does \
+         against springs and obstacles is work of the user.",
         &[
             Field::new(
                 "axes",

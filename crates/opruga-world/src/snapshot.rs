@@ -161,7 +161,7 @@ impl Reader<'_> {
     }
 }
 
-const VERSION: u64 = 3;
+const VERSION: u64 = 4;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.

@@ -43,6 +43,8 @@ struct Fixed {
     arrow_nodes: Vec<u32>,
     /// What is drawn instead of the facets.
     skin: Option<Skin>,
+    /// The springs, where they are drawn whatever else is to be seen.
+    springs: Option<Vec<[u32; 2]>>,
 }
 
 /// What changes from picture to picture, kept small.
@@ -112,6 +114,7 @@ impl Scenery {
                 thickness: if D == 2 { blueprint.thickness } else { 1.0 },
                 arrow_nodes: if present.len() <= MOST_BODIES { spread(mesh, MOST_ARROWS[D - 2]) } else { Vec::new() },
                 skin: mesh.skin.clone(),
+                springs: None,
             }
         };
         Scenery {
@@ -120,6 +123,15 @@ impl Scenery {
             bodies: present.iter().chain(world.coming_bodies()).map(fixed).collect(),
             y_down: y_down(world),
             length_unit: world.blueprint().length_unit.clone(),
+        }
+    }
+
+    /// Draws every spring and every node that it holds, and the body itself instead of a skin.
+    pub fn show_springs<const D: usize>(&mut self, world: &World<D>) {
+        let bodies = world.blueprint().bodies.iter().chain(world.coming_bodies());
+        for (fixed, body) in self.bodies.iter_mut().zip(bodies) {
+            // A body that no model can carry is told when it comes.
+            fixed.springs = world.springs(body).ok();
         }
     }
 
@@ -193,7 +205,7 @@ impl Scenery {
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
             let scalar: Vec<f64> = strains.by_ref().take(fixed.nodes).collect();
-            if let Some(skin) = &fixed.skin {
+            if let (Some(skin), None) = (&fixed.skin, &fixed.springs) {
                 bodies.push(skinned(skin, &positions, &scalar, &fixed.label));
                 continue;
             }
@@ -202,9 +214,9 @@ impl Scenery {
                 positions,
                 facets: fixed.facets.clone(),
                 cells: fixed.cells.clone(),
-                segments: fixed.segments.clone(),
+                segments: fixed.springs.as_ref().unwrap_or(&fixed.segments).clone(),
                 colour: None,
-                nodes_drawn: fixed.nodes_drawn,
+                nodes_drawn: fixed.nodes_drawn || fixed.springs.is_some(),
                 pinned: fixed.pinned.clone(),
                 label: fixed.label.clone(),
             });

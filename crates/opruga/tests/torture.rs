@@ -201,7 +201,77 @@ fn collapsed_bodies_recover() {
         }
         let now = world.readings(0)[0].1;
         println!("{name}: {:.4} of its area", now / volume);
-        assert!(!recovers || (now / volume - 1.0).abs() < 1e-3, "{name}: {now} of {volume} m²");
+        // What does not come back says why: it was inside out, or enclosed nothing.
+        let told = world.warnings().iter().any(|w| w.code == "pressure.inverted" && w.count > 0);
+        assert!((now / volume - 1.0).abs() < 1e-3 || !recovers && told, "{name}: {now} of {volume} m²");
+    }
+}
+
+/// Row 54: a ring that is turned inside out is counted, and no energy is made of it.
+#[test]
+fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
+    let models = "{ kind = \"mass_spring\", stiffness = 600.0 }, { kind = \"pressure\", nRT = 30.0 }";
+    let text =
+        ring(512, models, "").replace("gravity = [0, -9.81]", "gravity = [0, 0]").replace("symplectic_euler", "verlet");
+    let mut world = built(plane(&text));
+    for node in 0..24 {
+        let [x, y] = world.position(0, node);
+        world.place_node(0, node, [-0.9 * x, y], [0.0; 2]).expect("a node");
+    }
+    assert!(world.readings(0)[0].1 < 0.0, "{:?}", world.readings(0));
+    let start = world.energy().total();
+    for _ in 0..120 {
+        world.frame().expect("a frame");
+        let now = world.energy();
+        assert!((now.total() - start).abs() < 1e-2 * start.abs().max(now.kinetic), "{now:?} of {start} J");
+    }
+    let warnings = world.warnings();
+    let warning = warnings.iter().find(|w| w.code == "pressure.inverted").expect("a warning");
+    assert!(warning.count > 0 && warning.message.contains("inside out"), "{warning:?}");
+}
+
+/// Row 62 in space: a balloon squeezed to a sheet, a needle, a point, mirrored, at random.
+#[test]
+fn collapsed_balloons_recover_or_say_why_not() {
+    let text = format!(
+        "{}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"icosphere\", radius = 0.5, subdivisions = 2 }}\nmodels = \
+         [{{ kind = \"mass_spring\", stiffness = 300.0, damping = 1.0 }}, {{ kind = \"pressure\", nRT = 100.0, \
+         largest_pressure = 2000.0 }}]\n",
+        head(1.0 / 60.0, 128, 0.0, "symplectic_euler").replace("dimension = 2", "dimension = 3")
+    )
+    .replace("gravity = [0, 0]", "gravity = [0, 0, 0]\ndrag = 3.0");
+    let built = || World::<3>::new(space(&text), Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    let mut world = built();
+    for _ in 0..300 {
+        world.frame().expect("a frame");
+    }
+    let volume = world.readings(0)[0].1;
+    let mut number = 1u64;
+    let mut random = move || {
+        number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (number >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    type Spoil<'a> = &'a mut dyn FnMut([f64; 3]) -> [f64; 3];
+    let cases: [(&str, Spoil, bool); 5] = [
+        ("a sheet", &mut |x| [x[0], x[1], 0.0], true),
+        ("a needle", &mut |x| [x[0], 0.0, 0.0], false),
+        ("a point", &mut |_| [0.0; 3], false),
+        ("mirrored", &mut |x| [-x[0], x[1], x[2]], false),
+        ("random", &mut |_| [random(), random(), random()], false),
+    ];
+    for (name, spoil, recovers) in cases {
+        let mut world = built();
+        for node in 0..world.node_count(0) as u32 {
+            let x = world.position(0, node);
+            world.place_node(0, node, spoil(x), [0.0; 3]).expect("a node");
+        }
+        for frame in 0..400 {
+            world.frame().unwrap_or_else(|e| panic!("{name}, frame {frame}: {e}"));
+        }
+        let now = world.readings(0)[0].1;
+        let told = world.warnings().iter().any(|w| w.code == "pressure.inverted" && w.count > 0);
+        println!("{name}: {:.4} of its volume", now / volume);
+        assert!((now / volume - 1.0).abs() < 1e-3 || !recovers && told, "{name}: {now} of {volume} m³");
     }
 }
 
@@ -298,7 +368,7 @@ fn bodies_beyond_the_largest_distance_are_taken_away() {
     assert_eq!((end(3, false), end(1, true)), ((counts.clone(), warning), (counts, warning)));
 }
 
-/// Row 71: 100,000 steps at rest in a corner: no drift, no jitter.
+/// Row 71: a million steps at rest in a corner: no drift, no jitter.
 #[test]
 fn rest_in_a_corner_is_rest() {
     let corner = format!(
@@ -308,7 +378,7 @@ fn rest_in_a_corner_is_rest() {
     world.set("world.drag", Value::Number(2.0)).expect("a parameter");
     frames(&mut world, 1200);
     let before: Vec<[f64; 2]> = (0..24).map(|n| world.position(0, n)).collect();
-    frames(&mut world, 2500);
+    frames(&mut world, 25_000);
     let moved = largest((0..24).flat_map(|n| {
         let x = world.position(0, n);
         [x[0] - before[n as usize][0], x[1] - before[n as usize][1]]

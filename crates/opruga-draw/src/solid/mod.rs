@@ -192,7 +192,9 @@ impl Painter<'_> {
         let width = if filled { 0.8 } else { 1.6 } * self.unit;
         for &[a, b] in &body.segments {
             if let (Some(from), Some(to)) = (seen[a as usize], seen[b as usize]) {
-                screen.line([from, to], width, [colour(a), colour(b)]);
+                // On a surface of the same colour a line must be darker to be seen.
+                let colours = [colour(a), colour(b)].map(|colour| if filled { darker(colour) } else { colour });
+                screen.line([from, to], width, colours);
             }
         }
         if body.nodes_drawn {

@@ -234,6 +234,9 @@ impl<const D: usize> Potential<D> for AsPublished {
     fn views(&self) -> Views {
         Views { energy: false, hessian: false, damping: true }
     }
+    fn bonds(&self) -> &[[u32; 2]] {
+        &self.springs
+    }
     fn account(&self) -> Account {
         Account::User
     }

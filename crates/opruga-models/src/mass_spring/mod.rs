@@ -116,6 +116,9 @@ impl<const D: usize> Potential<D> for Springs {
     fn views(&self) -> Views {
         Views { energy: true, hessian: true, damping: self.damped }
     }
+    fn bonds(&self) -> &[[u32; 2]] {
+        self.table.pairs()
+    }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
         self.table.spans(visit);
     }

@@ -21,7 +21,7 @@ pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::pair::PairTable;
-use opruga_core::potential::{Account, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
@@ -57,8 +57,9 @@ struct Chamber {
 /// Numbers of a chamber in the scratch, before its area vectors.
 const NUMBERS: usize = 4 * WIDTH;
 
-/// Memory of a chamber: the fraction of gas that has not leaked, and how often the pressure was limited, per body.
-const MEMORY: usize = 2 * WIDTH;
+/// Memory of a chamber, per body: the fraction of gas that has not leaked, how often the pressure was limited, and how often
+/// the chamber enclosed nothing.
+const MEMORY: usize = 3 * WIDTH;
 
 impl<const D: usize> Model<D> for PressureModel {
     fn spec(&self) -> &'static Spec {
@@ -165,7 +166,7 @@ impl<const D: usize> Potential<D> for Pressure {
         let mut memory = Vec::new();
         for _ in &self.chambers {
             memory.extend([1.0; WIDTH]);
-            memory.extend([0.0; WIDTH]);
+            memory.extend([0.0; MEMORY - WIDTH]);
         }
         memory
     }
@@ -205,6 +206,7 @@ impl<const D: usize> Potential<D> for Pressure {
             let known = chamber.known(scratch);
             for body in 0..self.bodies() {
                 memory[number * MEMORY + WIDTH + body] += known.limited[body];
+                memory[number * MEMORY + 2 * WIDTH + body] += f64::from(known.volume[body] <= 0.0);
             }
         }
         if !self.changes {
@@ -271,14 +273,20 @@ impl<const D: usize> Potential<D> for Pressure {
         }
         vec![("volume", volume), ("pressure", if volume == 0.0 { 0.0 } else { pressure / volume }), ("nRT", amount)]
     }
-    fn counts(&self, memory: &[f64]) -> Vec<(&'static str, u64)> {
-        let mut limited = 0.0;
-        for number in 0..self.chambers.len() {
-            for body in 0..self.bodies() {
-                limited += memory[number * MEMORY + WIDTH + body];
-            }
-        }
-        vec![("pressure.limited", limited as u64)]
+    fn counts(&self, memory: &[f64]) -> Vec<Count> {
+        let sum = |first: usize| -> f64 {
+            memory.chunks_exact(MEMORY).flat_map(|chamber| &chamber[first..first + self.bodies()]).sum()
+        };
+        let counted = |code, message, first: usize| Count { code, message, count: sum(first) as u64 };
+        vec![
+            counted("pressure.limited", "a gas was held at its `largest_pressure`, counted per substep and body", WIDTH),
+            counted(
+                "pressure.inverted",
+                "a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open \
+                 as the reference says; an outline that went through itself may stay so",
+                2 * WIDTH,
+            ),
+        ]
     }
     fn heap_bytes(&self) -> usize {
         self.chambers.iter().map(|c| c.boundary.heap_bytes() + c.gases.capacity() * size_of::<Gas>()).sum()
