@@ -133,6 +133,24 @@ pub trait Register: Lane {
     /// There must be room for so many numbers.
     #[allow(unsafe_code)]
     unsafe fn write(self, to: *mut f64);
+    /// Reads the numbers from the start of a slice.
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        // SAFETY: the slice holds so many numbers.
+        #[allow(unsafe_code)]
+        unsafe {
+            Self::read(from[..Self::NUMBERS].as_ptr())
+        }
+    }
+    /// Writes the numbers to the start of a slice.
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        // SAFETY: the slice has room for so many numbers.
+        #[allow(unsafe_code)]
+        unsafe {
+            self.write(to[..Self::NUMBERS].as_mut_ptr());
+        }
+    }
     /// Reads the numbers from so many places of a slice.
     fn gather(from: &[f64], places: &[u32]) -> Self;
     /// The numbers moved up by one place, the last number of the register before them first.

@@ -3,10 +3,13 @@
 mod column;
 pub mod elementary;
 pub mod lane;
+pub mod matrix;
 mod portable;
 mod registers;
 pub mod simd;
+pub mod singular;
 pub mod strip;
+pub mod symmetric;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 

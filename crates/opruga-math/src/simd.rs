@@ -161,6 +161,41 @@ mod tests {
         }
     }
 
+    /// Logarithms of numbers of every size, also of those that have none.
+    struct Logarithms<'a>(&'a [f64]);
+    impl Work for Logarithms<'_> {
+        type Output = Vec<u64>;
+        #[inline(always)]
+        fn run<P: Pack>(self) -> Vec<u64> {
+            self.0.chunks_exact(WIDTH).flat_map(|c| P::load(c).ln().to_array().map(f64::to_bits)).collect()
+        }
+    }
+
+    #[test]
+    fn logarithms_of_lanes_have_the_bits_of_libm() {
+        let mut numbers = Vec::new();
+        let mut random = 1u64;
+        for k in 0..80_000 {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // Any bits of a positive number, numbers near 1, and numbers near √½ and √2.
+            let near = 1.0 + (random >> 11) as f64 / (1u64 << 53) as f64;
+            numbers.push(match k % 4 {
+                0 => f64::from_bits(random >> 1),
+                1 => near - 0.5,
+                2 => near * 0.5f64.sqrt(),
+                _ => 1.0 + (near - 1.5) * 1e-6,
+            });
+        }
+        numbers.extend([1.0, 0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, 5e-324, f64::MIN_POSITIVE]);
+        let expected: Vec<u64> = numbers.iter().map(|x| libm::log(*x).to_bits()).collect();
+        for simd in Simd::available() {
+            for (at, (got, expected)) in simd.run(Logarithms(&numbers)).iter().zip(&expected).enumerate() {
+                let both_nan = f64::from_bits(*got).is_nan() && f64::from_bits(*expected).is_nan();
+                assert!(got == expected || both_nan, "{simd:?}: ln {}", numbers[at]);
+            }
+        }
+    }
+
     #[test]
     fn names_are_understood_and_capped_by_the_processor() {
         assert_eq!(Simd::named("scalar"), Some(Simd::Baseline));
