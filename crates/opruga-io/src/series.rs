@@ -78,6 +78,8 @@ const TRIANGLE: u8 = 5;
 const QUADRILATERAL: u8 = 9;
 const TETRAHEDRON: u8 = 10;
 const HEXAHEDRON: u8 = 12;
+const QUADRATIC_TRIANGLE: u8 = 22;
+const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 impl Elements {
     /// Filled bodies by their cells where `filled` wants them, others by what bounds them; wires always.
@@ -89,6 +91,8 @@ impl Elements {
             mesh.cells.quadrilaterals.iter().for_each(|c| add(QUADRILATERAL, c));
             mesh.cells.tetrahedra.iter().for_each(|c| add(TETRAHEDRON, c));
             mesh.cells.hexahedra.iter().for_each(|c| add(HEXAHEDRON, c));
+            mesh.cells.quadratic_triangles.iter().for_each(|c| add(QUADRATIC_TRIANGLE, c));
+            mesh.cells.quadratic_tetrahedra.iter().for_each(|c| add(QUADRATIC_TETRAHEDRON, c));
         } else {
             mesh.facets.iter().for_each(|f| add(if D == 2 { LINE } else { TRIANGLE }, f));
         }

@@ -34,14 +34,14 @@ pub enum Problem {
         /// Its length [m], area [m²] or volume [m³].
         measure: f64,
     },
-    /// A filled cell has negative area or volume.
+    /// A filled cell has negative area or volume, a quadratic one at one of its nodes at least.
     #[error("{element} {index} is inverted: its measure is {measure}")]
     Inverted {
         /// Kind of the cell.
         element: Element,
         /// Index of the cell among its kind.
         index: u32,
-        /// Its signed area [m²] or volume [m³].
+        /// Its signed area [m²] or volume [m³]; of a quadratic cell, that of a straight one with the Jacobian of the worst node.
         measure: f64,
     },
     /// Two facets have the same nodes.
@@ -118,7 +118,8 @@ impl<const D: usize> Mesh<D> {
         let points: Vec<Point> = self.positions.iter().map(lift).collect();
         let spread = spread(&points);
         for (element, index, nodes) in self.elements().filter(|entry| entry.0 != Element::SheetQuadrilateral) {
-            let measure = self.size_of(nodes, element);
+            // A curved cell must not fold over at any of its nodes.
+            let (measure, least) = (self.size_of(nodes, element), self.least_measure(element, nodes));
             let mut longest = 0.0;
             for (place, &a) in nodes.iter().enumerate() {
                 for &b in &nodes[..place] {
@@ -129,14 +130,16 @@ impl<const D: usize> Mesh<D> {
                 }
             }
             let thin = match element {
-                Element::Tetrahedron | Element::Hexahedron => THIN_ELEMENT * longest * longest * longest,
+                Element::Tetrahedron | Element::Hexahedron | Element::QuadraticTetrahedron => {
+                    THIN_ELEMENT * longest * longest * longest
+                }
                 _ if nodes.len() > 2 => THIN_ELEMENT * longest * longest,
                 _ => 0.0,
             };
             if longest <= SHORT_EDGE * spread[0] || measure.abs() <= thin {
                 problems.push(Problem::Degenerate { element, index, measure });
-            } else if measure < 0.0 {
-                problems.push(Problem::Inverted { element, index, measure });
+            } else if least < 0.0 {
+                problems.push(Problem::Inverted { element, index, measure: least });
             }
         }
         if !self.facets.is_empty() || !self.cells.is_empty() {

@@ -12,6 +12,7 @@
 //! | how much length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
 //! | is it sound | [`Mesh::check`], [`Mesh::validate`] |
 //! | what bounds the cells | [`Mesh::facets_from_cells`], [`Mesh::into_simplices`] |
+//! | cells of second order | [`Mesh::into_quadratic`] |
 //!
 //! Orientation. A plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise seen from outside.
 //! Both make [`signed_volume`] positive. Holes run the other way.
@@ -36,6 +37,7 @@ mod mesh;
 pub mod outline;
 mod plane;
 mod polygon;
+mod quadratic;
 mod skin;
 mod soup;
 mod sphere;
@@ -52,6 +54,7 @@ pub use geometry::signed_volume;
 pub use measure::{Measure, Share};
 pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
 pub use polygon::Polygon;
+pub use quadratic::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES, triangle_parts};
 pub use skin::Skin;
 pub use soup::{Turned, weld};
 pub use sphere::MAXIMUM_SUBDIVISIONS;

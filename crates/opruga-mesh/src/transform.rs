@@ -84,6 +84,15 @@ impl<const D: usize> Mesh<D> {
         self.cells.quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
         self.cells.tetrahedra.iter_mut().for_each(|cell| cell.swap(0, 1));
         self.cells.hexahedra.iter_mut().for_each(|cell| cell.rotate_left(4));
+        for cell in &mut self.cells.quadratic_triangles {
+            cell.swap(0, 1);
+            cell.swap(4, 5);
+        }
+        for cell in &mut self.cells.quadratic_tetrahedra {
+            cell.swap(0, 1);
+            cell.swap(5, 6);
+            cell.swap(7, 8);
+        }
         self.skin.iter_mut().flat_map(|skin| &mut skin.triangles).for_each(|triangle| triangle.swap(0, 1));
     }
 }

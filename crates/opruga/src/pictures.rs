@@ -9,7 +9,7 @@ use crate::core::potential::Account;
 use crate::draw::{
     ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
-use crate::mesh::{EdgeSet, Mesh, Skin};
+use crate::mesh::{EdgeSet, Mesh, Skin, triangle_parts};
 
 /// The most arrows of a body in a plane and in space, where those at the back are hidden.
 const MOST_ARROWS: [usize; 2] = [40, 130];
@@ -96,6 +96,7 @@ impl Scenery {
             for q in &mesh.cells.quadrilaterals {
                 cells.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
             }
+            cells.extend(mesh.cells.quadratic_triangles.iter().flat_map(triangle_parts));
             Fixed {
                 nodes: mesh.nodes(),
                 facets: if D == 2 {
