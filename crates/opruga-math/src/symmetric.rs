@@ -112,7 +112,8 @@ mod tests {
             let (n, m) = ([c, s], [-s, c]);
             a * n[i] * n[j] + b * m[i] * m[j]
         };
-        let matrix = [[entry(0, 0, 2.0, -3.0), entry(0, 1, 2.0, -3.0)], [entry(1, 0, 2.0, -3.0), entry(1, 1, 2.0, -3.0)]];
+        let matrix =
+            [[entry(0, 0, 2.0, -3.0), entry(0, 1, 2.0, -3.0)], [entry(1, 0, 2.0, -3.0), entry(1, 1, 2.0, -3.0)]];
         let kept = positive_part(&matrix);
         for i in 0..2 {
             for j in 0..2 {

@@ -25,6 +25,7 @@
 mod adjacency;
 mod bending;
 mod boundary;
+mod boundary_shares;
 mod chambers;
 mod check;
 mod edges;

@@ -4,18 +4,20 @@
 //! unit vectors; reference boxes are [−1, 1]ᴰ.
 
 use core::fmt::Debug;
+use opruga_mesh::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 
 /// A kind of element with N nodes in D dimensions.
 pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// Integration points of the whole law.
     const POINTS: usize;
-    /// Weights of the points in the measure of the reference cell; where the element has a centre for the part of the law
-    /// with λ, its weight is the last.
+    /// Weights of the points in the measure of the reference cell.
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];
     /// Whether ∂x/∂ξ is made of differences to the first node.
     const SIMPLEX: bool;
+    /// Whether the part of a law with λ sees the mean deformation of the cell, lest it locks.
+    const SELECTIVE: bool = false;
 }
 
 /// Triangle of three nodes, one point.
@@ -34,8 +36,7 @@ pub(super) struct Tetrahedron;
 impl Shape<3, 4> for Tetrahedron {
     const POINTS: usize = 1;
     const WEIGHTS: &'static [f64] = &[1.0 / 6.0];
-    const SLOPES: &'static [[[f64; 3]; 4]] =
-        &[[[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]];
+    const SLOPES: &'static [[[f64; 3]; 4]] = &[[[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]];
     const SIMPLEX: bool = true;
 }
 
@@ -73,11 +74,6 @@ const fn quadratic_slopes<const D: usize, const N: usize, const C: usize>(
     out
 }
 
-/// Between which corners the other nodes of a quadratic triangle lie.
-const TRIANGLE_SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
-/// Between which corners the other nodes of a quadratic tetrahedron lie.
-const TETRAHEDRON_SIDES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
-
 /// Triangle of six nodes, three points (degree 2).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuadraticTriangle;
@@ -105,10 +101,10 @@ impl Shape<3, 10> for QuadraticTetrahedron {
         // (5 + 3√5)/20 and (5 − √5)/20.
         let (near, far) = (0.585_410_196_624_968_5, 0.138_196_601_125_010_5);
         [
-            quadratic_slopes([near, far, far, far], &TETRAHEDRON_SIDES),
-            quadratic_slopes([far, near, far, far], &TETRAHEDRON_SIDES),
-            quadratic_slopes([far, far, near, far], &TETRAHEDRON_SIDES),
-            quadratic_slopes([far, far, far, near], &TETRAHEDRON_SIDES),
+            quadratic_slopes([near, far, far, far], &TETRAHEDRON_EDGES),
+            quadratic_slopes([far, near, far, far], &TETRAHEDRON_EDGES),
+            quadratic_slopes([far, far, near, far], &TETRAHEDRON_EDGES),
+            quadratic_slopes([far, far, far, near], &TETRAHEDRON_EDGES),
         ]
     };
     const SIMPLEX: bool = false;
@@ -147,39 +143,40 @@ const fn box_slopes<const D: usize, const N: usize>(at: [f64; 3]) -> [[f64; D]; 
     out
 }
 
-/// Slopes at Gauss's two points per axis, and at the centre.
-const fn gauss_slopes<const D: usize, const N: usize, const ALL: usize>() -> [[[f64; D]; N]; ALL] {
+/// Slopes at Gauss's two points per axis.
+const fn gauss_slopes<const D: usize, const N: usize>() -> [[[f64; D]; N]; N] {
     // 1/√3.
     let gauss = 0.577_350_269_189_625_8;
-    let mut out = [[[0.0; D]; N]; ALL];
+    let mut out = [[[0.0; D]; N]; N];
     let mut q = 0;
     while q < N {
         let corner = CORNERS[q];
         out[q] = box_slopes([gauss * corner[0], gauss * corner[1], gauss * corner[2]]);
         q += 1;
     }
-    out[N] = box_slopes([0.0; 3]);
     out
 }
 
-/// Quadrilateral of four nodes: 2 × 2 points, one at the centre for the part with λ.
+/// Quadrilateral of four nodes: 2 × 2 points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadrilateral;
 impl Shape<2, 4> for Quadrilateral {
     const POINTS: usize = 4;
-    const WEIGHTS: &'static [f64] = &[1.0, 1.0, 1.0, 1.0, 4.0];
-    const SLOPES: &'static [[[f64; 2]; 4]] = &gauss_slopes::<2, 4, 5>();
+    const WEIGHTS: &'static [f64] = &[1.0; 4];
+    const SLOPES: &'static [[[f64; 2]; 4]] = &gauss_slopes::<2, 4>();
     const SIMPLEX: bool = false;
+    const SELECTIVE: bool = true;
 }
 
-/// Hexahedron of eight nodes: 2 × 2 × 2 points, one at the centre for the part with λ.
+/// Hexahedron of eight nodes: 2 × 2 × 2 points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 impl Shape<3, 8> for Hexahedron {
     const POINTS: usize = 8;
-    const WEIGHTS: &'static [f64] = &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 8.0];
-    const SLOPES: &'static [[[f64; 3]; 8]] = &gauss_slopes::<3, 8, 9>();
+    const WEIGHTS: &'static [f64] = &[1.0; 8];
+    const SLOPES: &'static [[[f64; 3]; 8]] = &gauss_slopes::<3, 8>();
     const SIMPLEX: bool = false;
+    const SELECTIVE: bool = true;
 }
 
 #[cfg(test)]
@@ -188,7 +185,7 @@ mod tests {
 
     /// Slopes of every point sum to zero, and reproduce ξ from the nodes of the reference cell.
     fn reproduces<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N]) {
-        assert_eq!(E::SLOPES.len(), E::WEIGHTS.len());
+        assert_eq!((E::SLOPES.len(), E::WEIGHTS.len()), (E::POINTS, E::POINTS));
         for slopes in E::SLOPES {
             for i in 0..D {
                 for j in 0..D {
@@ -216,7 +213,7 @@ mod tests {
         reproduces::<QuadraticTetrahedron, 3, 10>(core::array::from_fn(|a| match a {
             0..4 => tetrahedron[a],
             _ => {
-                let [p, q] = TETRAHEDRON_SIDES[a - 4];
+                let [p, q] = TETRAHEDRON_EDGES[a - 4];
                 core::array::from_fn(|d| 0.5 * (tetrahedron[p][d] + tetrahedron[q][d]))
             }
         }));
@@ -226,10 +223,9 @@ mod tests {
 
     #[test]
     fn weights_sum_to_the_measure_of_the_reference_cell() {
-        let sum = |weights: &[f64], points: usize| weights[..points].iter().sum::<f64>();
-        assert_eq!(sum(QuadraticTriangle::WEIGHTS, 3), 0.5);
-        assert!((sum(QuadraticTetrahedron::WEIGHTS, 4) - 1.0 / 6.0).abs() < 1e-16);
-        assert_eq!((sum(Quadrilateral::WEIGHTS, 4), Quadrilateral::WEIGHTS[4]), (4.0, 4.0));
-        assert_eq!((sum(Hexahedron::WEIGHTS, 8), Hexahedron::WEIGHTS[8]), (8.0, 8.0));
+        let sum = |weights: &[f64]| weights.iter().sum::<f64>();
+        assert_eq!((sum(Triangle::WEIGHTS), sum(QuadraticTriangle::WEIGHTS)), (0.5, 0.5));
+        assert!((sum(QuadraticTetrahedron::WEIGHTS) - sum(Tetrahedron::WEIGHTS)).abs() < 1e-16);
+        assert_eq!((sum(Quadrilateral::WEIGHTS), sum(Hexahedron::WEIGHTS)), (4.0, 8.0));
     }
 }

@@ -239,12 +239,7 @@ pub(super) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<
 /// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1 but for the part of S itself:
 /// μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ Fₖₗ.
 #[inline(always)]
-pub(super) fn add_strain_tangent<S: Lane, const D: usize>(
-    to: &mut Tangent<S, D>,
-    mu: S,
-    lambda: S,
-    f: &Matrix<S, D>,
-) {
+pub(super) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
     let left = matrix::product_transposed(f, f);
     add_square(to, lambda, f);
     for i in 0..D {

@@ -8,15 +8,18 @@
 //! | cell | points | locks |
 //! |---|---|---|
 //! | triangle, tetrahedron | 1 | in bending; near incompressibility: refused above ν = 0.45 |
-//! | quadrilateral, hexahedron | 2ᴰ, and the centre for the part with λ | in bending where they are few across |
+//! | quadrilateral, hexahedron | 2ᴰ; the part with λ sees the mean of F | in bending where they are few across |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Energies are the sum of a part with μ and a part with λ; quadrilaterals and hexahedra take the latter at their centre
-//! alone (selective reduced integration, Malkus and Hughes 1978), but in plane stress, where nothing locks.
+//! Energies are the sum of a part with μ and a part with λ. In quadrilaterals and hexahedra the latter sees the mean
+//! deformation gradient of the cell (selective reduced integration, Malkus and Hughes 1978; with the mean of Flanagan and
+//! Belytschko 1981 instead of the centre, so that patches of any hexahedra are exact), but in plane stress, where nothing
+//! locks.
 //!
 //! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
 //! [`materials::Corotated`], [`materials::FixedCorotated`], [`materials::NeoHookean`], [`materials::StableNeoHookean`],
-//! [`materials::MooneyRivlin`]; in plane stress [`plane_stress::PlaneStress`] makes a law of the plane of the law of space.
+//! [`materials::MooneyRivlin`]; plane stress makes a law of the plane of the law of space: the stretch of the thickness is
+//! that without stress across, at every point, and is condensed out of the tangent.
 //! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
@@ -28,14 +31,14 @@ mod elements;
 mod law;
 pub mod material;
 pub mod materials;
-pub mod plane_stress;
+mod plane_stress;
 mod section;
 mod spec;
 mod work;
 
 pub use spec::SPEC;
 
-use elements::{Hexahedron, Quadrilateral, QuadraticTetrahedron, QuadraticTriangle, Shape, Tetrahedron, Triangle};
+use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Shape, Tetrahedron, Triangle};
 use law::Law;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
@@ -91,7 +94,10 @@ impl<'a, const D: usize> Builder<'a, D> {
         let mut chosen = vec![true; mesh.cells.len()];
         if let Some(name) = first.text("cells") {
             let Some(group) = mesh.cell_groups.get(name) else {
-                return Err(refuse("model.no_group", format!("the mesh has no group of cells `{name}`; {}", known(mesh))));
+                return Err(refuse(
+                    "model.no_group",
+                    format!("the mesh has no group of cells `{name}`; {}", known(mesh)),
+                ));
             };
             chosen.fill(false);
             group.iter().for_each(|cell| chosen[*cell as usize] = true);
@@ -123,13 +129,17 @@ impl<'a, const D: usize> Builder<'a, D> {
             if values.text("material") == Some("mooney_rivlin") && share > most {
                 return Err(refuse(
                     "model.not_convex",
-                    format!("`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"),
+                    format!(
+                        "`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"
+                    ),
                 ));
             }
         }
-        if let Some((cell, modulus)) = moduli.iter().flat_map(|all| all.iter().enumerate()).find(|(cell, modulus)| {
-            chosen[*cell] && !(**modulus > 0.0 && modulus.is_finite())
-        }) {
+        if let Some((cell, modulus)) = moduli
+            .iter()
+            .flat_map(|all| all.iter().enumerate())
+            .find(|(cell, modulus)| chosen[*cell] && !(**modulus > 0.0 && modulus.is_finite()))
+        {
             let message = format!("Young's modulus of cell {cell} is {modulus} Pa; allowed: a number > 0");
             return Err(refuse("model.modulus", message));
         }
@@ -186,7 +196,7 @@ impl<'a, const D: usize> Builder<'a, D> {
                         "model.locking",
                         format!(
                             "`poissons_ratio` is {ratio}; allowed for linear {}: at most {LOCKS_ABOVE}, since they lock near \
-                             incompressibility. Give the shape `order = 2`, or say `locking = \"accept\"`",
+                             incompressibility. Give the body `order = 2`, or say `locking = \"accept\"`",
                             if D == 2 { "triangles" } else { "tetrahedra" }
                         ),
                     ));

@@ -47,13 +47,14 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     law_in_space: Option<Box<dyn Law<3>>>,
     /// Elements by lowest node.
     cells: Vec<Cell<N>>,
-    /// Points of an element: those of the whole law, and the centre where the part with λ is looked at there.
+    /// Points of an element, and one more for its mean deformation where the part with λ sees that.
     points: usize,
-    /// Whether the part of the law with λ is looked at at the centre alone.
+    /// Whether the part of the law with λ sees the mean deformation.
     selective: bool,
     /// Places of the nodes: N packs for every pack of elements of one body, N places for every element of eight.
     places: Vec<u32>,
-    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body.
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. The mean deformation has the shares
+    /// of the points and the measure of the whole.
     geometry: Column,
     /// [`NUMBERS`] packs for every pack of elements, or for all.
     parameters: Column,
@@ -161,7 +162,7 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) positions: &'a [[f64; D]],
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
-    /// Whether the part with λ is looked at at the centre, where elements have one.
+    /// Whether the part with λ sees the mean deformation of elements that would lock.
     pub(super) selective: bool,
     pub(super) damped: bool,
 }
@@ -176,9 +177,10 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let Plan { layout, law, law_in_space, positions, thickness, selective, damped } = plan;
         let lowest = |cell: &Cell<N>| cell.nodes.iter().copied().min().unwrap_or(0);
         cells.sort_by_key(|cell| (lowest(cell), cell.nodes, cell.number));
-        let selective = selective && E::WEIGHTS.len() > E::POINTS;
+        let selective = selective && E::SELECTIVE;
         let points = E::POINTS + usize::from(selective);
         let stored = D * D + 1;
+        assert!(!selective || E::POINTS <= D * D, "room for the shares of the points");
         let lanes = if layout == Layout::Single { WIDTH } else { 1 };
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
@@ -195,17 +197,26 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 // What fills a pack up has no measure.
                 let there = pack * lanes + lane < cells.len();
                 let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
-                for q in 0..points {
+                let mut put = |q: usize, k: usize, value: f64| {
+                    geometry[((pack * points + q) * stored + k) * lanes + lane] = value;
+                };
+                let mut measures = vec![0.0; E::POINTS];
+                for q in 0..E::POINTS {
                     let (inverse, determinant) = rest_gradient(&rest, &E::SLOPES[q]);
-                    let mut put = |k: usize, value: f64| {
-                        geometry[((pack * points + q) * stored + k) * lanes + lane] = value;
-                    };
+                    measures[q] = E::WEIGHTS[q] * determinant * thickness;
                     for j in 0..D {
                         for k in 0..D {
-                            put(j * D + k, inverse[j][k]);
+                            put(q, j * D + k, inverse[j][k]);
                         }
                     }
-                    put(D * D, if there { E::WEIGHTS[q] * determinant * thickness } else { 0.0 });
+                    put(q, D * D, if there { measures[q] } else { 0.0 });
+                }
+                if selective {
+                    let whole: f64 = measures.iter().sum();
+                    for (q, measure) in measures.iter().enumerate() {
+                        put(E::POINTS, q, measure / whole);
+                    }
+                    put(E::POINTS, D * D, if there { whole } else { 0.0 });
                 }
             }
             for l in 0..WIDTH {
@@ -466,7 +477,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
                         measure += weight;
                         now += weight * ratio;
                     }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one.
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; the mean stress meets the mean deformation.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {

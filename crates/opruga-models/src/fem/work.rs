@@ -80,7 +80,13 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                         }
                     }
                 }
-                for q in 0..points {
+                let mut mean = matrix::zeros::<P::Part, D>();
+                let shares = if self.group.selective {
+                    geometry::<P::Part, D>(&self.group, pack, E::POINTS, part).0
+                } else {
+                    mean
+                };
+                for q in 0..E::POINTS {
                     let (inverse, _) = geometry::<P::Part, D>(&self.group, pack, q, part);
                     let mut by_reference = matrix::zeros::<P::Part, D>();
                     for i in 0..D {
@@ -97,14 +103,22 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                         }
                     }
                     let f = matrix::product(&by_reference, &inverse);
-                    let point = k * points + q;
-                    write_matrix(&mut self.gradient[point * D * D * WIDTH..], part, &f);
-                    if let Some((parameters, times)) = &mut self.parameters {
-                        // The part with λ at the centre alone, the part with μ at all other points.
-                        let centre = self.group.selective && q == E::POINTS;
+                    write_matrix(&mut self.gradient[(k * points + q) * D * D * WIDTH..], part, &f);
+                    if E::SELECTIVE && self.group.selective {
+                        mean = matrix::plus(&mean, shares[q / D][q % D], &f);
+                    }
+                }
+                if E::SELECTIVE && self.group.selective {
+                    write_matrix(&mut self.gradient[(k * points + E::POINTS) * D * D * WIDTH..], part, &mean);
+                }
+                if let Some((parameters, times)) = &mut self.parameters {
+                    for q in 0..points {
+                        // The part with λ of the mean deformation alone, the part with μ of all points.
+                        let at_mean = self.group.selective && q == E::POINTS;
                         let read = |k: usize| P::Part::load(&numbers[k * WIDTH + offset..]);
-                        let mu = if centre { P::Part::zero() } else { read(0) };
-                        let lambda = if self.group.selective && !centre { P::Part::zero() } else { read(1) };
+                        let mu = if at_mean { P::Part::zero() } else { read(0) };
+                        let lambda = if self.group.selective && !at_mean { P::Part::zero() } else { read(1) };
+                        let point = k * points + q;
                         let to = &mut parameters[point * PARAMETERS * WIDTH..(point + 1) * PARAMETERS * WIDTH];
                         mu.store(&mut to[offset..]);
                         lambda.store(&mut to[WIDTH + offset..]);
@@ -156,9 +170,13 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
             }
             for part in 0..P::PARTS {
                 let mut force = [[P::Part::zero(); D]; N];
-                for q in 0..points {
+                let read = |q: usize| read_matrix::<P::Part, D>(&self.stress[(k * points + q) * D * D * WIDTH..], part);
+                for q in 0..E::POINTS {
                     let (inverse, measure) = geometry::<P::Part, D>(&self.group, pack, q, part);
-                    let stress = read_matrix::<P::Part, D>(&self.stress[(k * points + q) * D * D * WIDTH..], part);
+                    let mut stress = read(q);
+                    if E::SELECTIVE && self.group.selective {
+                        stress = matrix::plus(&stress, P::Part::one(), &read(E::POINTS));
+                    }
                     // ∂U/∂(∂x/∂ξ) = V P (∂X/∂ξ)⁻ᵀ.
                     let pull = matrix::scaled(&matrix::product_transposed(&stress, &inverse), measure);
                     for i in 0..D {
@@ -308,20 +326,29 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
         let start = usize::from(E::SIMPLEX);
         for part in 0..P::PARTS {
             let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
+            let mut mean = [[P::Part::zero(); D]; N];
+            let (shares, whole) = geometry::<P::Part, D>(&self.group, self.group.first, self.group.points - 1, part);
             for q in 0..self.group.points {
-                let (inverse, measure) = geometry::<P::Part, D>(&self.group, self.group.first, q, part);
+                let (inverse, mut measure) = geometry::<P::Part, D>(&self.group, self.group.first, q, part);
                 let mut slopes = [[P::Part::zero(); D]; N];
-                for a in start..N {
-                    for m in 0..D {
-                        slopes[a][m] = if E::SIMPLEX {
-                            inverse[a - 1][m]
-                        } else {
-                            let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
-                            for j in 1..D {
-                                sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
+                if E::SELECTIVE && q == E::POINTS {
+                    (slopes, measure) = (mean, whole);
+                } else {
+                    for a in start..N {
+                        for m in 0..D {
+                            slopes[a][m] = if E::SIMPLEX {
+                                inverse[a - 1][m]
+                            } else {
+                                let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
+                                for j in 1..D {
+                                    sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
+                                }
+                                sum
+                            };
+                            if E::SELECTIVE && self.group.selective {
+                                mean[a][m] += shares[q / D][q % D] * slopes[a][m];
                             }
-                            sum
-                        };
+                        }
                     }
                 }
                 for i in 0..D {

@@ -35,7 +35,7 @@ macro_rules! entries {
         pub(super) const ALL: &[Entry] = &[$(Entry {
             name: $name,
             plane_strain: || Box::new(Lift($material)),
-            plane_stress: || Box::new(Lift(PlaneStress($material))),
+            plane_stress: || Box::new(PlaneStress(Box::new(Lift($material)))),
             space: || Box::new(Lift($material)),
         }),*];
     };

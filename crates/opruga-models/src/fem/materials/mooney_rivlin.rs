@@ -103,8 +103,7 @@ impl<const D: usize> Material<D> for MooneyRivlin {
                 for j in 0..D {
                     let (x, y) = (s.sigma[i], s.sigma[j]);
                     let ends = x * x + y * y;
-                    principal.second[i][j] +=
-                        if i == j { two * c2 * (i1 - x * x) } else { S::splat(4.0) * c2 * x * y };
+                    principal.second[i][j] += if i == j { two * c2 * (i1 - x * x) } else { S::splat(4.0) * c2 * x * y };
                     principal.difference[i][j] += two * c2 * (i1 - ends - x * y);
                     principal.sum[i][j] += two * c2 * (i1 - ends + x * y);
                 }

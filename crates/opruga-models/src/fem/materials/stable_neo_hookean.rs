@@ -41,8 +41,8 @@ impl<const D: usize> Material<D> for StableNeoHookean {
         let change = matrix::determinant_by(f, &cofactors) - S::one();
         let above = stretch(f) + S::one();
         let rest = S::splat(0.75) * m;
-        let energy = half * m * (above - S::splat(4.0) - (S::splat(0.25) * above).ln())
-            + (half * l * change - rest) * change;
+        let energy =
+            half * m * (above - S::splat(4.0) - (S::splat(0.25) * above).ln()) + (half * l * change - rest) * change;
         let stress = matrix::scaled(f, m - m / above);
         (energy, matrix::plus(&stress, l * change - rest, &cofactors))
     }
