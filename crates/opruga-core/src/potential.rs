@@ -13,7 +13,7 @@ use opruga_mesh::Mesh;
 pub struct Views {
     /// There is an energy whose negative gradient is the force at rest.
     pub energy: bool,
-    /// There is a Hessian.
+    /// There is a Hessian, or forces do not depend on positions.
     pub hessian: bool,
     /// The force depends on velocities.
     pub damping: bool,
@@ -110,6 +110,8 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     }
     /// Delivers ∂²U/∂x∂x, after `prepare` in the same state.
     fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
+    /// Delivers −∂F/∂v, the matrix of damping, after `prepare` in the same state.
+    fn damping_matrix(&self, _view: &View<D>, _scratch: &[f64], _sink: &mut dyn Sink<D>) {}
     /// Adds ∂²U/∂x∂x · direction; places outside of the bodies are left alone.
     fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
         let mut product = ProductSink { direction, out };
