@@ -13,7 +13,7 @@ use opruga_mesh::Mesh;
 pub struct Views {
     /// There is an energy whose negative gradient is the force at rest.
     pub energy: bool,
-    /// There is a Hessian.
+    /// There is a Hessian, or forces do not depend on positions.
     pub hessian: bool,
     /// The force depends on velocities.
     pub damping: bool,
