@@ -85,15 +85,7 @@ impl<const D: usize> Colliders<D> {
 }
 
 impl<const D: usize> Contacts<D> for Colliders<D> {
-    fn touch(
-        &self,
-        from: &[f64; D],
-        to: &[f64; D],
-        time: f64,
-        h: f64,
-        reach: f64,
-        visit: &mut dyn FnMut(Touch<D>),
-    ) {
+    fn touch(&self, from: &[f64; D], to: &[f64; D], time: f64, h: f64, reach: f64, visit: &mut dyn FnMut(Touch<D>)) {
         let way = Way { from, to, time, h, reach };
         let (mut low, mut high) = (*from, *from);
         for d in 0..D {

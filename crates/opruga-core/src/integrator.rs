@@ -161,7 +161,8 @@ mod tests {
         assert!((three.spectral_radius() - 0.9).abs() < 1e-14, "{}", three.spectral_radius());
         // A rotation by 0.3 and one by 2 times 0.5.
         let (c, s) = (0.955_336_489_125_606, 0.295_520_206_661_339_6);
-        let four = Amplification::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, -0.2, -0.4], [0.0, 0.0, 0.4, -0.2]]);
+        let four =
+            Amplification::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, -0.2, -0.4], [0.0, 0.0, 0.4, -0.2]]);
         assert!((four.spectral_radius() - 1.0).abs() < 1e-14, "{}", four.spectral_radius());
         let free = Amplification::new([[1.0, 7.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.3]]);
         assert!((free.spectral_radius() - 1.0).abs() < 1e-14, "{}", free.spectral_radius());

@@ -14,6 +14,6 @@ pub mod symmetric;
 mod x86_64;
 
 pub use column::Column;
-pub use lane::{Lane, Pack, Register, WIDTH, sum_in_fixed_order};
+pub use lane::{Lane, Pack, ROW, Register, WIDTH, sum_in_fixed_order};
 pub use simd::{Simd, Work};
 pub use strip::{RepeatStrip, Strip, StripMut};

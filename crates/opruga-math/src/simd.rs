@@ -112,7 +112,7 @@ fn run_avx2<W: Work>(work: W) -> W::Output {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::WIDTH;
+    use crate::lane::{ROW, Register, WIDTH};
 
     /// Every operation on awkward numbers, written one after the other.
     struct Everything;
@@ -148,6 +148,21 @@ mod tests {
             for value in most {
                 out.extend(value.to_array().map(f64::to_bits));
             }
+            // Rows of four of 0 … 39, in no order.
+            let rows: Vec<f64> = (0..40).map(f64::from).collect();
+            let order = [7, 0, 9, 1, 5, 2, 4, 3];
+            let mut columns = [P::zero(); ROW];
+            for part in 0..P::PARTS {
+                let own = P::Part::gather_rows(&rows, &order[part * P::Part::NUMBERS..]);
+                for k in 0..ROW {
+                    columns[k].set_part(part, own[k]);
+                }
+            }
+            for (k, column) in columns.iter().enumerate() {
+                let numbers = column.to_array();
+                assert_eq!(numbers, order.map(|row| f64::from(row * 4 + k as u32)));
+                out.extend(numbers.map(f64::to_bits));
+            }
             out
         }
     }
@@ -155,7 +170,7 @@ mod tests {
     #[test]
     fn all_sets_of_instructions_give_the_bits_of_plain_rust() {
         let plain = Everything.run::<Registers<f64, 8>>();
-        assert_eq!(plain.len(), 2 + 17 * WIDTH);
+        assert_eq!(plain.len(), 2 + (17 + ROW) * WIDTH);
         for simd in Simd::available() {
             assert_eq!(simd.run(Everything), plain, "{simd:?}");
         }

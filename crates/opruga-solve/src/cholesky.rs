@@ -1,9 +1,9 @@
 //! The sparse Cholesky factor, by faer; parts of rank one by Woodbury's formula.
 
+use crate::Indefinite;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
 use crate::woodbury::Woodbury;
-use crate::Indefinite;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};

@@ -1,9 +1,9 @@
 //! The sparse factors of a matrix that need not be definite, by faer.
 
+use crate::Indefinite;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
 use crate::woodbury::Woodbury;
-use crate::Indefinite;
 use faer::MatMut;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};

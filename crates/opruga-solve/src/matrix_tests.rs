@@ -63,9 +63,8 @@ fn assembly_is_the_same_first_replayed_reversed_and_out_of_turn() {
     again.assemble(9, 1, |sink| deliver(9, true, sink));
     again.assemble(9, 1, |sink| deliver(9, true, sink));
     // The order of additions is another one: rounding.
-    let close = |a: &[Vec<f64>], b: &[Vec<f64>]| {
-        a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13)
-    };
+    let close =
+        |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13);
     assert!(close(&dense(&again), &expected));
     // A script that is not kept to.
     again.assemble(9, 0, |sink| deliver(9, true, sink));
@@ -199,8 +198,7 @@ fn modes_of_a_free_ring_come_in_pairs() {
     let mut cholesky = Cholesky::default();
     cholesky.update(&shifted).unwrap();
     let mass = vec![1.0; nodes];
-    let modes =
-        crate::eigen::lowest_modes(9, &mass, 0.01, &[], |x| cholesky.solve(x), |x, y| matrix.multiply(x, y));
+    let modes = crate::eigen::lowest_modes(9, &mass, 0.01, &[], |x| cholesky.solve(x), |x, y| matrix.multiply(x, y));
     assert_eq!(modes.len(), 9);
     for (number, mode) in modes.iter().enumerate() {
         let k = number.div_ceil(2) as f64;

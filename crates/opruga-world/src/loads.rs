@@ -293,7 +293,8 @@ impl<const D: usize> Potential<D> for UserForce<D> {
                 push(tile, view, place, force);
             }
         }
-    }    fn hessian(&self, view: &View<D>, _scratch: &[f64], _keep: Definiteness, sink: &mut dyn Sink<D>) {
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], _keep: Definiteness, sink: &mut dyn Sink<D>) {
         self.add_slope(view, [1.0, 0.0], sink);
     }
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {

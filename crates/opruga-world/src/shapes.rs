@@ -116,6 +116,23 @@ static GRID: Spec = Spec {
     ],
 };
 
+static QUADRILATERAL: Spec = Spec {
+    kind: "quadrilateral",
+    summary: "a filled quadrilateral of cells between four corners",
+    documentation: "A grid stretched over a convex quadrilateral. Node (i, j) has number i + (n+1)·j. Groups: bottom from corner 0 to 1, right from 1 to 2, top from 3 to 2, left from 0 to 3.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("corners", Allowed::Points, "m", Default::Required, "Its four corners, counter-clockwise."),
+        Field::new(
+            "cells",
+            Allowed::Integers,
+            "",
+            Default::Required,
+            "How many cells along the side from corner 0 to 1, and along that from 1 to 2.",
+        ),
+    ],
+};
+
 static SHEET: Spec = Spec {
     kind: "sheet",
     summary: "an open flat surface: cloth",
@@ -181,8 +198,20 @@ static TORUS: Spec = Spec {
 
 /// All shapes.
 pub fn all() -> Vec<&'static Spec> {
-    let made: [&'static Spec; 11] =
-        [&RING, &RINGS, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS];
+    let made: [&'static Spec; 12] = [
+        &RING,
+        &RINGS,
+        &REGULAR_POLYGON,
+        &POLYGON,
+        &LINE,
+        &POLYLINE,
+        &GRID,
+        &QUADRILATERAL,
+        &SHEET,
+        &BOX,
+        &ICOSPHERE,
+        &TORUS,
+    ];
     made.into_iter().chain(from_files::all()).collect()
 }
 
@@ -196,7 +225,9 @@ pub fn node_count(shape: &Values, dimension: usize) -> u64 {
         "regular_polygon" => whole("sides").saturating_mul(whole("vertices_per_side")),
         "polygon" | "polyline" => shape.rows("points").len() as u64,
         "line" => whole("segments").saturating_add(1),
-        "grid" | "sheet" => product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1),
+        "grid" | "quadrilateral" | "sheet" => {
+            product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1)
+        }
         "box" => {
             let n = |a: usize| shape.integers("cells").get(a).map_or(0, |c| u64::from(*c));
             let pair = |a: usize, b: usize| n(a).saturating_mul(n(b));
@@ -300,6 +331,16 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
             shape.vector("center"),
             start,
         )?,
+        "quadrilateral" => {
+            let given = points(shape.rows("corners"));
+            let corners = <[[f64; 2]; 4]>::try_from(given).map_err(|given| MeshError::Count {
+                what: "number of corners",
+                value: given.len() as u64,
+                least: 4,
+                most: 4,
+            })?;
+            Mesh::quadrilateral(corners, cells(shape)?)?
+        }
         "polygon" => {
             let polygon = Mesh::polygon(&points(shape.rows("points")))?;
             flipped = polygon.flipped;

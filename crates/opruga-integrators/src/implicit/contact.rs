@@ -295,8 +295,7 @@ impl<const D: usize> Contacting<D> {
                     }
                     _ => {
                         let carried = &contact.touch.carried;
-                        let slide: [f64; D] =
-                            core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d]));
+                        let slide: [f64; D] = core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d]));
                         let slide = contact.along(&slide);
                         let size = dot(&slide, &slide).sqrt();
                         if dot(&slide, &contact.push) > 0.0 && size > small {
@@ -323,7 +322,15 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Puts nodes that are nevertheless inside onto the surface; `reaction` is what was out of balance without them.
-    pub(crate) fn expel(&self, system: &mut System<D>, x0: &[f64], u1: &mut [f64], reaction: &[f64], h: f64, extent: f64) {
+    pub(crate) fn expel(
+        &self,
+        system: &mut System<D>,
+        x0: &[f64],
+        u1: &mut [f64],
+        reaction: &[f64],
+        h: f64,
+        extent: f64,
+    ) {
         let Some(obstacles) = system.contacts.clone() else { return };
         let time = system.time + h;
         for (node, from) in nodes::<D>(x0).iter().enumerate() {

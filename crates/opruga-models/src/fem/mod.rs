@@ -45,9 +45,10 @@ use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potent
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
-use opruga_math::{Simd, WIDTH};
+use opruga_math::{ROW, Simd, WIDTH};
 use opruga_mesh::Mesh;
 use section::{Cell, NUMBERS, Part, Plan, Section, Totals, rest_gradient, total};
+use work::Nodes;
 
 /// The kind `fem`.
 #[derive(Debug)]
@@ -295,6 +296,34 @@ impl Model<3> for FemModel {
 /// Where the forces begin in the scratch, behind energies and powers.
 const FORCES: usize = 2 * WIDTH;
 
+/// A vector of every node in rows, for one body.
+fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: usize, rows: &mut [f64]) {
+    for (node, row) in rows.chunks_exact_mut(ROW).take(nodes).enumerate() {
+        for d in 0..D {
+            row[d] = columns[d][node];
+        }
+    }
+}
+
+impl<const D: usize> Solid<D> {
+    /// Numbers of a vector of every node.
+    fn vectors(&self) -> usize {
+        match self.layout {
+            Layout::Single => self.nodes * ROW,
+            Layout::Batch => self.nodes * WIDTH * D,
+        }
+    }
+    /// Numbers of a copy in rows.
+    fn copy(&self) -> usize {
+        if self.layout == Layout::Single { self.nodes * ROW } else { 0 }
+    }
+    /// The positions that `prepare` has copied.
+    fn positions<'a>(&self, view: &View<'a, D>, scratch: &'a [f64]) -> Nodes<'a, D> {
+        let start = FORCES + self.vectors();
+        Nodes { rows: &scratch[start..start + self.copy()], columns: view.x }
+    }
+}
+
 impl<const D: usize> Potential<D> for Solid<D> {
     fn name(&self) -> &'static str {
         SPEC.kind
@@ -304,17 +333,25 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     /// `prepare` has read all positions before any of them changes.
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    /// Energies, powers, forces, and in rows positions and velocities.
     fn scratch_len(&self) -> usize {
-        FORCES + self.nodes * self.layout.stride() * D
+        FORCES + self.vectors() + self.copy() * if self.damped { 2 } else { 1 }
     }
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
-        let (sums, forces) = scratch.split_at_mut(FORCES);
+        let (sums, rest) = scratch.split_at_mut(FORCES);
+        let (forces, rest) = rest.split_at_mut(self.vectors());
+        let (x, v) = rest.split_at_mut(self.copy());
+        if self.layout == Layout::Single {
+            to_rows(&view.x, self.nodes, x);
+            to_rows(&view.v, self.nodes, v);
+        }
+        let nodes = [Nodes { rows: x, columns: view.x }, Nodes { rows: v, columns: view.v }];
         forces.fill(0.0);
         let (mut energy, mut power) = ([0.0; WIDTH], [0.0; WIDTH]);
         for part in &self.parts {
             let mut totals = Totals::default();
-            part.evaluate(simd, view, &mut totals, forces)?;
+            part.evaluate(simd, view, nodes, &mut totals, forces)?;
             let (own_energy, own_power) = (total(self.layout, &totals.energy), total(self.layout, &totals.power));
             for l in 0..WIDTH {
                 energy[l] += own_energy[l];
@@ -326,20 +363,31 @@ impl<const D: usize> Potential<D> for Solid<D> {
         Ok(())
     }
     fn add_force(&self, _simd: Simd, _view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        let stride = self.layout.stride();
-        let forces = &scratch[FORCES..];
-        let end = tile.range.end.min(self.nodes * stride);
-        for node in tile.range.start / stride..end.div_ceil(stride) {
-            for d in 0..D {
-                let from = &forces[(node * D + d) * stride..(node * D + d + 1) * stride];
-                let start = node * stride - tile.range.start;
-                for (to, force) in tile.force[d][start..start + stride].iter_mut().zip(from) {
-                    *to += force;
+        let forces = &scratch[FORCES..FORCES + self.vectors()];
+        let start = tile.range.start;
+        match self.layout {
+            Layout::Single => {
+                let end = tile.range.end.min(self.nodes);
+                for (k, row) in forces[start * ROW..end.max(start) * ROW].chunks_exact(ROW).enumerate() {
+                    for d in 0..D {
+                        tile.force[d][k] += row[d];
+                    }
+                }
+            }
+            Layout::Batch => {
+                let end = tile.range.end.min(self.nodes * WIDTH);
+                for (k, node) in forces[start * D..end.max(start) * D].chunks_exact(D * WIDTH).enumerate() {
+                    for d in 0..D {
+                        let to = &mut tile.force[d][k * WIDTH..(k + 1) * WIDTH];
+                        for (to, force) in to.iter_mut().zip(&node[d * WIDTH..]) {
+                            *to += force;
+                        }
+                    }
                 }
             }
         }
         // The first tile reports the power of the whole body.
-        if tile.range.start == 0 {
+        if start == 0 {
             for l in 0..WIDTH {
                 tile.power[l] += scratch[WIDTH + l];
             }
@@ -348,20 +396,24 @@ impl<const D: usize> Potential<D> for Solid<D> {
     fn energy(&self, _simd: Simd, _view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
         core::array::from_fn(|l| scratch[l])
     }
-    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         for part in &self.parts {
-            part.hessian(view, keep, sink);
+            part.hessian(self.positions(view, scratch), keep, sink);
         }
     }
-    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
         for part in &self.parts {
-            part.damping_matrix(view, sink);
+            part.damping_matrix(self.positions(view, scratch), sink);
         }
     }
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        let mut rows = vec![0.0; self.copy()];
+        if self.layout == Layout::Single {
+            to_rows(&view.x, self.nodes, &mut rows);
+        }
         let mut out = Vec::new();
         for part in &self.parts {
-            part.cell_states(view, body, &mut out);
+            part.cell_states(Nodes { rows: &rows, columns: view.x }, body, &mut out);
         }
         out
     }

@@ -10,7 +10,7 @@
 
 use super::elements::Shape;
 use super::law::{Law, PARAMETERS, Points};
-use super::work::{Contract, Forces, Gradients, ViscousStress, ViscousTangents};
+use super::work::{Contract, Forces, Gradients, Nodes, ViscousStress, ViscousTangents};
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;
@@ -88,14 +88,22 @@ pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WI
 
 /// A section, whatever its elements.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// Adds forces [N] (−∂U/∂x and damping; node by node, axis by axis, the bodies innermost) and totals.
-    fn evaluate(&self, simd: Simd, view: &View<D>, totals: &mut Totals, force: &mut [f64]) -> Result<(), StepError>;
+    /// Adds forces [N] (−∂U/∂x and damping) and totals. Forces lie in rows for one body, for eight node by node, axis by
+    /// axis, the bodies innermost.
+    fn evaluate(
+        &self,
+        simd: Simd,
+        view: &View<D>,
+        nodes: [Nodes<'_, D>; 2],
+        totals: &mut Totals,
+        force: &mut [f64],
+    ) -> Result<(), StepError>;
     /// Delivers ∂²U/∂x∂x.
-    fn hessian(&self, view: &View<D>, keep: Definiteness, sink: &mut dyn Sink<D>);
+    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>);
     /// Delivers −∂F/∂v.
-    fn damping_matrix(&self, view: &View<D>, sink: &mut dyn Sink<D>);
+    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
-    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);
+    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>);
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
@@ -296,7 +304,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     /// Delivers blocks K_ab of every element, made from tangents at its points.
     fn assemble(
         &self,
-        view: &View<D>,
+        positions: Nodes<'_, D>,
         sink: &mut dyn Sink<D>,
         tangents: &dyn Fn(Simd, Points<'_>, &[f64], &mut [f64]),
     ) {
@@ -311,7 +319,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             simd.run(Gradients::<E, D, N> {
                 shape: PhantomData,
                 group,
-                columns: view.x,
+                nodes: positions,
                 gradient: &mut gradient.0,
                 parameters: Some((&mut numbers.0, &mut times.0)),
             });
@@ -342,7 +350,14 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
-    fn evaluate(&self, simd: Simd, view: &View<D>, totals: &mut Totals, force: &mut [f64]) -> Result<(), StepError> {
+    fn evaluate(
+        &self,
+        simd: Simd,
+        view: &View<D>,
+        [positions, velocities]: [Nodes<'_, D>; 2],
+        totals: &mut Totals,
+        force: &mut [f64],
+    ) -> Result<(), StepError> {
         let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
@@ -357,7 +372,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
             simd.run(Gradients::<E, D, N> {
                 shape: PhantomData,
                 group,
-                columns: view.x,
+                nodes: positions,
                 gradient: &mut gradient.0,
                 parameters: Some((&mut numbers.0, &mut times.0)),
             });
@@ -367,7 +382,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
                 simd.run(Gradients::<E, D, N> {
                     shape: PhantomData,
                     group,
-                    columns: view.v,
+                    nodes: velocities,
                     gradient: &mut rate.0,
                     parameters: None,
                 });
@@ -407,19 +422,19 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
         Ok(())
     }
 
-    fn hessian(&self, view: &View<D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
-        self.assemble(view, sink, &|simd, points, _, out| self.law.tangent(simd, points, keep, out));
+    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.assemble(positions, sink, &|simd, points, _, out| self.law.tangent(simd, points, keep, out));
     }
 
-    fn damping_matrix(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
+    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
         if self.damped {
-            self.assemble(view, sink, &|simd, points, times, tangent| {
+            self.assemble(positions, sink, &|simd, points, times, tangent| {
                 simd.run(ViscousTangents::<D> { points, times, tangent });
             });
         }
     }
 
-    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>) {
+    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
         let simd = Simd::best();
         let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
@@ -432,7 +447,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
             simd.run(Gradients::<E, D, N> {
                 shape: PhantomData,
                 group,
-                columns: view.x,
+                nodes: positions,
                 gradient: &mut gradient.0,
                 parameters: Some((&mut numbers.0, &mut times.0)),
             });

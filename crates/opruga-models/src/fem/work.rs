@@ -9,7 +9,7 @@ use super::section::{Group, NUMBERS};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::{Lane, Pack, Register, WIDTH, Work};
+use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
 
 /// (∂X/∂ξ)⁻¹ and the measure of a point.
 #[inline(always)]
@@ -40,11 +40,21 @@ fn geometry<R: Register, const D: usize>(group: &Group<'_>, pack: usize, q: usiz
     }
 }
 
+/// A vector of every node, laid out as elements read it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nodes<'a, const D: usize> {
+    /// For one body: [`ROW`] numbers a node.
+    pub(super) rows: &'a [f64],
+    /// For eight bodies: the columns of the state.
+    pub(super) columns: [&'a [f64]; D],
+}
+
 /// Deformation gradients, or their rates: ∂x/∂X of some columns at all points of some packs.
 pub(super) struct Gradients<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,
-    pub(super) columns: [&'a [f64]; D],
+    /// Positions or velocities: in rows for one body, in columns for eight.
+    pub(super) nodes: Nodes<'a, D>,
     pub(super) gradient: &'a mut [f64],
     /// Room for the parameters of the points and their retardation times.
     pub(super) parameters: Option<(&'a mut [f64], &'a mut [f64])>,
@@ -66,8 +76,9 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                         let places = &self.group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
                         for a in 0..N {
                             let of_node = &places[a * WIDTH + offset..a * WIDTH + offset + P::Part::NUMBERS];
+                            let row = P::Part::gather_rows(self.nodes.rows, of_node);
                             for d in 0..D {
-                                x[a][d] = P::Part::gather(self.columns[d], of_node);
+                                x[a][d] = row[d];
                             }
                         }
                     }
@@ -75,7 +86,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                         let places = &self.group.places[pack * N..(pack + 1) * N];
                         for a in 0..N {
                             for d in 0..D {
-                                x[a][d] = P::Part::load(&self.columns[d][places[a] as usize + offset..]);
+                                x[a][d] = P::Part::load(&self.nodes.columns[d][places[a] as usize + offset..]);
                             }
                         }
                     }
@@ -213,10 +224,15 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
                     }
                     for l in 0..self.group.present(pack) {
                         for a in 0..N {
-                            let start = places[a * WIDTH + l] as usize * D;
-                            let node = &mut self.force[start..start + D];
+                            // Whole rows: one addition of four numbers.
+                            let mut row = [0.0; ROW];
                             for i in 0..D {
-                                node[i] += numbers[a][i][l];
+                                row[i] = numbers[a][i][l];
+                            }
+                            let start = places[a * WIDTH + l] as usize * ROW;
+                            let node = &mut self.force[start..start + ROW];
+                            for i in 0..ROW {
+                                node[i] += row[i];
                             }
                         }
                     }
