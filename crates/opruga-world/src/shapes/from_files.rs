@@ -1,4 +1,4 @@
-//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces.
+//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces, meshes.
 
 use super::CENTER;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
@@ -138,7 +138,7 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary) or glTF (.gltf, .glb), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -188,9 +188,33 @@ static SURFACE: Spec = Spec {
     ],
 };
 
+static MESH: Spec = Spec {
+    kind: "mesh",
+    summary: "a filled body of cells, as another program has meshed it",
+    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh), by the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of cells, scalars of elements become values of cells.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
+        Field::new(
+            "inverted",
+            Allowed::Choice(&["refuse", "turn"]),
+            "",
+            Default::Text("refuse"),
+            "What becomes of cells of negative area or volume: an error, or turned round, and counted.",
+        ),
+        Field::new(
+            "unreferenced",
+            Allowed::Choice(&["refuse", "leave_out"]),
+            "",
+            Default::Text("refuse"),
+            "What becomes of nodes that no cell names: an error, or left out, and counted.",
+        ),
+    ],
+};
+
 /// All of them.
 pub(super) fn all() -> Vec<&'static Spec> {
-    vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE]
+    vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE, &MESH]
 }
 
 /// Whether a shape of this kind is made from a file, which only its reader can do.
