@@ -22,6 +22,7 @@ pub mod shapes;
 mod source;
 pub mod tables;
 pub mod template;
+pub mod tracks;
 
 pub use catalogue::Catalogue;
 pub use files::Files;

@@ -150,6 +150,14 @@ pub enum MeshError {
         /// Kind of the cell.
         element: Element,
     },
+    /// A quantity that is needed was not given.
+    #[error("`{what}` is missing: {why}")]
+    Missing {
+        /// Name of the quantity.
+        what: &'static str,
+        /// What it is needed for.
+        why: &'static str,
+    },
     /// A filling does not hold together as its surface does: it is too coarse.
     #[error("with a spacing of {spacing} m the filling of {parts} closed {} falls into {pieces} pieces", if *parts == 1 { "surface" } else { "surfaces" })]
     Torn {

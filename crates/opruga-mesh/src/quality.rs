@@ -16,16 +16,16 @@ pub struct CellMeasure {
     pub longest: f64,
 }
 
-/// How good the triangles and tetrahedra of a mesh are. Angles are those between straight sides or faces through the corners.
+/// How good the cells of a mesh are. Angles are those between faces of tetrahedra and between sides of others, straight ones through the corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellQuality {
     /// Number of cells.
     pub cells: usize,
     /// Number of cells with a negative Jacobian at one of their nodes.
     pub inverted: usize,
-    /// Length, area or volume of all of them [m², m³].
+    /// Area or volume of all of them [m², m³].
     pub measure: f64,
-    /// The smallest angle, of tetrahedra between faces [rad].
+    /// The smallest angle [rad].
     pub smallest_angle: f64,
     /// The largest angle [rad].
     pub largest_angle: f64,
@@ -39,6 +39,9 @@ pub struct CellQuality {
 const QUADRILATERAL_CORNERS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 0], [2, 3, 1], [3, 0, 2]];
 const HEXAHEDRON_CORNERS: [[usize; 4]; 8] =
     [[0, 1, 3, 4], [1, 2, 0, 5], [2, 3, 1, 6], [3, 0, 2, 7], [4, 7, 5, 0], [5, 4, 6, 1], [6, 5, 7, 2], [7, 6, 4, 3]];
+
+const HEXAHEDRON_EDGES: [[usize; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 impl<const D: usize> Mesh<D> {
     /// How large every cell is, in the order of [`crate::Cells::iter`]. Indices must be sound.
@@ -100,7 +103,7 @@ impl<const D: usize> Mesh<D> {
         (0..named.len()).filter(|&node| !named[node]).map(|node| node as u32).collect()
     }
 
-    /// How good the cells are; none without triangles and tetrahedra. Quadrilaterals and hexahedra count for all but the angles between faces.
+    /// How good the cells are; none without cells.
     pub fn cell_quality(&self) -> Option<CellQuality> {
         if self.cells.is_empty() {
             return None;
@@ -121,39 +124,18 @@ impl<const D: usize> Mesh<D> {
                 quality.inverted += 1;
             }
             let at = |k: usize| self.point(nodes[k]);
-            let mut angle = |value: f64| {
-                if value < quality.smallest_angle {
-                    quality.smallest_angle = value;
-                }
-                if value > quality.largest_angle {
-                    quality.largest_angle = value;
-                }
-            };
+            let (low, high) = self.angles_of(element, nodes);
+            if low < quality.smallest_angle {
+                quality.smallest_angle = low;
+            }
+            if high > quality.largest_angle {
+                quality.largest_angle = high;
+            }
             let edges: &[[usize; 2]] = match element {
-                Element::Tetrahedron | Element::QuadraticTetrahedron => {
-                    dihedral_angles([at(0), at(1), at(2), at(3)]).into_iter().for_each(angle);
-                    &crate::quadratic::TETRAHEDRON_EDGES
-                }
-                Element::Triangle | Element::QuadraticTriangle => {
-                    for [o, a, b] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
-                        angle(between(subtract(at(a), at(o)), subtract(at(b), at(o))));
-                    }
-                    &crate::quadratic::TRIANGLE_SIDES
-                }
-                Element::Quadrilateral => {
-                    for [o, a, b] in QUADRILATERAL_CORNERS {
-                        angle(between(subtract(at(a), at(o)), subtract(at(b), at(o))));
-                    }
-                    &[[0, 1], [1, 2], [2, 3], [3, 0]]
-                }
-                _ => {
-                    for [o, a, b, c] in HEXAHEDRON_CORNERS {
-                        for (p, q) in [(a, b), (b, c), (c, a)] {
-                            angle(between(subtract(at(p), at(o)), subtract(at(q), at(o))));
-                        }
-                    }
-                    &[[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]]
-                }
+                Element::Tetrahedron | Element::QuadraticTetrahedron => &crate::quadratic::TETRAHEDRON_EDGES,
+                Element::Triangle | Element::QuadraticTriangle => &crate::quadratic::TRIANGLE_SIDES,
+                Element::Quadrilateral => &[[0, 1], [1, 2], [2, 3], [3, 0]],
+                _ => &HEXAHEDRON_EDGES,
             };
             for &[a, b] in edges {
                 let length = norm(subtract(at(a), at(b)));
@@ -166,6 +148,33 @@ impl<const D: usize> Mesh<D> {
             }
         }
         Some(quality)
+    }
+}
+
+impl<const D: usize> Mesh<D> {
+    /// The smallest angle of every cell [rad], as [`Mesh::cell_quality`] measures them, in the order of [`crate::Cells::iter`].
+    pub fn smallest_cell_angles(&self) -> Vec<f64> {
+        self.cells.iter().map(|(element, _, nodes)| self.angles_of(element, nodes).0).collect()
+    }
+
+    /// The smallest and the largest angle of a cell: between faces of tetrahedra, between sides of others [rad].
+    fn angles_of(&self, element: Element, nodes: &[u32]) -> (f64, f64) {
+        let at = |k: usize| self.point(nodes[k]);
+        let corner = |o: usize, a: usize, b: usize| between(subtract(at(a), at(o)), subtract(at(b), at(o)));
+        let angles = match element {
+            Element::Tetrahedron | Element::QuadraticTetrahedron => {
+                dihedral_angles([at(0), at(1), at(2), at(3)]).to_vec()
+            }
+            Element::Triangle | Element::QuadraticTriangle => vec![corner(0, 1, 2), corner(1, 2, 0), corner(2, 0, 1)],
+            Element::Quadrilateral => QUADRILATERAL_CORNERS.iter().map(|[o, a, b]| corner(*o, *a, *b)).collect(),
+            _ => {
+                let all = HEXAHEDRON_CORNERS.iter().flat_map(|&[o, a, b, c]| [[o, a, b], [o, b, c], [o, c, a]]);
+                all.map(|[o, a, b]| corner(o, a, b)).collect()
+            }
+        };
+        angles.into_iter().fold((f64::INFINITY, 0.0), |(low, high), angle| {
+            (if angle < low { angle } else { low }, if angle > high { angle } else { high })
+        })
     }
 }
 

@@ -20,9 +20,11 @@ mod scanner;
 mod tetgen;
 mod vtk;
 mod vtu;
+mod write;
 
 pub use assemble::Mending;
 pub(crate) use found::{Found, Kind};
+pub use write::{WRITTEN, Written, write};
 
 use crate::problem::{SceneError, visible};
 use found::Numbers;
@@ -34,7 +36,7 @@ use std::sync::Arc;
 pub type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
 
 /// What the files end with that can be read.
-pub const ENDINGS: &str = ".msh, .vtk, .vtu, .mesh, .node, .ele";
+pub const ENDINGS: &str = ".msh, .vtk, .vtu, .mesh, .mfem, .node, .ele";
 
 /// A mesh file that has been read, before a body is made of it.
 #[derive(Debug)]
@@ -45,7 +47,7 @@ pub struct MeshFile<'a> {
 
 /// Whether a file of this name may hold a mesh.
 pub fn is_mesh(name: &str) -> bool {
-    matches!(ending(name).as_str(), "msh" | "vtk" | "vtu" | "mesh" | "node" | "ele")
+    matches!(ending(name).as_str(), "msh" | "vtk" | "vtu" | "mesh" | "mfem" | "node" | "ele")
 }
 
 fn ending(name: &str) -> String {
@@ -71,7 +73,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
             scanner.binary = core::str::from_utf8(bytes).is_err();
             found
         }
-        "mesh" => {
+        "mesh" | "mfem" => {
             scanner.comment = Some(b'#');
             match scanner.peek() {
                 Some(("MFEM", _)) => mfem::read(&mut scanner)?,

@@ -28,7 +28,7 @@ use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::outline::{self, Ring};
 use opruga_mesh::{Mesh, MeshError};
-use opruga_world::shapes::{self, Made, Transform};
+use opruga_world::shapes::{self, Filling, Made, Transform};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -47,8 +47,8 @@ pub(crate) struct Loaded {
 enum Content {
     /// Rings at their final size, and the spacing of a filling.
     Outline { rings: Vec<Ring>, filling: Option<f64> },
-    /// A surface at its final size, and the spacing of a filling.
-    Surface { mesh: Box<Mesh<3>>, filling: Option<f64> },
+    /// A surface at its final size, and what fills it.
+    Surface { mesh: Box<Mesh<3>>, filling: Option<Filling> },
     /// Cells of the plane.
     Plane(Box<Mesh<2>>),
     /// Cells of space.
@@ -159,7 +159,7 @@ impl Loaded {
         match &self.content {
             Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
             Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
-            Content::Surface { mesh, filling: Some(spacing) } => mesh.lattice_estimate(*spacing),
+            Content::Surface { mesh, filling: Some(filling) } => mesh.lattice_estimate(filling.spacing()),
             Content::Surface { mesh, filling: None } | Content::Space(mesh) => mesh.nodes() as u64,
             Content::Plane(mesh) => mesh.nodes() as u64,
         }
@@ -178,7 +178,7 @@ impl Loaded {
             }),
             Content::Surface { mesh, filling } => Box::new(match filling {
                 None => (**mesh).clone(),
-                Some(spacing) => mesh.lattice_filling(*spacing).map_err(refuse)?,
+                Some(filling) => filling.of(mesh).map_err(refuse)?,
             }),
             Content::Plane(mesh) => mesh.clone(),
             Content::Space(mesh) => mesh.clone(),

@@ -19,6 +19,20 @@ const FILLING: Field = Field::new(
     Default::Text("none"),
     "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing.",
 );
+pub(super) const FILLING_OF_SURFACES: Field = Field::new(
+    "filling",
+    Allowed::Choice(&["none", "lattice", "tetrahedra"]),
+    "",
+    Default::Text("none"),
+    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a spacing.",
+);
+pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
+    "spacing",
+    Allowed::POSITIVE,
+    "m",
+    Default::Absent,
+    "For fillings: the side of the cubes of their lattice, before `scale`; nodes lie at corners and middles.",
+);
 const OVERLAP: Field = Field::new(
     "overlap",
     Allowed::Choice(&["refuse", "union", "even_odd"]),
@@ -171,27 +185,15 @@ static SURFACE: Spec = Spec {
             Default::Text("refuse"),
             "What becomes of a surface with free boundaries: an error, closed by fans of triangles, or cloth.",
         ),
-        Field::new(
-            "filling",
-            Allowed::Choice(&["none", "lattice"]),
-            "",
-            Default::Text("none"),
-            "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra inside, which carry the surface for drawing.",
-        ),
-        Field::new(
-            "spacing",
-            Allowed::POSITIVE,
-            "m",
-            Default::Absent,
-            "The side of the cubes of the lattice, before `scale`; nodes lie at their corners and middles.",
-        ),
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
 static MESH: Spec = Spec {
     kind: "mesh",
     summary: "a filled body of cells, as another program has meshed it",
-    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh), by the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of cells, scalars of elements become values of cells.",
+    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), by the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of cells, scalars of elements become values of cells.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
