@@ -150,6 +150,24 @@ pub enum MeshError {
         /// Kind of the cell.
         element: Element,
     },
+    /// A quantity that is needed was not given.
+    #[error("`{what}` is missing: {why}")]
+    Missing {
+        /// Name of the quantity.
+        what: &'static str,
+        /// What it is needed for.
+        why: &'static str,
+    },
+    /// A filling does not hold together as its surface does: it is too coarse.
+    #[error("with a spacing of {spacing} m the filling of {parts} closed {} falls into {pieces} pieces", if *parts == 1 { "surface" } else { "surfaces" })]
+    Torn {
+        /// Side of the cubes of the lattice [m].
+        spacing: f64,
+        /// Pieces of the filling that share no node.
+        pieces: usize,
+        /// Closed surfaces around them.
+        parts: usize,
+    },
     /// An element of space in a plane mesh, or a filled plane cell in a mesh of space.
     #[error("a {element} has no place in a mesh of {dimension} dimensions")]
     WrongDimension {

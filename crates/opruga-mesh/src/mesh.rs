@@ -104,7 +104,7 @@ pub struct Mesh<const D: usize> {
     pub groups: BTreeMap<String, Vec<u32>>,
     /// Named sets of cells, ascending; cells are counted in the order of [`Cells::iter`].
     pub cell_groups: BTreeMap<String, Vec<u32>>,
-    /// Named numbers, one per cell in the order of [`Cells::iter`], such as the parameters of a material.
+    /// Named numbers, one per cell in the order of [`Cells::iter`], such as the parameters of a material; NaN for a cell that has none.
     pub cell_values: BTreeMap<String, Vec<f64>>,
     /// What is drawn instead of the boundary, in space only.
     pub skin: Option<Skin>,

@@ -4,7 +4,7 @@
 //! middle of edge ij. Sides may be curved, as parabolas.
 
 use crate::edges::ascending;
-use crate::geometry::{Point, cross, lift, tetrahedron_volume};
+use crate::geometry::{Point, cross, tetrahedron_volume};
 use crate::{Element, Mesh, MeshError};
 use std::collections::BTreeMap;
 
@@ -104,39 +104,25 @@ fn derivatives<const N: usize, const C: usize, const E: usize>(
     out
 }
 
-/// The least det ∂x/∂λ over the nodes of a quadratic triangle, as an area [m²]: negative where the triangle folds over at one of them.
-pub(crate) fn least_triangle_area(nodes: &[Point; 6]) -> f64 {
-    let corners = (0..3).map(|k| core::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }));
-    let middles =
-        TRIANGLE_SIDES.into_iter().map(|edge| core::array::from_fn(|i| if edge.contains(&i) { 0.5 } else { 0.0 }));
-    corners
-        .chain(middles)
-        .map(|at| 0.5 * triangle_jacobian(nodes, at))
-        .fold(f64::INFINITY, |m, x| if x < m { x } else { m })
+/// det ∂x/∂λ at the six nodes of a quadratic triangle, as areas [m²]: negative where the triangle folds over.
+pub(crate) fn triangle_areas(nodes: &[Point; 6]) -> [f64; 6] {
+    core::array::from_fn(|node| 0.5 * triangle_jacobian(nodes, coordinates(node, &TRIANGLE_SIDES)))
 }
 
-/// The least det ∂x/∂λ over the nodes of a quadratic tetrahedron, as a volume [m³]: negative where it folds over at one of them.
-pub(crate) fn least_tetrahedron_volume(nodes: &[Point; 10]) -> f64 {
-    let corners = (0..4).map(|k| core::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }));
-    let middles =
-        TETRAHEDRON_EDGES.into_iter().map(|edge| core::array::from_fn(|i| if edge.contains(&i) { 0.5 } else { 0.0 }));
-    let volumes = corners.chain(middles).map(|at| tetrahedron_jacobian(nodes, at) / 6.0);
-    volumes.fold(f64::INFINITY, |m, x| if x < m { x } else { m })
+/// det ∂x/∂λ at the ten nodes of a quadratic tetrahedron, as volumes [m³]: negative where it folds over.
+pub(crate) fn tetrahedron_volumes(nodes: &[Point; 10]) -> [f64; 10] {
+    core::array::from_fn(|node| tetrahedron_jacobian(nodes, coordinates(node, &TETRAHEDRON_EDGES)) / 6.0)
+}
+
+/// Barycentric coordinates of a node of a quadratic cell with C corners.
+fn coordinates<const C: usize, const E: usize>(node: usize, edges: &[[usize; 2]; E]) -> [f64; C] {
+    core::array::from_fn(|corner| match node.checked_sub(C) {
+        None => f64::from(u8::from(corner == node)),
+        Some(edge) => 0.5 * f64::from(u8::from(edges[edge].contains(&corner))),
+    })
 }
 
 impl<const D: usize> Mesh<D> {
-    /// The signed measure of a cell where it is least [m² or m³]: det ∂x/∂λ times the measure of the reference cell, at the nodes of quadratic cells.
-    ///
-    /// Linear simplices have one value everywhere, their measure; quadrilaterals and hexahedra are looked at as a whole too.
-    pub(crate) fn least_measure(&self, element: Element, nodes: &[u32]) -> f64 {
-        let at = |k: usize| lift(&self.positions[nodes[k] as usize]);
-        match element {
-            Element::QuadraticTriangle => least_triangle_area(&core::array::from_fn(at)),
-            Element::QuadraticTetrahedron => least_tetrahedron_volume(&core::array::from_fn(at)),
-            _ => self.size_of(nodes, element),
-        }
-    }
-
     /// The same body of quadratic cells: every triangle and tetrahedron gets a node in the middle of each of its edges.
     ///
     /// Corners keep their numbers; the new nodes follow, in the order of (lower corner, higher corner). A new node joins every node group that holds

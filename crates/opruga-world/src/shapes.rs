@@ -3,6 +3,7 @@
 mod from_files;
 
 pub use from_files::is_from_file;
+use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
@@ -155,6 +156,8 @@ static BOX: Spec = Spec {
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
         CORNER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
@@ -173,6 +176,8 @@ static ICOSPHERE: Spec = Spec {
             "How often each face is cut in four.",
         ),
         CENTER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
@@ -193,6 +198,8 @@ static TORUS: Spec = Spec {
         Field::new("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
         Field::new("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
         CENTER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
@@ -217,6 +224,29 @@ pub fn all() -> Vec<&'static Spec> {
 
 /// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
 pub fn node_count(shape: &Values, dimension: usize) -> u64 {
+    match (shape.text("filling"), shape.number("spacing")) {
+        (Some("lattice" | "tetrahedra"), Some(spacing)) => filling_estimate(shape, spacing),
+        _ => surface_node_count(shape, dimension),
+    }
+}
+
+/// About how many nodes a filling of a generated surface has: two in every cube of the lattice, and a layer about the surface.
+fn filling_estimate(shape: &Values, spacing: f64) -> u64 {
+    let pi = core::f64::consts::PI;
+    let (radius, tube) = (shape.number("radius").unwrap_or(0.0), shape.number("tube_radius").unwrap_or(0.0));
+    let (volume, area) = match shape.kind() {
+        "icosphere" => (4.0 / 3.0 * pi * radius * radius * radius, 4.0 * pi * radius * radius),
+        "torus" => (2.0 * pi * pi * radius * tube * tube, 4.0 * pi * pi * radius * tube),
+        _ => {
+            let [a, b, c]: [f64; 3] = shape.vector("size");
+            (a * b * c, 2.0 * (a * b + b * c + c * a))
+        }
+    };
+    let nodes = 2.0 * volume.abs() / (spacing * spacing * spacing) + 2.0 * area.abs() / (spacing * spacing);
+    if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+}
+
+fn surface_node_count(shape: &Values, dimension: usize) -> u64 {
     let whole = |name: &str| shape.integer(name).and_then(|n| u64::try_from(n).ok()).unwrap_or(0);
     let product = |cells: &[u32], more: u64| cells.iter().fold(1u64, |n, c| n.saturating_mul(u64::from(*c) + more));
     match shape.kind() {
@@ -365,8 +395,54 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
         }
         _ => either(shape)?,
     };
+    if let Some(filling) = filling(shape)? {
+        mesh = filling.of(&mesh)?;
+    }
     place(&mut mesh, transform)?;
     Ok(Made { mesh, flipped: false })
+}
+
+/// What fills a closed surface: how, and with cubes of which side [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filling {
+    /// Equal tetrahedra that reach a little beyond the surface and carry it as a skin.
+    Lattice(f64),
+    /// Tetrahedra whose boundary follows the surface.
+    Tetrahedra(f64),
+}
+
+impl Filling {
+    /// The filled body.
+    ///
+    /// # Errors
+    /// What [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`] refuse.
+    pub fn of(self, surface: &Mesh<3>) -> Result<Mesh<3>, MeshError> {
+        match self {
+            Filling::Lattice(spacing) => surface.lattice_filling(spacing),
+            Filling::Tetrahedra(spacing) => surface.tetrahedra_filling(spacing),
+        }
+    }
+
+    /// Side of the cubes [m].
+    pub fn spacing(self) -> f64 {
+        match self {
+            Filling::Lattice(spacing) | Filling::Tetrahedra(spacing) => spacing,
+        }
+    }
+}
+
+/// The filling that a shape in space asks for.
+///
+/// # Errors
+/// [`MeshError::Missing`] for a filling without `spacing`.
+pub fn filling(shape: &Values) -> Result<Option<Filling>, MeshError> {
+    let make = match shape.text("filling") {
+        Some("lattice") => Filling::Lattice,
+        Some("tetrahedra") => Filling::Tetrahedra,
+        _ => return Ok(None),
+    };
+    let why = "the side of the cubes that the filling is made of [m]";
+    shape.number("spacing").map(|spacing| Some(make(spacing))).ok_or(MeshError::Missing { what: "spacing", why })
 }
 
 /// The shapes of both dimensions.
