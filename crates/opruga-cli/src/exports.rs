@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use opruga::World;
 use opruga::blueprint::BodyBlueprint;
 use opruga::io::safe_write::OutputFolder;
-use opruga::io::series::{Format, Shape};
+use opruga::io::series::{CellField, Format, Shape};
 use opruga::io::tracks::{Track, write_glb};
 use std::collections::BTreeMap;
 
@@ -25,15 +25,57 @@ pub(crate) fn frame<const D: usize>(
     };
     let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
     let blueprint = world.blueprint();
-    let shape = |(&body, (positions, velocities))| {
+    // What finite elements say of their cells.
+    let stresses: Vec<Stresses> = bodies.iter().map(|&body| Stresses::of(world, body)).collect();
+    let fields: Vec<Vec<CellField<'_>>> = stresses.iter().map(Stresses::fields).collect();
+    let shape = |((&body, cell_fields), (positions, velocities))| {
+        let cell_fields: &Vec<CellField<'_>> = cell_fields;
         let body: &BodyBlueprint<D> = &blueprint.bodies[body];
         let (positions, velocities): (&Vec<[f64; D]>, &Vec<[f64; D]>) = (positions, velocities);
         let (name, mesh, translation) = (&body.name, &*body.mesh, body.translation);
-        Shape { name, mesh, positions, velocities, translation, cell_fields: &[] }
+        Shape { name, mesh, positions, velocities, translation, cell_fields }
     };
-    let shapes: Vec<Shape<'_, D>> = bodies.iter().zip(x.iter().zip(&v)).map(shape).collect();
+    let shapes: Vec<Shape<'_, D>> = bodies.iter().zip(&fields).zip(x.iter().zip(&v)).map(shape).collect();
     folder.write(name, false, |out| format.write(out, &blueprint.name, world.time(), &shapes))?;
     Ok(())
+}
+
+/// Stress and volume ratio of the cells of a body; empty where it has no finite elements.
+#[derive(Default)]
+struct Stresses {
+    cauchy: Vec<f64>,
+    von_mises: Vec<f64>,
+    volume_ratio: Vec<f64>,
+}
+
+impl Stresses {
+    /// Those of a body now; cells without finite elements have no number.
+    fn of<const D: usize>(world: &World<D>, body: usize) -> Stresses {
+        let states = world.cell_states(body);
+        if states.is_empty() {
+            return Stresses::default();
+        }
+        let cells = world.blueprint().bodies[body].mesh.cells.len();
+        let (cauchy, each) = (vec![f64::NAN; 9 * cells], vec![f64::NAN; cells]);
+        let mut out = Stresses { cauchy, von_mises: each.clone(), volume_ratio: each };
+        for state in states {
+            let cell = state.cell as usize;
+            out.cauchy[9 * cell..9 * cell + 9].copy_from_slice(state.stress.as_flattened());
+            out.von_mises[cell] = state.von_mises();
+            out.volume_ratio[cell] = state.volume_ratio;
+        }
+        out
+    }
+    fn fields(&self) -> Vec<CellField<'_>> {
+        if self.von_mises.is_empty() {
+            return Vec::new();
+        }
+        vec![
+            CellField { name: "Cauchy stress [Pa]", components: 9, values: &self.cauchy },
+            CellField { name: "von Mises stress [Pa]", components: 1, values: &self.von_mises },
+            CellField { name: "J", components: 1, values: &self.volume_ratio },
+        ]
+    }
 }
 
 /// Where the nodes of all bodies were, frame by frame.

@@ -335,11 +335,10 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                         let (low, high) = if a <= b { (a, b) } else { (b, a) };
                         let stored = &blocks[(low * N + high) * D * D * WIDTH..(low * N + high + 1) * D * D * WIDTH];
                         let mut block = [[0.0; D]; D];
-                        for i in 0..D {
-                            for j in 0..D {
-                                let entry = if a <= b { i * D + j } else { j * D + i };
-                                block[i][j] = stored[entry * WIDTH + l];
-                            }
+                        for (entry, pack) in stored.chunks_exact(WIDTH).enumerate() {
+                            let (i, j) = (entry / D, entry % D);
+                            let (i, j) = if a <= b { (i, j) } else { (j, i) };
+                            block[i][j] = pack[l % WIDTH];
                         }
                         sink.block(places[a], places[b], block);
                     }
