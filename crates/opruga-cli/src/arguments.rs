@@ -50,6 +50,8 @@ pub(crate) enum Command {
         #[arg(long)]
         schema: bool,
     },
+    /// Fill a surface or an outline with cells, look at a mesh, or write it in another format
+    Mesh(Mesh),
     /// Measure speed
     Bench {
         #[command(subcommand)]
@@ -86,6 +88,39 @@ pub(crate) struct BenchVertices {
     /// Write the log–log plot to this SVG file, replacing what is there
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Mesh {
+    /// A surface (.obj, .stl, .ply, .gltf, .glb), a drawing (.svg, .png, .json map), or a mesh (.msh, .vtk, .vtu, .mesh, .mfem, .node, .ele)
+    pub(crate) input: PathBuf,
+    /// The mesh to be written: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture lies beside it (.png)
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// About the length of edges of the cells [m]: surfaces and drawings need it
+    ///
+    /// In space it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
+    /// What is thinner than that may be lost: compare the volumes.
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    pub(crate) size: Option<f64>,
+    /// The longest side of the whole body [m], instead of the units of the file; drawings need it
+    #[arg(long, value_name = "L", allow_negative_numbers = true)]
+    pub(crate) scale_to: Option<f64>,
+    /// 2: a node in the middle of every edge too
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
+    pub(crate) order: u32,
+    /// Turn inverted cells round, leave out nodes without cells, join vertices at the same place; all counted
+    #[arg(long)]
+    pub(crate) mend: bool,
+    /// Where the picture goes [default: beside the mesh]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Replace files that are there
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Print what was found, or an error, as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -260,7 +295,7 @@ pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
     /// Compute every frame again and compare it bit by bit; exit code 1 where one differs
-    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "springs", "vtk", "obj", "ply", "no_pictures"])]
+    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "springs", "vtk", "vtu", "obj", "ply", "gltf", "pc2", "mdd", "no_pictures"])]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
@@ -294,6 +329,18 @@ pub(crate) struct Replay {
     /// Write every picture's frame as VTK too (frame-000012.vtk …; ParaView opens frames.vtk.series)
     #[arg(long)]
     pub(crate) vtk: bool,
+    /// Write every picture's frame as VTK XML too, with displacements, groups and stress (ParaView opens frames.pvd)
+    #[arg(long)]
+    pub(crate) vtu: bool,
+    /// Write the run as animated glTF too (run.glb): one morph target for every picture's frame
+    #[arg(long)]
+    pub(crate) gltf: bool,
+    /// Write a point cache of every body too (NAME.pc2), for the mesh of --obj
+    #[arg(long)]
+    pub(crate) pc2: bool,
+    /// Write a point cache of every body too (NAME.mdd), for the mesh of --obj
+    #[arg(long)]
+    pub(crate) mdd: bool,
     /// Write every picture's frame as Wavefront OBJ too
     #[arg(long)]
     pub(crate) obj: bool,
@@ -338,6 +385,7 @@ impl Command {
             Command::Check(check) => check.json,
             Command::Sweep(sweep) => sweep.json,
             Command::Replay(replay) => replay.json,
+            Command::Mesh(mesh) => mesh.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,

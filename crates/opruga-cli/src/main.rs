@@ -4,8 +4,10 @@
 mod arguments;
 mod bench;
 mod checkpoints;
+mod exports;
 mod failure;
 mod interrupt;
+mod mesh;
 mod outputs;
 mod plots;
 mod recorder;
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),
         Command::Bench { what } => reports::bench(what),
+        Command::Mesh(call) => mesh::mesh(call),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

@@ -1,6 +1,7 @@
 //! `opruga replay`: a recorded run seen again, exported, or computed again and compared.
 
 use crate::arguments::Replay;
+use crate::exports::{self, Tracks};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::outputs::{Outputs, counted};
@@ -12,7 +13,7 @@ use core::ops::RangeInclusive;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::recording::{Ending, Recording, RecordingError};
 use opruga::io::safe_write::{Existing, OutputFolder};
-use opruga::io::series::{Format, Shape, write_vtk_series};
+use opruga::io::series::{Format, write_pvd, write_vtk_series};
 use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
 use opruga::{Options, World};
@@ -215,11 +216,15 @@ impl Job<'_> {
         self.go_to(world, first)?;
         let mut recorder = Recorder::new(world, call.wanted(), last - first)?;
         let folder = self.folder()?;
-        let formats: Vec<Format> = [(call.vtk, Format::Vtk), (call.obj, Format::Obj), (call.ply, Format::Ply)]
+        let all = [Format::Vtk, Format::Vtu, Format::Obj, Format::Ply];
+        let formats: Vec<Format> = [call.vtk, call.vtu, call.obj, call.ply]
             .into_iter()
+            .zip(all)
             .filter_map(|(wanted, format)| wanted.then_some(format))
             .collect();
-        let (mut files, mut series) = (vec!["diagnostics.csv".to_string()], Vec::new());
+        let mut files = vec!["diagnostics.csv".to_string()];
+        let (mut series, mut collection) = (Vec::new(), Vec::new());
+        let mut tracks = (call.gltf || call.pc2 || call.mdd).then(Tracks::default);
         for frame in first..=last {
             if stop.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted);
@@ -231,16 +236,28 @@ impl Job<'_> {
             }
             for format in &formats {
                 let name = format!("frame-{frame:06}.{}", format.ending());
-                export(world, *format, &folder, &name)?;
-                if *format == Format::Vtk {
-                    series.push((name.clone(), world.time()));
+                exports::frame(world, *format, &folder, &name)?;
+                match format {
+                    Format::Vtk => series.push((name.clone(), world.time())),
+                    Format::Vtu => collection.push((name.clone(), world.time())),
+                    Format::Obj | Format::Ply => {}
                 }
                 files.push(name);
+            }
+            if let Some(tracks) = &mut tracks {
+                tracks.add(world)?;
             }
         }
         if !series.is_empty() {
             folder.write("frames.vtk.series", false, |out| write_vtk_series(out, &series))?;
             files.push("frames.vtk.series".into());
+        }
+        if !collection.is_empty() {
+            folder.write("frames.pvd", false, |out| write_pvd(out, &collection))?;
+            files.push("frames.pvd".into());
+        }
+        if let Some(tracks) = tracks {
+            tracks.write(call, &folder, &self.source.name, &mut files)?;
         }
         folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
         let outputs = Outputs {
@@ -283,22 +300,4 @@ impl Job<'_> {
         let existing = if self.call.force { Existing::Replace } else { Existing::Refuse };
         Ok(OutputFolder::open(&path, existing)?)
     }
-}
-
-/// Writes the present frame of a world for other programs.
-fn export<const D: usize>(world: &World<D>, format: Format, folder: &OutputFolder, name: &str) -> Result<(), Failure> {
-    let bodies: Vec<usize> = world.bodies().collect();
-    let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
-        bodies.iter().map(|&b| (0..world.node_count(b) as u32).map(|n| vector(b, n)).collect()).collect()
-    };
-    let (x, v) = (of(&|b, n| world.position(b, n)), of(&|b, n| world.velocity(b, n)));
-    let blueprint = world.blueprint();
-    let shape = |(&body, (positions, velocities))| {
-        let body: &opruga::blueprint::BodyBlueprint<D> = &blueprint.bodies[body];
-        let (positions, velocities): (&Vec<[f64; D]>, &Vec<[f64; D]>) = (positions, velocities);
-        Shape { name: &body.name, mesh: &body.mesh, positions, velocities }
-    };
-    let shapes: Vec<Shape<'_, D>> = bodies.iter().zip(x.iter().zip(&v)).map(shape).collect();
-    folder.write(name, false, |out| format.write(out, &blueprint.name, world.time(), &shapes))?;
-    Ok(())
 }

@@ -44,16 +44,25 @@ fn a_replay_gives_the_files_of_its_run_again() {
         serde_json::json!([])
     );
 
-    let output = opruga(folder, &["replay", "r", "--out", "again", "--vtk", "--obj", "--ply"]);
+    let output = opruga(
+        folder,
+        &["replay", "r", "--out", "again", "--vtk", "--vtu", "--obj", "--ply", "--gltf", "--pc2", "--mdd"],
+    );
     assert_eq!(code(&output), 0, "{}", said(&output));
     for name in ["strip.png", "video.mp4", "diagnostics.csv"] {
         let of = |run: &str| std::fs::read(folder.join(run).join(name)).expect("a file");
         assert!(of("again") == of("o"), "{name} is another one");
     }
     let names: Vec<String> = contents(&folder.join("again")).into_iter().map(|f| f.0).collect();
-    for ending in ["vtk", "obj", "ply"] {
+    for ending in ["vtk", "vtu", "obj", "ply"] {
         let count = names.iter().filter(|n| n.starts_with("frame-") && n.ends_with(ending)).count();
         assert_eq!(count, 11, "20 pictures a second for half a second and one at the start: {names:?}");
+    }
+    let pvd = std::fs::read_to_string(folder.join("again/frames.pvd")).expect("a list");
+    assert_eq!(pvd.matches("<DataSet timestep=").count(), 11);
+    assert!(pvd.contains("timestep=\"5e-1\" part=\"0\" file=\"frame-000030.vtu\""), "{pvd}");
+    for ending in ["glb", "pc2", "mdd"] {
+        assert!(names.iter().any(|name| name.ends_with(ending)), "{ending}: {names:?}");
     }
     // The last exported frame has the positions of the end of the run.
     let last = std::fs::read_to_string(folder.join("again/frame-000030.obj")).expect("a file");

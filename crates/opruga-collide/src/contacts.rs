@@ -6,9 +6,10 @@ use crate::motion::{Carry, Frame, Pose};
 use crate::picture::{Picture, picture};
 use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
 use crate::shape::{Shape, entry};
+use crate::touch::Way;
 use crate::vector::{dot, subtract};
 use core::any::Any;
-use opruga_core::contacts::{Contacts, Moved};
+use opruga_core::contacts::{Contacts, Moved, Touch};
 use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
 use opruga_core::tile::TILE;
@@ -84,6 +85,25 @@ impl<const D: usize> Colliders<D> {
 }
 
 impl<const D: usize> Contacts<D> for Colliders<D> {
+    fn touch(&self, from: &[f64; D], to: &[f64; D], time: f64, h: f64, reach: f64, visit: &mut dyn FnMut(Touch<D>)) {
+        let way = Way { from, to, time, h, reach };
+        let (mut low, mut high) = (*from, *from);
+        for d in 0..D {
+            low[d] = to[d].smaller(low[d]);
+            high[d] = to[d].larger(high[d]);
+            low[d] -= reach.abs();
+            high[d] += reach.abs();
+        }
+        let mut first = 0;
+        for collider in self.0.iter() {
+            let numbers = first..first + collider.parts.len();
+            first = numbers.end;
+            let sweep = collider.sweep(time, h, &[low, high]);
+            if collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high)) {
+                way.touch(collider, numbers, visit);
+            }
+        }
+    }
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) {
         let used = moved.places_used.min(moved.range.end).saturating_sub(moved.range.start);
         if used == 0 {
@@ -458,10 +478,10 @@ fn look_for_entries<T: Shape<D>, const D: usize>(
 }
 
 /// Facets where they are at the end of the step.
-struct Placed<'a, const D: usize> {
-    facets: &'a Facets<D>,
-    pose: &'a Pose<D>,
-    margin: f64,
+pub(crate) struct Placed<'a, const D: usize> {
+    pub(crate) facets: &'a Facets<D>,
+    pub(crate) pose: &'a Pose<D>,
+    pub(crate) margin: f64,
 }
 
 impl<const D: usize> Surface<f64, D> for Placed<'_, D> {

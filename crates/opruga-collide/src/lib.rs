@@ -49,6 +49,7 @@ mod picture;
 mod response;
 mod shape;
 pub mod spec;
+mod touch;
 mod vector;
 
 pub use contacts::Colliders;

@@ -38,8 +38,47 @@ pub struct Moved<'a, const D: usize> {
     pub work_correction: &'a mut [f64; WIDTH],
 }
 
+/// A surface next to a node at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch<const D: usize> {
+    /// Which surface, by a number that stays the same.
+    pub surface: usize,
+    /// The distance of the node, less the thickness; negative inside [m].
+    pub gap: f64,
+    /// The distance before the step, in the frame of the obstacle [m].
+    pub gap_before: f64,
+    /// The unit normal out of the obstacle.
+    pub normal: [f64; D],
+    /// Where a node that clings to the obstacle gets from where it was [m].
+    pub carried: [f64; D],
+    /// Velocity of the obstacle at the node [m/s].
+    pub velocity: [f64; D],
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Ratio of normal speeds after and before an impact.
+    pub restitution: f64,
+    /// Normal speed up to which nothing bounces [m/s].
+    pub rest_speed: f64,
+    /// The distance below which a gap is nothing but rounding [m].
+    pub rounding: f64,
+}
+
 /// The obstacles that a block of bodies may meet within a frame.
 pub trait Contacts<const D: usize>: Send + Sync + Debug {
     /// Holds back the nodes of a tile: non-penetration, restitution, friction.
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>);
+    /// Calls back with every surface that a node has come to that goes from `from` to `to` [m] in the step of `h` that
+    /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], or that it has crossed.
+    ///
+    /// For implicit integrators, which hold nodes back while they look for the end of the step.
+    fn touch(
+        &self,
+        _from: &[f64; D],
+        _to: &[f64; D],
+        _time: f64,
+        _h: f64,
+        _reach: f64,
+        _visit: &mut dyn FnMut(Touch<D>),
+    ) {
+    }
 }

@@ -32,6 +32,25 @@ pub enum StepError {
         /// The time at the start of the substep [s].
         time: f64,
     },
+    /// An implicit rule has not found the end of the step.
+    #[error(
+        "`{integrator}` did not converge in {iterations} iterations at t = {time} s: the forces are out of balance by \
+         {residual:.3e} N, and the last correction was {correction:.3e} m; allowed: {tolerance:.3e} m"
+    )]
+    NotConverged {
+        /// The rule.
+        integrator: &'static str,
+        /// How many iterations of Newton were made.
+        iterations: u32,
+        /// The largest force out of balance on a node [N].
+        residual: f64,
+        /// The largest displacement in the last iteration [m].
+        correction: f64,
+        /// The correction that ends the iteration [m].
+        tolerance: f64,
+        /// The time at the start of the step [s].
+        time: f64,
+    },
     /// A model has no meaning in this state.
     #[error("{model}: {message}")]
     Model {

@@ -5,6 +5,7 @@ use crate::potential::Views;
 use crate::spec::{Spec, Values};
 use crate::system::System;
 use core::fmt::Debug;
+use opruga_math::Lane;
 
 /// A rule that moves a system from time t to t + h.
 pub trait Integrator<const D: usize>: Send + Sync + Debug {
@@ -18,10 +19,26 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn work_columns(&self) -> usize {
         0
     }
-    /// The matrix that takes (x, v) to the next step on the damped oscillator x″ = −ω²x − c x′.
+    /// What it remembers from step to step beside x and v; part of the state.
+    fn history(&self) -> HistorySize {
+        HistorySize::default()
+    }
+    /// The matrix that takes (x, v), and behind them the columns of its history, to the next step on the damped oscillator
+    /// x″ = −ω²x − c x′.
     ///
     /// Its spectral radius is at most 1 where the step h is stable. The state is scaled as (x, v), not (ωx, v).
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2];
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
+    /// Refuses a system that it cannot step, such as a free body where an equilibrium is asked for.
+    ///
+    /// # Errors
+    /// [`BuildError`] with the reason.
+    fn check(&self, _system: &System<D>) -> Result<(), BuildError> {
+        Ok(())
+    }
+    /// Whether the same bits come out on every processor, and not only on those of one class.
+    fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
+        true
+    }
     /// Makes one substep of h [s].
     ///
     /// # Errors
@@ -33,6 +50,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
 pub trait IntegratorKind<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
     fn spec(&self) -> &'static Spec;
+    /// Whether it steps eight alike bodies side by side; else every body is stepped by itself.
+    fn batches(&self) -> bool {
+        true
+    }
     /// Builds it.
     ///
     /// # Errors
@@ -40,12 +61,110 @@ pub trait IntegratorKind<const D: usize>: Send + Sync {
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError>;
 }
 
+/// What an integrator remembers from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HistorySize {
+    /// Columns of one vector per node.
+    pub columns: usize,
+    /// Plain numbers.
+    pub numbers: usize,
+}
+
+/// The most numbers per degree of freedom that an integrator carries from step to step.
+pub const MOST_CARRIED: usize = 4;
+
+/// What one step makes of x, v and what an integrator remembers, on a linear oscillator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amplification {
+    size: usize,
+    rows: [[f64; MOST_CARRIED]; MOST_CARRIED],
+}
+
+impl Amplification {
+    /// From the rows of the matrix.
+    pub fn new<const N: usize>(matrix: [[f64; N]; N]) -> Amplification {
+        const { assert!(N >= 2 && N <= MOST_CARRIED, "x and v, and room for what is remembered") }
+        let mut rows = [[0.0; MOST_CARRIED]; MOST_CARRIED];
+        for i in 0..N {
+            rows[i][..N].copy_from_slice(&matrix[i]);
+        }
+        Amplification { size: N, rows }
+    }
+    /// How many numbers are carried from step to step: x, v and the history.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+    /// The largest absolute eigenvalue.
+    pub fn spectral_radius(&self) -> f64 {
+        let m = &self.rows;
+        if self.size == 2 { radius_of_two([[m[0][0], m[0][1]], [m[1][0], m[1][1]]]) } else { self.radius_by_squaring() }
+    }
+    /// lim |Aⁿ|^(1/n) by Gelfand, n = 2⁶⁰: the rounding of the k-th square counts 2⁻ᵏ only.
+    fn radius_by_squaring(&self) -> f64 {
+        const SQUARES: usize = 60;
+        let n = self.size;
+        let mut a = self.rows;
+        let (mut logarithm, mut share) = (0.0, 1.0);
+        for _ in 0..=SQUARES {
+            let mut norm = 0.0;
+            for row in &a[..n] {
+                for entry in &row[..n] {
+                    norm = entry.abs().larger(norm);
+                }
+            }
+            if !norm.is_finite() || norm == 0.0 {
+                return norm;
+            }
+            logarithm += share * Lane::ln(norm);
+            share *= 0.5;
+            let inverse = 1.0 / norm;
+            let mut square = [[0.0; MOST_CARRIED]; MOST_CARRIED];
+            for i in 0..n {
+                for j in 0..n {
+                    for k in 0..n {
+                        square[i][j] += (a[i][k] * inverse) * (a[k][j] * inverse);
+                    }
+                }
+            }
+            a = square;
+        }
+        Lane::exp(logarithm)
+    }
+}
+
+impl core::ops::Index<usize> for Amplification {
+    type Output = [f64; MOST_CARRIED];
+    fn index(&self, row: usize) -> &Self::Output {
+        &self.rows[row]
+    }
+}
+
 /// The largest absolute eigenvalue of a real 2×2 matrix.
-pub fn spectral_radius(m: [[f64; 2]; 2]) -> f64 {
+fn radius_of_two(m: [[f64; 2]; 2]) -> f64 {
     let half_trace = 0.5 * (m[0][0] + m[1][1]);
     let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
     // Written so that nothing cancels for a matrix close to the unit matrix.
     let half_difference = 0.5 * (m[0][0] - m[1][1]);
     let discriminant = half_difference * half_difference + m[0][1] * m[1][0];
     if discriminant < 0.0 { determinant.sqrt() } else { half_trace.abs() + discriminant.sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Companion matrices of given roots, a rotation, and a Jordan block of a double root.
+    #[test]
+    fn spectral_radii_of_three_and_four_carried_numbers() {
+        // (λ − 0.9)(λ − 0.5)(λ + 0.2)
+        let three = Amplification::new([[1.2, -0.17, -0.09], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        assert!((three.spectral_radius() - 0.9).abs() < 1e-14, "{}", three.spectral_radius());
+        // A rotation by 0.3 and one by 2 times 0.5.
+        let (c, s) = (0.955_336_489_125_606, 0.295_520_206_661_339_6);
+        let four =
+            Amplification::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, -0.2, -0.4], [0.0, 0.0, 0.4, -0.2]]);
+        assert!((four.spectral_radius() - 1.0).abs() < 1e-14, "{}", four.spectral_radius());
+        let free = Amplification::new([[1.0, 7.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.3]]);
+        assert!((free.spectral_radius() - 1.0).abs() < 1e-14, "{}", free.spectral_radius());
+    }
 }

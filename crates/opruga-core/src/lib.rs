@@ -4,6 +4,7 @@ pub mod accumulator;
 pub mod check;
 pub mod contacts;
 pub mod error;
+mod implicit;
 pub mod integrator;
 pub mod pair;
 mod pins;

@@ -73,7 +73,7 @@ impl<const D: usize> Held<D> {
         Held(held)
     }
     /// Held places within a range, and their held axes.
-    fn within(&self, range: &Range<usize>) -> impl Iterator<Item = (usize, usize)> {
+    pub(crate) fn within(&self, range: &Range<usize>) -> impl Iterator<Item = (usize, usize)> {
         let first = self.0.partition_point(|entry| entry.0 < range.start);
         let last = self.0.partition_point(|entry| entry.0 < range.end);
         self.0[first..last].iter().flat_map(|(place, axes)| (0..D).filter(|d| axes[*d]).map(|d| (*place, d)))

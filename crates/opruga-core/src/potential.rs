@@ -13,7 +13,7 @@ use opruga_mesh::Mesh;
 pub struct Views {
     /// There is an energy whose negative gradient is the force at rest.
     pub energy: bool,
-    /// There is a Hessian.
+    /// There is a Hessian, or forces do not depend on positions.
     pub hessian: bool,
     /// The force depends on velocities.
     pub damping: bool,
@@ -125,6 +125,8 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     }
     /// Delivers ∂²U/∂x∂x, after `prepare` in the same state.
     fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
+    /// Delivers −∂F/∂v, the matrix of damping, after `prepare` in the same state.
+    fn damping_matrix(&self, _view: &View<D>, _scratch: &[f64], _sink: &mut dyn Sink<D>) {}
     /// Adds ∂²U/∂x∂x · direction; places outside of the bodies are left alone.
     fn add_hessian_product(&self, view: &View<D>, scratch: &[f64], direction: &[&[f64]; D], out: &mut [&mut [f64]; D]) {
         let mut product = ProductSink { direction, out };
@@ -134,6 +136,10 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
+    /// Stress and volume ratio of the cells of a body, in any order; nothing where the model knows none.
+    fn cell_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
+        Vec::new()
+    }
     /// How often something happened that a user should know of (a limit acted): counts kept in the memory.
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
@@ -141,6 +147,32 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize {
         0
+    }
+}
+
+/// What a cell of a body is under.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellState {
+    /// The cell, in the order of [`opruga_mesh::Cells::iter`].
+    pub cell: u32,
+    /// Its mean Cauchy stress σ [Pa], row by row; in the plane with what acts across it.
+    pub stress: [[f64; 3]; 3],
+    /// Its volume over that at rest, J.
+    pub volume_ratio: f64,
+}
+
+impl CellState {
+    /// The von Mises stress √(3/2 s:s) with s = σ − ⅓ tr σ 1 [Pa].
+    pub fn von_mises(&self) -> f64 {
+        let s = &self.stress;
+        let square = |x: f64| x * x;
+        let normal = square(s[0][0] - s[1][1]) + square(s[1][1] - s[2][2]) + square(s[2][2] - s[0][0]);
+        let shear = square(s[0][1]) + square(s[1][2]) + square(s[2][0]);
+        (0.5 * normal + 3.0 * shear).sqrt()
+    }
+    /// The pressure −⅓ tr σ [Pa].
+    pub fn pressure(&self) -> f64 {
+        -(self.stress[0][0] + self.stress[1][1] + self.stress[2][2]) / 3.0
     }
 }
 

@@ -33,7 +33,7 @@
 mod lanczos;
 
 use crate::error::StepError;
-use crate::integrator::{Integrator, spectral_radius};
+use crate::integrator::Integrator;
 use crate::state::{Columns, Layout, View};
 use crate::system::System;
 use crate::tile::Tile;
@@ -45,6 +45,9 @@ const SAFETY: f64 = 0.98;
 
 /// Displacements for the differences of forces, in extents of the system.
 const DISPLACEMENT: f64 = 1e-7;
+
+/// A rule that is stable up to this angle ωh of a step has no limit: the implicit ones.
+const LARGEST_PHASE: f64 = 1e9;
 
 /// Where the frequencies and the damping of all modes of a system lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,8 +67,8 @@ pub struct Spectrum {
 pub struct Stability {
     /// The spectra, each with its residual on the safe side; a least damping below 1 % of the strongest counts as zero.
     pub spectrum: Spectrum,
-    /// The largest step for which no mode grows, lowered by 2 % [s]; infinite for a free body, `None` where every step
-    /// lets one grow.
+    /// The largest step for which no mode grows, lowered by 2 % [s]; infinite for a free body and for integrators
+    /// without a limit, `None` where every step lets one grow.
     pub largest_stable_step: Option<f64>,
 }
 
@@ -116,7 +119,8 @@ impl Spectrum {
 
     /// The largest step of an integrator that is stable for all modes [s].
     ///
-    /// Infinite where nothing oscillates and nothing is damped; `None` where every step lets a mode grow.
+    /// Infinite where nothing oscillates and nothing is damped, or the integrator has no limit; `None` where every step lets
+    /// a mode grow.
     pub fn largest_stable_step<const D: usize>(&self, integrator: &dyn Integrator<D>) -> Option<f64> {
         let fastest = self.omega.larger(self.damping);
         if fastest == 0.0 {
@@ -128,9 +132,12 @@ impl Spectrum {
         let mut low = 1.0 / fastest;
         let mut high = 2.0 * low;
         if stable(low) {
-            while stable(high) && high * fastest < 1e9 {
+            while stable(high) {
                 low = high;
                 high *= 2.0;
+                if high * fastest > LARGEST_PHASE {
+                    return Some(f64::INFINITY);
+                }
             }
         } else {
             while !stable(low) {
@@ -190,7 +197,7 @@ const ROUNDING: f64 = 4e-15;
 fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], h: f64) -> f64 {
     let mut worst = 0.0;
     for &(omega, c) in points {
-        let radius = spectral_radius(integrator.amplification(omega, c, h));
+        let radius = integrator.amplification(omega, c, h).spectral_radius();
         worst = if radius.is_finite() { radius.larger(worst) } else { f64::INFINITY };
     }
     worst

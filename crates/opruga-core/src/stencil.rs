@@ -44,6 +44,26 @@ pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug +
     fn damping<S: Lane>(_parameters: &[S; K], _x: &[[S; D]; N], _v: &[[S; D]; N]) -> ([[S; D]; N], S) {
         ([[S::zero(); D]; N], S::zero())
     }
+    /// −∂F/∂v of the force of damping; as it stands, its exact derivative by dual numbers.
+    fn damping_matrix(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
+        let constants = parameters.map(Dual::constant);
+        let x = x.map(|node| node.map(Dual::constant));
+        let mut v = [[Dual::constant(0.0); D]; N];
+        let mut out = [[[[0.0; D]; D]; N]; N];
+        for b in 0..N {
+            for j in 0..D {
+                v[b][j].slope = 1.0;
+                let (force, _) = Self::damping(&constants, &x, &v);
+                v[b][j].slope = 0.0;
+                for a in 0..N {
+                    for i in 0..D {
+                        out[a][b][i][j] = -force[a][i].slope;
+                    }
+                }
+            }
+        }
+        out
+    }
     /// ∂²U/∂x∂x; as it stands, the exact derivative of [`Kernel::gradient`] by dual numbers.
     fn hessian(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
         let constants = parameters.map(Dual::constant);
@@ -392,6 +412,23 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
                 if keep == Definiteness::Clamped {
                     clamp(&mut blocks);
                 }
+                for a in 0..N {
+                    for b in 0..N {
+                        sink.block(places[a], places[b], blocks[a][b]);
+                    }
+                }
+            }
+        }
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        if !self.damped {
+            return;
+        }
+        for (number, nodes) in self.elements.iter().enumerate() {
+            for body in 0..self.layout.stride() {
+                let parameters = self.parameters.each_ref().map(|p| p.at(self.layout.place(number, body)));
+                let places = nodes.map(|n| self.layout.place(n as usize, body));
+                let blocks = L::damping_matrix(&parameters, &places.map(|p| view.position(p)));
                 for a in 0..N {
                     for b in 0..N {
                         sink.block(places[a], places[b], blocks[a][b]);

@@ -20,6 +20,21 @@ pub enum Stage {
     Work(usize),
 }
 
+/// Room that an integrator keeps for itself.
+#[derive(Debug, Default)]
+pub struct Room(Option<Box<dyn core::any::Any + Send + Sync>>);
+
+impl Room {
+    /// Takes what is kept out, or something new where nothing of the kind is there.
+    pub fn take<T: Default + Send + Sync + 'static>(&mut self) -> Box<T> {
+        self.0.take().and_then(|kept| kept.downcast().ok()).unwrap_or_default()
+    }
+    /// Puts it back.
+    pub fn put<T: Send + Sync + 'static>(&mut self, kept: Box<T>) {
+        self.0 = Some(kept);
+    }
+}
+
 /// Positions and velocities, and room for stages of an integrator.
 #[derive(Clone, Debug)]
 pub struct State<const D: usize> {
@@ -59,6 +74,46 @@ pub struct Work8 {
     pub limited_forces: u64,
     /// How often a velocity was limited.
     pub limited_velocities: u64,
+    /// What implicit integrators did.
+    pub solver: SolverWork,
+}
+
+/// What implicit integrators did since the ledger was last emptied.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolverWork {
+    /// Systems of equations that were solved, one a step.
+    pub steps: u64,
+    /// Iterations of Newton.
+    pub iterations: u64,
+    /// Iterations of the linear solver.
+    pub linear_iterations: u64,
+    /// The largest force out of balance on a node at the end of a step [N].
+    pub residual: f64,
+    /// Steps that were accepted though they had not converged.
+    pub accepted: u64,
+    /// Steps that were halved since they had not converged.
+    pub halved: u64,
+}
+
+impl SolverWork {
+    /// Adds what was done elsewhere or later.
+    pub fn add(&mut self, other: &SolverWork) {
+        self.steps += other.steps;
+        self.iterations += other.iterations;
+        self.linear_iterations += other.linear_iterations;
+        self.residual = other.residual.larger(self.residual);
+        self.accepted += other.accepted;
+        self.halved += other.halved;
+    }
+}
+
+/// What an integrator remembers from step to step; part of the state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct History<const D: usize> {
+    /// Columns of one vector per node.
+    pub columns: Vec<Columns<D>>,
+    /// Plain numbers, zero at the start.
+    pub numbers: Vec<f64>,
 }
 
 /// What an integrator does with the forces of a tile: reads the state, writes positions and velocities.
@@ -159,12 +214,16 @@ pub struct System<const D: usize> {
     pub stabilisers: Stabilisers,
     /// Energy that went in and out.
     pub work: Work8,
-    plan: TilePlan,
+    /// What the integrator remembers.
+    pub history: History<D>,
+    /// Room that an integrator keeps between steps; what it holds does not change results.
+    pub room: Room,
+    pub(crate) plan: TilePlan,
     /// What the pins hold.
     pub(crate) held: Held<D>,
     /// Pairs of columns that the integrator uses within a step.
     stages: usize,
-    forces: [Column; D],
+    pub(crate) forces: [Column; D],
     before: [Column; D],
     slots: Column,
 }
@@ -202,6 +261,8 @@ impl<const D: usize> System<D> {
             contacts: None,
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
+            history: History::default(),
+            room: Room::default(),
             plan: TilePlan::new(places, std::iter::empty()),
             held: Held::default(),
             stages: 0,
@@ -237,6 +298,14 @@ impl<const D: usize> System<D> {
         self.stages = work_columns;
         self.held = Held::of(&self.pins);
     }
+    /// Lays out tiles and buffers for an integrator, and room for what it remembers; what it knows is kept if it fits.
+    pub fn equip(&mut self, integrator: &dyn crate::integrator::Integrator<D>) {
+        self.plan(integrator.work_columns());
+        let size = integrator.history();
+        let places = self.places();
+        self.history.columns.resize_with(size.columns, || Columns::zeros(places));
+        self.history.numbers.resize(size.numbers, 0.0);
+    }
     /// Takes a workspace for its own, or gives it back.
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
         std::mem::swap(&mut self.forces, &mut workspace.forces);
@@ -244,7 +313,7 @@ impl<const D: usize> System<D> {
         std::mem::swap(&mut self.state.work, &mut workspace.stages);
     }
     /// Makes room for a step where nobody has lent any.
-    fn make_room(&mut self) {
+    pub(crate) fn make_room(&mut self) {
         let (buffers, stages, places) = (self.plan.buffer_places(), self.stages, self.places());
         let own = self.state.work.iter().take(stages).flatten().all(|c| c.0[0].len() >= places + WIDTH);
         if self.forces[0].len() < buffers + WIDTH || self.state.work.len() < stages || !own {
@@ -304,7 +373,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Lets every model look at the body as a whole.
-    fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
+    pub(crate) fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
         let view = view(&self.state, self.nodes, self.layout, stage, time);
         for member in &mut self.members {
             member.potential.prepare(self.simd, &view, &member.memory, &mut member.scratch)?;
@@ -314,7 +383,7 @@ impl<const D: usize> System<D> {
 
     /// Adds up the forces of all models on the nodes of one tile.
     #[inline]
-    fn add_forces(&mut self, stage: Stage, time: f64, weight: f64, tile: usize) {
+    pub(crate) fn add_forces(&mut self, stage: Stage, time: f64, weight: f64, tile: usize) {
         let view = view(&self.state, self.nodes, self.layout, stage, time);
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
@@ -379,11 +448,7 @@ impl<const D: usize> System<D> {
     #[inline]
     fn collide(&mut self, tile: usize, h: f64) {
         let range = self.plan.range(tile);
-        if let Some(limit) = self.stabilisers.largest_velocity {
-            let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
-            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
-            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit, is_node);
-        }
+        self.limit_velocities_of(range.clone());
         if self.contacts.is_none() {
             return;
         }
@@ -391,6 +456,20 @@ impl<const D: usize> System<D> {
         self.give_held_motion(range.clone());
         self.resolve_contacts(tile, h);
         self.take_held_motion(range);
+    }
+
+    /// Shortens the velocities that are above the limit, of all nodes.
+    pub(crate) fn limit_velocities(&mut self) {
+        self.limit_velocities_of(0..self.places());
+    }
+
+    #[inline]
+    fn limit_velocities_of(&mut self, range: Range<usize>) {
+        if let Some(limit) = self.stabilisers.largest_velocity {
+            let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit, is_node);
+        }
     }
 
     fn resolve_contacts(&mut self, tile: usize, h: f64) {

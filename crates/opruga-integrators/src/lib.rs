@@ -1,8 +1,13 @@
 //! Integrators of Opruga: one folder per rule.
 
+pub mod backward_euler;
+pub mod bdf2;
 pub mod explicit_euler;
 mod first_stage;
 pub mod heun;
+mod implicit;
+pub mod implicit_midpoint;
+pub mod newmark;
 pub mod runge_kutta;
 pub mod symplectic_euler;
 pub mod verlet;
@@ -38,5 +43,9 @@ fn list<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
         Box::new(heun::HeunKind),
         Box::new(verlet::VerletKind),
         Box::new(runge_kutta::RungeKuttaKind),
+        Box::new(backward_euler::BackwardEulerKind),
+        Box::new(bdf2::Bdf2Kind),
+        Box::new(implicit_midpoint::ImplicitMidpointKind),
+        Box::new(newmark::NewmarkKind),
     ]
 }

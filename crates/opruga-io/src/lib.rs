@@ -3,10 +3,12 @@
 
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
+mod base64;
 pub mod catalogue;
 pub mod checkpoint;
 mod document;
 pub mod files;
+pub mod meshes;
 pub mod overrides;
 pub mod problem;
 pub mod recording;
@@ -20,6 +22,7 @@ pub mod shapes;
 mod source;
 pub mod tables;
 pub mod template;
+pub mod tracks;
 
 pub use catalogue::Catalogue;
 pub use files::Files;

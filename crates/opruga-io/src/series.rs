@@ -1,4 +1,9 @@
-//! Frames for other programs: legacy VTK (ParaView), Wavefront OBJ (Blender) and Stanford PLY (MeshLab), one file a frame.
+//! Frames for other programs: VTK (ParaView), Wavefront OBJ (Blender) and Stanford PLY (MeshLab), one file a frame.
+//! Whole runs in one file are [`crate::tracks`].
+
+pub(crate) mod vtu;
+
+pub use vtu::write_pvd;
 
 use opruga_mesh::Mesh;
 use std::io::{self, Write};
@@ -14,6 +19,21 @@ pub struct Shape<'a, const D: usize> {
     pub positions: &'a [[f64; D]],
     /// Velocities, node by node [m/s].
     pub velocities: &'a [[f64; D]],
+    /// Where the body's mesh was put when it came: its displacement is counted from there [m].
+    pub translation: [f64; D],
+    /// What models say of every cell, such as stress.
+    pub cell_fields: &'a [CellField<'a>],
+}
+
+/// Numbers of every filled cell of a body, in the order of [`opruga_mesh::Cells::iter`].
+#[derive(Clone, Copy, Debug)]
+pub struct CellField<'a> {
+    /// Its name with its unit, such as `von Mises stress [Pa]`.
+    pub name: &'a str,
+    /// Numbers of a cell: 1, or 9 for a tensor, row by row.
+    pub components: usize,
+    /// The numbers, cell by cell.
+    pub values: &'a [f64],
 }
 
 /// A kind of file that frames are written as.
@@ -21,6 +41,8 @@ pub struct Shape<'a, const D: usize> {
 pub enum Format {
     /// Legacy VTK, ASCII: cells, surfaces and lines, with velocities, the number of the body, and the time.
     Vtk,
+    /// VTK XML, base64: as `Vtk`, with displacements, groups, values of cells and fields of models (stress).
+    Vtu,
     /// Wavefront OBJ: surfaces and lines, body by body.
     Obj,
     /// Stanford PLY, ASCII: surfaces and lines, with velocities.
@@ -32,6 +54,7 @@ impl Format {
     pub fn ending(self) -> &'static str {
         match self {
             Format::Vtk => "vtk",
+            Format::Vtu => "vtu",
             Format::Obj => "obj",
             Format::Ply => "ply",
         }
@@ -50,6 +73,7 @@ impl Format {
     ) -> io::Result<()> {
         match self {
             Format::Vtk => vtk(out, title, time, shapes),
+            Format::Vtu => vtu::write(out, time, shapes),
             Format::Obj => obj(out, title, time, shapes),
             Format::Ply => ply(out, title, time, shapes),
         }
@@ -78,6 +102,8 @@ const TRIANGLE: u8 = 5;
 const QUADRILATERAL: u8 = 9;
 const TETRAHEDRON: u8 = 10;
 const HEXAHEDRON: u8 = 12;
+const QUADRATIC_TRIANGLE: u8 = 22;
+const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 impl Elements {
     /// Filled bodies by their cells where `filled` wants them, others by what bounds them; wires always.
@@ -89,6 +115,8 @@ impl Elements {
             mesh.cells.quadrilaterals.iter().for_each(|c| add(QUADRILATERAL, c));
             mesh.cells.tetrahedra.iter().for_each(|c| add(TETRAHEDRON, c));
             mesh.cells.hexahedra.iter().for_each(|c| add(HEXAHEDRON, c));
+            mesh.cells.quadratic_triangles.iter().for_each(|c| add(QUADRATIC_TRIANGLE, c));
+            mesh.cells.quadratic_tetrahedra.iter().for_each(|c| add(QUADRATIC_TETRAHEDRON, c));
         } else {
             mesh.facets.iter().for_each(|f| add(if D == 2 { LINE } else { TRIANGLE }, f));
         }
@@ -218,8 +246,22 @@ mod tests {
         let ring = Mesh { facets: vec![[0, 1], [1, 2], [2, 0]], ..square.clone() };
         let wire = Mesh { wires: vec![[0, 1]], positions: vec![[0.0; 2]; 2], ..Mesh::default() };
         let shapes = [
-            Shape { name: "a ring", mesh: &ring, positions: &ring.positions, velocities: &[[0.1, -2.0]; 3] },
-            Shape { name: "wire", mesh: &wire, positions: &[[5.0, 1e-9], [6.0, 0.0]], velocities: &[[0.0; 2]; 2] },
+            Shape {
+                name: "a ring",
+                mesh: &ring,
+                positions: &ring.positions,
+                velocities: &[[0.1, -2.0]; 3],
+                translation: [0.0; 2],
+                cell_fields: &[],
+            },
+            Shape {
+                name: "wire",
+                mesh: &wire,
+                positions: &[[5.0, 1e-9], [6.0, 0.0]],
+                velocities: &[[0.0; 2]; 2],
+                translation: [0.0; 2],
+                cell_fields: &[],
+            },
         ];
         let mut out = Vec::new();
         format.write(&mut out, "two\nbodies", 0.25, &shapes).expect("memory does not fail");
@@ -250,7 +292,14 @@ mod tests {
             ..Mesh::default()
         };
         mesh.cells.tetrahedra.push([0, 1, 2, 3]);
-        let shape = Shape { name: "t", mesh: &mesh, positions: &mesh.positions, velocities: &[[0.0; 3]; 4] };
+        let shape = Shape {
+            name: "t",
+            mesh: &mesh,
+            positions: &mesh.positions,
+            velocities: &[[0.0; 3]; 4],
+            translation: [0.0; 3],
+            cell_fields: &[],
+        };
         let text = |format: Format| {
             let mut out = Vec::new();
             format.write(&mut out, "", 0.0, &[shape]).expect("memory does not fail");

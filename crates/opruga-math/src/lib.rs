@@ -3,14 +3,17 @@
 mod column;
 pub mod elementary;
 pub mod lane;
+pub mod matrix;
 mod portable;
 mod registers;
 pub mod simd;
+pub mod singular;
 pub mod strip;
+pub mod symmetric;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
 pub use column::Column;
-pub use lane::{Lane, Pack, Register, WIDTH, sum_in_fixed_order};
+pub use lane::{Lane, Pack, ROW, Register, WIDTH, sum_in_fixed_order};
 pub use simd::{Simd, Work};
 pub use strip::{RepeatStrip, Strip, StripMut};

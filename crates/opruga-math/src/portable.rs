@@ -4,7 +4,7 @@
 //! `read` and `write` hand the promise of their caller on.
 #![allow(unsafe_code)]
 
-use crate::lane::Register;
+use crate::lane::{ROW, Register};
 
 impl Register for f64 {
     const NUMBERS: usize = 1;
@@ -21,6 +21,11 @@ impl Register for f64 {
     #[inline(always)]
     fn gather(from: &[f64], places: &[u32]) -> f64 {
         from[places[0] as usize]
+    }
+    #[inline(always)]
+    fn gather_rows(from: &[f64], rows: &[u32]) -> [f64; ROW] {
+        let row = &from[ROW * rows[0] as usize..][..ROW];
+        [row[0], row[1], row[2], row[3]]
     }
     #[inline(always)]
     fn after(self, before: f64) -> f64 {

@@ -112,7 +112,7 @@ fn run_avx2<W: Work>(work: W) -> W::Output {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::WIDTH;
+    use crate::lane::{ROW, Register, WIDTH};
 
     /// Every operation on awkward numbers, written one after the other.
     struct Everything;
@@ -148,6 +148,21 @@ mod tests {
             for value in most {
                 out.extend(value.to_array().map(f64::to_bits));
             }
+            // Rows of four of 0 … 39, in no order.
+            let rows: Vec<f64> = (0..40).map(f64::from).collect();
+            let order = [7, 0, 9, 1, 5, 2, 4, 3];
+            let mut columns = [P::zero(); ROW];
+            for part in 0..P::PARTS {
+                let own = P::Part::gather_rows(&rows, &order[part * P::Part::NUMBERS..]);
+                for k in 0..ROW {
+                    columns[k].set_part(part, own[k]);
+                }
+            }
+            for (k, column) in columns.iter().enumerate() {
+                let numbers = column.to_array();
+                assert_eq!(numbers, order.map(|row| f64::from(row * 4 + k as u32)));
+                out.extend(numbers.map(f64::to_bits));
+            }
             out
         }
     }
@@ -155,9 +170,44 @@ mod tests {
     #[test]
     fn all_sets_of_instructions_give_the_bits_of_plain_rust() {
         let plain = Everything.run::<Registers<f64, 8>>();
-        assert_eq!(plain.len(), 2 + 17 * WIDTH);
+        assert_eq!(plain.len(), 2 + (17 + ROW) * WIDTH);
         for simd in Simd::available() {
             assert_eq!(simd.run(Everything), plain, "{simd:?}");
+        }
+    }
+
+    /// Logarithms of numbers of every size, also of those that have none.
+    struct Logarithms<'a>(&'a [f64]);
+    impl Work for Logarithms<'_> {
+        type Output = Vec<u64>;
+        #[inline(always)]
+        fn run<P: Pack>(self) -> Vec<u64> {
+            self.0.chunks_exact(WIDTH).flat_map(|c| P::load(c).ln().to_array().map(f64::to_bits)).collect()
+        }
+    }
+
+    #[test]
+    fn logarithms_of_lanes_have_the_bits_of_libm() {
+        let mut numbers = Vec::new();
+        let mut random = 1u64;
+        for k in 0..80_000 {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // Any bits of a positive number, numbers near 1, and numbers near √½ and √2.
+            let near = 1.0 + (random >> 11) as f64 / (1u64 << 53) as f64;
+            numbers.push(match k % 4 {
+                0 => f64::from_bits(random >> 1),
+                1 => near - 0.5,
+                2 => near * 0.5f64.sqrt(),
+                _ => 1.0 + (near - 1.5) * 1e-6,
+            });
+        }
+        numbers.extend([1.0, 0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, 5e-324, f64::MIN_POSITIVE]);
+        let expected: Vec<u64> = numbers.iter().map(|x| libm::log(*x).to_bits()).collect();
+        for simd in Simd::available() {
+            for (at, (got, expected)) in simd.run(Logarithms(&numbers)).iter().zip(&expected).enumerate() {
+                let both_nan = f64::from_bits(*got).is_nan() && f64::from_bits(*expected).is_nan();
+                assert!(got == expected || both_nan, "{simd:?}: ln {}", numbers[at]);
+            }
         }
     }
 

@@ -8,7 +8,8 @@
 //! the promise of their caller on to the load and store instructions.
 #![allow(unsafe_code, unused_unsafe)] // not every operation of every register is unsafe
 
-use crate::lane::{Lane, Register};
+use crate::elementary::logarithm_of_parts;
+use crate::lane::{Lane, ROW, Register};
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -16,7 +17,7 @@ macro_rules! register {
     ($(#[$note:meta])* $type:ident($register:ty), $count:literal numbers, masks $mask:ty,
      $add:ident $sub:ident $mul:ident $div:ident $set:ident $sqrt:ident $load:ident $store:ident $min:ident $max:ident,
      abs $abs:expr, less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, both $both:expr, any $any:expr,
-     after $after:expr, first $first:expr, gather $gather:expr) => {
+     after $after:expr, first $first:expr, gather $gather:expr, split $split:expr, rows $rows:expr) => {
         $(#[$note])*
         #[derive(Clone, Copy)]
         #[repr(transparent)]
@@ -79,7 +80,21 @@ macro_rules! register {
             #[inline(always)]
             fn any(mask: $mask) -> bool { unsafe { $any(mask) } }
             #[inline(always)]
-            fn ln(self) -> Self { self.each_number(<f64 as Lane>::ln) }
+            fn ln(self) -> Self {
+                let least = <$type as Lane>::splat(f64::MIN_POSITIVE);
+                let most = <$type as Lane>::splat(f64::MAX);
+                let odd = <$type as Lane>::select(
+                    <$type as Lane>::both(least.less_or_equal(self), self.less_or_equal(most)),
+                    <$type as Lane>::zero(),
+                    <$type as Lane>::one(),
+                );
+                // What is not positive and normal is rare and goes the long way.
+                if <$type as Lane>::any(<$type as Lane>::zero().less(odd)) {
+                    return self.each_number(<f64 as Lane>::ln);
+                }
+                let (mantissa, exponent) = unsafe { $split(self.0) };
+                logarithm_of_parts($type(mantissa), $type(exponent))
+            }
             #[inline(always)]
             fn exp(self) -> Self { self.each_number(<f64 as Lane>::exp) }
         }
@@ -107,9 +122,28 @@ macro_rules! register {
             fn first(count: usize) -> $mask { unsafe { $first(count) } }
             #[inline(always)]
             fn gather(from: &[f64], places: &[u32]) -> Self { $type(unsafe { $gather(from, &places[..$count]) }) }
+            #[inline(always)]
+            fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW] {
+                let rows = &rows[..$count];
+                let mut starts = [core::ptr::null(); $count];
+                for k in 0..$count {
+                    starts[k] = from[ROW * rows[k] as usize..][..ROW].as_ptr();
+                }
+                let [a, b, c, d] = unsafe { $rows(starts) };
+                [$type(a), $type(b), $type(c), $type(d)]
+            }
         }
     };
 }
+
+/// The bits of √½, rounded down to 32 bits, and how far they lie below those of 1: where numbers are split for the logarithm.
+const ROOT_OF_HALF: i64 = 0x3fe6_a09e << 32;
+const SHIFT: i64 = (0x3ff0_0000 - 0x3fe6_a09e) << 32;
+/// The bits of the fraction.
+const FRACTION: i64 = (1 << 52) - 1;
+/// The bits of 2⁵², in whose last places a small whole number becomes a floating one; with the bias of the exponent.
+const WHOLE: i64 = 0x4330_0000_0000_0000;
+const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 
 /// A count as a number, eight at most: only small signed integers are converted by one instruction everywhere.
 #[inline(always)]
@@ -130,7 +164,18 @@ register! {
     both |a, b| _mm_and_pd(a, b), any |m| _mm_movemask_pd(m) != 0,
     after |a, before| _mm_shuffle_pd::<0b01>(before, a),
     first |count| _mm_cmplt_pd(_mm_loadu_pd(PLACES.as_ptr()), _mm_set1_pd(few(count))),
-    gather |from: &[f64], at: &[u32]| _mm_setr_pd(from[at[0] as usize], from[at[1] as usize])
+    gather |from: &[f64], at: &[u32]| _mm_setr_pd(from[at[0] as usize], from[at[1] as usize]),
+    split |x: __m128d| {
+        let bits = _mm_add_epi64(_mm_castpd_si128(x), _mm_set1_epi64x(SHIFT));
+        let exponent = _mm_or_si128(_mm_srli_epi64::<52>(bits), _mm_set1_epi64x(WHOLE));
+        let mantissa = _mm_add_epi64(_mm_and_si128(bits, _mm_set1_epi64x(FRACTION)), _mm_set1_epi64x(ROOT_OF_HALF));
+        (_mm_castsi128_pd(mantissa), _mm_sub_pd(_mm_castsi128_pd(exponent), _mm_set1_pd(BIAS)))
+    },
+    rows |at: [*const f64; 2]| {
+        let (a, b) = (_mm_loadu_pd(at[0]), _mm_loadu_pd(at[1]));
+        let (c, d) = (_mm_loadu_pd(at[0].add(2)), _mm_loadu_pd(at[1].add(2)));
+        [_mm_unpacklo_pd(a, b), _mm_unpackhi_pd(a, b), _mm_unpacklo_pd(c, d), _mm_unpackhi_pd(c, d)]
+    }
 }
 register! {
     /// Four numbers in a register of AVX2.
@@ -145,7 +190,8 @@ register! {
     first |count| _mm256_cmp_pd::<_CMP_LT_OQ>(_mm256_loadu_pd(PLACES.as_ptr()), _mm256_set1_pd(few(count))),
     gather |from: &[f64], at: &[u32]| {
         _mm256_setr_pd(from[at[0] as usize], from[at[1] as usize], from[at[2] as usize], from[at[3] as usize])
-    }
+    },
+    split |x| split_avx2(x), rows |at| rows_avx2(at)
 }
 register! {
     /// Eight numbers in a register of AVX-512.
@@ -160,7 +206,86 @@ register! {
         _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(_mm512_castpd_si512(a), _mm512_castpd_si512(before)))
     },
     first |count| if count >= 8 { 0xff } else { ((1u32 << count) - 1) as u8 },
-    gather |from: &[f64], at: &[u32]| gather_avx512(from, at)
+    gather |from: &[f64], at: &[u32]| gather_avx512(from, at),
+    split |x| split_avx512(x), rows |at| rows_avx512(at)
+}
+
+/// Mantissas from √½ to √2 and exponents of positive, normal numbers.
+///
+/// # Safety
+/// The processor must have AVX2.
+#[inline]
+#[target_feature(enable = "avx,avx2")]
+unsafe fn split_avx2(x: __m256d) -> (__m256d, __m256d) {
+    let bits = _mm256_add_epi64(_mm256_castpd_si256(x), _mm256_set1_epi64x(SHIFT));
+    let exponent = _mm256_or_si256(_mm256_srli_epi64::<52>(bits), _mm256_set1_epi64x(WHOLE));
+    let fraction = _mm256_and_si256(bits, _mm256_set1_epi64x(FRACTION));
+    let mantissa = _mm256_add_epi64(fraction, _mm256_set1_epi64x(ROOT_OF_HALF));
+    (_mm256_castsi256_pd(mantissa), _mm256_sub_pd(_mm256_castsi256_pd(exponent), _mm256_set1_pd(BIAS)))
+}
+
+/// The same of eight numbers.
+///
+/// # Safety
+/// The processor must have AVX-512.
+#[inline]
+#[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
+unsafe fn split_avx512(x: __m512d) -> (__m512d, __m512d) {
+    let bits = _mm512_add_epi64(_mm512_castpd_si512(x), _mm512_set1_epi64(SHIFT));
+    let exponent = _mm512_or_si512(_mm512_srli_epi64::<52>(bits), _mm512_set1_epi64(WHOLE));
+    let fraction = _mm512_and_si512(bits, _mm512_set1_epi64(FRACTION));
+    let mantissa = _mm512_add_epi64(fraction, _mm512_set1_epi64(ROOT_OF_HALF));
+    (_mm512_castsi512_pd(mantissa), _mm512_sub_pd(_mm512_castsi512_pd(exponent), _mm512_set1_pd(BIAS)))
+}
+
+/// Four numbers at each of four addresses, as four registers.
+///
+/// # Safety
+/// The processor must have AVX2, and four numbers must lie at every address.
+#[inline]
+#[target_feature(enable = "avx,avx2")]
+unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
+    // SAFETY: the caller promises four numbers at every address.
+    let (a, b, c, d) =
+        unsafe { (_mm256_loadu_pd(at[0]), _mm256_loadu_pd(at[1]), _mm256_loadu_pd(at[2]), _mm256_loadu_pd(at[3])) };
+    // Numbers 0 and 2 of two rows each, numbers 1 and 3.
+    let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    let (more_even, more_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+    [
+        _mm256_permute2f128_pd::<0x20>(even, more_even),
+        _mm256_permute2f128_pd::<0x20>(odd, more_odd),
+        _mm256_permute2f128_pd::<0x31>(even, more_even),
+        _mm256_permute2f128_pd::<0x31>(odd, more_odd),
+    ]
+}
+
+/// Four numbers at each of eight addresses, as four registers.
+///
+/// # Safety
+/// The processor must have AVX-512, and four numbers must lie at every address.
+#[inline]
+#[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
+unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
+    // SAFETY: the caller promises four numbers at every address.
+    let (a, b, c, d) = unsafe {
+        (
+            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[0])), _mm256_loadu_pd(at[4])),
+            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[1])), _mm256_loadu_pd(at[5])),
+            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[2])), _mm256_loadu_pd(at[6])),
+            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[3])), _mm256_loadu_pd(at[7])),
+        )
+    };
+    // Numbers 0 and 2 of rows 0 1 4 5 and 2 3 6 7, numbers 1 and 3.
+    let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+    let (more_even, more_odd) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+    let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    let high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    [
+        _mm512_permutex2var_pd(even, low, more_even),
+        _mm512_permutex2var_pd(odd, low, more_odd),
+        _mm512_permutex2var_pd(even, high, more_even),
+        _mm512_permutex2var_pd(odd, high, more_odd),
+    ]
 }
 
 /// Eight numbers from eight places of a slice.

@@ -2,6 +2,7 @@
 
 use crate::edges::ascending;
 use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES};
+use crate::quadratic::{TRIANGLE_SIDES, tetrahedron_parts};
 use crate::{Element, Mesh, MeshError};
 
 /// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. On a grid neighbours cut their common face alike.
@@ -20,14 +21,15 @@ struct Face {
 impl<const D: usize> Mesh<D> {
     /// The facets that bound the cells: oriented faces that belong to one cell only, in the order of the cells.
     ///
-    /// A face of a hexahedron becomes two triangles, cut from its lowest node.
+    /// A face of a hexahedron becomes two triangles, cut from its lowest node. The side of a quadratic triangle becomes two edges, the face of a
+    /// quadratic tetrahedron four triangles, through all its nodes.
     ///
     /// # Errors
     /// What [`Mesh::validate`] finds; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
     pub fn facets_from_cells(&self) -> Result<Vec<[u32; D]>, MeshError> {
         self.validate()?;
         let mut faces = Vec::new();
-        for (element, _, cell) in self.cell_elements() {
+        for (element, _, cell) in self.cells.iter() {
             let mut push = |nodes: [u32; 4]| {
                 faces.push(Face { key: distinct(nodes), order: faces.len(), nodes });
             };
@@ -36,6 +38,16 @@ impl<const D: usize> Mesh<D> {
                     TETRAHEDRON_FACES.iter().for_each(|&[a, b, c]| push([cell[a], cell[b], cell[c], cell[c]]))
                 }
                 Element::Hexahedron => HEXAHEDRON_FACES.iter().for_each(|face| push(face.map(|corner| cell[corner]))),
+                Element::QuadraticTriangle => {
+                    for ([i, j], middle) in TRIANGLE_SIDES.into_iter().zip(3..) {
+                        push([cell[i], cell[middle], cell[middle], cell[middle]]);
+                        push([cell[middle], cell[j], cell[j], cell[j]]);
+                    }
+                }
+                Element::QuadraticTetrahedron => {
+                    let nodes = core::array::from_fn(|k| cell[k]);
+                    tetrahedron_parts(&nodes).for_each(|[a, b, c]| push([a, b, c, c]));
+                }
                 _ => {
                     for (place, &a) in cell.iter().enumerate() {
                         let b = cell[(place + 1) % cell.len()];
@@ -76,7 +88,8 @@ impl<const D: usize> Mesh<D> {
 
     /// The same body of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra into six tetrahedra.
     ///
-    /// Nodes, groups, wires and sheets stay; facets are found anew where there were cells.
+    /// Nodes, groups, wires, sheets and quadratic cells stay; facets are found anew where there were cells, and the parts of a cell keep its groups and
+    /// values.
     ///
     /// # Errors
     /// Those of [`Mesh::facets_from_cells`].
@@ -85,6 +98,16 @@ impl<const D: usize> Mesh<D> {
         if self.cells.is_empty() {
             return Ok(self);
         }
+        // Which old cell each new one comes from: each kind is followed by the parts of the next.
+        let (triangles, quadrilaterals) = (self.cells.triangles.len(), self.cells.quadrilaterals.len());
+        let (tetrahedra, hexahedra) = (self.cells.tetrahedra.len(), self.cells.hexahedra.len());
+        let mut origins: Vec<u32> = Vec::new();
+        let mut first = 0;
+        for (count, parts) in [(triangles, 1), (quadrilaterals, 2), (tetrahedra, 1), (hexahedra, KUHN.len())] {
+            origins.extend((first..first + count).flat_map(|cell| std::iter::repeat_n(cell as u32, parts)));
+            first += count;
+        }
+        origins.extend((first..self.cells.len()).map(|cell| cell as u32));
         for [a, b, c, d] in std::mem::take(&mut self.cells.quadrilaterals) {
             // On a grid with rows of n nodes the lower left node is i + n·j; the row length is the step up.
             let row = d.abs_diff(a).max(1);
@@ -97,6 +120,7 @@ impl<const D: usize> Mesh<D> {
         for cell in std::mem::take(&mut self.cells.hexahedra) {
             self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner])));
         }
+        self.follow_cells(&origins);
         self.facets = self.facets_from_cells()?;
         Ok(self)
     }

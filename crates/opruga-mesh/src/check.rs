@@ -34,14 +34,14 @@ pub enum Problem {
         /// Its length [m], area [m²] or volume [m³].
         measure: f64,
     },
-    /// A filled cell has negative area or volume.
+    /// A filled cell has negative area or volume, or a negative Jacobian at one of its nodes.
     #[error("{element} {index} is inverted: its measure is {measure}")]
     Inverted {
         /// Kind of the cell.
         element: Element,
         /// Index of the cell among its kind.
         index: u32,
-        /// Its signed area [m²] or volume [m³].
+        /// The signed area [m²] or volume [m³] of a cell that has the Jacobian of its worst node everywhere.
         measure: f64,
     },
     /// Two facets have the same nodes.
@@ -103,11 +103,7 @@ impl<const D: usize> Mesh<D> {
             problems.push(Problem::DuplicateFacet { first: pair[0].1, second: pair[1].1 });
         }
 
-        let mut named = vec![false; self.nodes()];
-        for (_, _, nodes) in self.elements() {
-            nodes.iter().for_each(|&node| named[node as usize] = true);
-        }
-        let nodes: Vec<u32> = (0..named.len()).filter(|&node| !named[node]).map(|node| node as u32).collect();
+        let nodes = self.unreferenced_nodes();
         if !nodes.is_empty() {
             problems.push(Problem::UnreferencedNodes { nodes });
         }
@@ -118,7 +114,9 @@ impl<const D: usize> Mesh<D> {
         let points: Vec<Point> = self.positions.iter().map(lift).collect();
         let spread = spread(&points);
         for (element, index, nodes) in self.elements().filter(|entry| entry.0 != Element::SheetQuadrilateral) {
+            // A curved cell must not fold over at any of its nodes.
             let measure = self.size_of(nodes, element);
+            let least = self.extreme_measures(element, nodes, measure).0;
             let mut longest = 0.0;
             for (place, &a) in nodes.iter().enumerate() {
                 for &b in &nodes[..place] {
@@ -129,14 +127,16 @@ impl<const D: usize> Mesh<D> {
                 }
             }
             let thin = match element {
-                Element::Tetrahedron | Element::Hexahedron => THIN_ELEMENT * longest * longest * longest,
+                Element::Tetrahedron | Element::Hexahedron | Element::QuadraticTetrahedron => {
+                    THIN_ELEMENT * longest * longest * longest
+                }
                 _ if nodes.len() > 2 => THIN_ELEMENT * longest * longest,
                 _ => 0.0,
             };
             if longest <= SHORT_EDGE * spread[0] || measure.abs() <= thin {
                 problems.push(Problem::Degenerate { element, index, measure });
-            } else if measure < 0.0 {
-                problems.push(Problem::Inverted { element, index, measure });
+            } else if least < 0.0 {
+                problems.push(Problem::Inverted { element, index, measure: least });
             }
         }
         if !self.facets.is_empty() || !self.cells.is_empty() {

@@ -3,6 +3,7 @@
 use crate::Mesh;
 use crate::MeshError;
 use crate::geometry::{HEXAHEDRON_FACES, lift, triangle_area};
+use crate::quadratic::{tetrahedron_parts, triangle_parts};
 
 /// Which edges of a mesh are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +11,7 @@ pub enum EdgeSet {
     /// Edges of the boundary facets.
     Boundary,
     /// Edges of facets, wires, sheets and cells. The diagonals that only cut the boundary faces of hexahedra into triangles are left out: they would
-    /// stiffen one diagonal of the skin and not the other.
+    /// stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of their faces.
     All,
     /// `All`, with both diagonals of every quadrilateral and of every face of a hexahedron (not the diagonals through its interior).
     AllWithShear,
@@ -130,11 +131,17 @@ impl<const D: usize> Mesh<D> {
             push_sides(&cell[4..], edges);
             (0..4).for_each(|corner| edges.push(ascending(cell[corner], cell[corner + 4])));
         }
+        for cell in &self.cells.quadratic_triangles {
+            triangle_parts(cell).iter().for_each(|triangle| push_sides(triangle, edges));
+        }
+        for cell in &self.cells.quadratic_tetrahedra {
+            tetrahedron_parts(cell).for_each(|triangle| push_sides(&triangle, edges));
+        }
     }
 
     /// Sum ΣA of the areas of the triangles beside each edge [m²], one value per edge of the list.
     ///
-    /// Triangles are the facets in space, sheet triangles and triangle cells. A membrane spring of stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) gives
+    /// Triangles are the facets in space, sheet triangles, triangle cells and the four parts of quadratic ones. A membrane spring of stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) gives
     /// on the regular triangular lattice k = √3/2·E₂D inside and half of that on the border, where only one triangle lies beside the edge.
     ///
     /// A quadrilateral (cell or sheet) is cut by the diagonal that the edge list contains. With both diagonals, or with none, it counts as the mean of
@@ -170,6 +177,7 @@ impl<const D: usize> Mesh<D> {
         for &triangle in self.facet_triangles().iter().chain(loose).chain(&self.cells.triangles) {
             add(triangle, 1.0);
         }
+        self.cells.quadratic_triangles.iter().flat_map(triangle_parts).for_each(|triangle| add(triangle, 1.0));
         // Quadrilaterals, cut by the diagonals that are in the list.
         for &[a, b, c, d] in self.cells.quadrilaterals.iter().chain(&self.sheet_quadrilaterals) {
             let (weight_ac, weight_bd) = match (find(a, c).is_some(), find(b, d).is_some()) {

@@ -21,6 +21,10 @@ pub enum Element {
     Tetrahedron,
     /// A filled hexahedron of space.
     Hexahedron,
+    /// A filled triangle of second order.
+    QuadraticTriangle,
+    /// A filled tetrahedron of second order.
+    QuadraticTetrahedron,
     /// An edge of an edge list.
     Edge,
     /// A named set of nodes; its index counts the groups in order of name.
@@ -38,6 +42,8 @@ impl fmt::Display for Element {
             Element::Quadrilateral => "quadrilateral",
             Element::Tetrahedron => "tetrahedron",
             Element::Hexahedron => "hexahedron",
+            Element::QuadraticTriangle => "quadratic triangle",
+            Element::QuadraticTetrahedron => "quadratic tetrahedron",
             Element::Edge => "edge",
             Element::Group => "group",
         })
@@ -117,6 +123,50 @@ pub enum MeshError {
         index: u32,
         /// The node that is named twice.
         node: u32,
+    },
+    /// A group of cells names a cell that does not exist.
+    #[error("the group `{group}` names cell {cell}, but there are {cells} cells")]
+    CellOutOfRange {
+        /// Name of the group.
+        group: String,
+        /// The cell that it names.
+        cell: u32,
+        /// Number of cells of the mesh.
+        cells: usize,
+    },
+    /// Values of cells are more or fewer than there are cells.
+    #[error("`{name}` has {values} values for {cells} cells")]
+    CellValues {
+        /// Name of the quantity.
+        name: String,
+        /// Number of values.
+        values: usize,
+        /// Number of cells of the mesh.
+        cells: usize,
+    },
+    /// Something that only triangles and tetrahedra can do was asked of another cell.
+    #[error("a {element} is no triangle or tetrahedron; it has to be cut into these first")]
+    NotSimplices {
+        /// Kind of the cell.
+        element: Element,
+    },
+    /// A quantity that is needed was not given.
+    #[error("`{what}` is missing: {why}")]
+    Missing {
+        /// Name of the quantity.
+        what: &'static str,
+        /// What it is needed for.
+        why: &'static str,
+    },
+    /// A filling does not hold together as its surface does: it is too coarse.
+    #[error("with a spacing of {spacing} m the filling of {parts} closed {} falls into {pieces} pieces", if *parts == 1 { "surface" } else { "surfaces" })]
+    Torn {
+        /// Side of the cubes of the lattice [m].
+        spacing: f64,
+        /// Pieces of the filling that share no node.
+        pieces: usize,
+        /// Closed surfaces around them.
+        parts: usize,
     },
     /// An element of space in a plane mesh, or a filled plane cell in a mesh of space.
     #[error("a {element} has no place in a mesh of {dimension} dimensions")]

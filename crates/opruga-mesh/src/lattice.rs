@@ -128,6 +128,35 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
+impl Mesh<2> {
+    /// A filled quadrilateral through four corners [m], counter-clockwise, of `cells` quadrilaterals along its first and its second side.
+    ///
+    /// A grid of the unit square whose point (s, t) lies at the bilinear mean of the corners. Groups: `bottom` runs from corner 0 to 1, `right` from
+    /// 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::grid`]; [`MeshError::Size`] with the area of a corner where the quadrilateral is not convex and counter-clockwise there.
+    pub fn quadrilateral(corners: [[f64; 2]; 4], cells: [u32; 2]) -> Result<Mesh<2>, MeshError> {
+        for k in 0..4 {
+            finite("corner of the quadrilateral", &corners[k])?;
+            let (before, at, after) = (corners[(k + 3) % 4], corners[k], corners[(k + 1) % 4]);
+            let (u, w) = ([at[0] - before[0], at[1] - before[1]], [after[0] - at[0], after[1] - at[1]]);
+            let area = u[0] * w[1] - u[1] * w[0];
+            if area.is_nan() || area <= 0.0 {
+                let must = "positive at every corner: four corners of a convex quadrilateral, counter-clockwise";
+                return Err(MeshError::Size { what: "area spanned by the sides at a corner", value: area, must });
+            }
+        }
+        let mut mesh = Mesh::grid([0.0; 2], [1.0; 2], cells)?;
+        for position in &mut mesh.positions {
+            let [s, t] = *position;
+            let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t];
+            *position = std::array::from_fn(|axis| (0..4).map(|k| weights[k] * corners[k][axis]).sum());
+        }
+        Ok(mesh)
+    }
+}
+
 /// The points without a last one that repeats the first.
 pub(crate) fn without_repeated_end<const D: usize>(points: &[[f64; D]]) -> &[[f64; D]] {
     match points {

@@ -1,25 +1,13 @@
 //! The inside of a closed surface as a lattice of tetrahedra.
 
 use crate::edges::ascending;
-use crate::geometry::tetrahedron_volume;
-use crate::mesh::positive;
+use crate::lattice_bcc::{Key, Lattice};
 use crate::skin::{Inside, Skin, weights};
-use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// Lattice points by twice their coordinates: corners of cubes are even in all of them, centres of cubes odd.
-type Key = [i32; 3];
-
-/// The most cubes in the box of a surface: each is looked at.
-const MOST_CUBES: f64 = 8_388_608.0;
-
-/// The four tetrahedra between the centres of two cubes that share the face with corners `face`: each has an edge of the face and both centres.
-fn around(centers: [Key; 2], face: [Key; 4]) -> [[Key; 4]; 4] {
-    core::array::from_fn(|k| [centers[0], centers[1], face[k], face[(k + 1) % 4]])
-}
-
 impl Mesh<3> {
-    /// About how many nodes [`Mesh::lattice_filling`] makes of this surface.
+    /// About how many nodes [`Mesh::lattice_filling`] or [`Mesh::tetrahedra_filling`] makes of this surface.
     pub fn lattice_estimate(&self, spacing: f64) -> u64 {
         let mut area = 0.0;
         for facet in &self.facets {
@@ -44,52 +32,31 @@ impl Mesh<3> {
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007), section 3.
     pub fn lattice_filling(&self, spacing: f64) -> Result<Mesh<3>, MeshError> {
-        positive("spacing", spacing)?;
-        let estimate = self.lattice_estimate(spacing);
-        if estimate > MAXIMUM_NODES {
-            return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });
-        }
-        let (low, high) = self.bounds();
-        // A slanted needle has few nodes in a large box.
-        let cubes: f64 = (0..3).map(|d| (high[d] - low[d]) / spacing + 3.0).product();
-        if cubes > MOST_CUBES {
-            let nodes = if cubes < 1e18 { 2 * cubes as u64 } else { u64::MAX };
-            return Err(MeshError::TooManyNodes { nodes, most: 2 * MOST_CUBES as u64 });
-        }
+        let lattice = Lattice::around(self, spacing)?;
         let inside = Inside::of(self)?;
-        // The lattice is centred in the box; coordinates count half cubes.
-        let counts: [i32; 3] = core::array::from_fn(|d| ((high[d] - low[d]) / spacing).ceil() as i32 + 2);
-        let origin: [f64; 3] =
-            core::array::from_fn(|d| 0.5 * (low[d] + high[d]) - 0.5 * f64::from(counts[d]) * spacing);
-        let at = |key: Key| -> [f64; 3] { core::array::from_fn(|d| origin[d] + 0.5 * spacing * f64::from(key[d])) };
 
         // Tetrahedra that hold a point of the skin.
         let mut kept: BTreeMap<[Key; 4], ()> = BTreeMap::new();
         let mut holders: Vec<[Key; 4]> = Vec::with_capacity(self.nodes());
         for position in &self.positions {
-            let holder = holder(position.map(|x| x), &origin, spacing, &at);
+            let holder = holder(*position, &lattice);
             kept.insert(holder, ());
             holders.push(holder);
         }
         // Tetrahedra whose middle is inside.
-        for k in 0..counts[2] {
-            for j in 0..counts[1] {
-                for i in 0..counts[0] {
-                    let center = [2 * i + 1, 2 * j + 1, 2 * k + 1];
-                    for axis in 0..3 {
-                        for tetrahedron in beyond(center, axis, &at) {
-                            let corners = tetrahedron.map(at);
-                            let middle = core::array::from_fn(|d| 0.25 * corners.iter().map(|c| c[d]).sum::<f64>());
-                            if inside.contains(middle) {
-                                kept.insert(tetrahedron, ());
-                            }
-                        }
+        for center in lattice.centers() {
+            for axis in 0..3 {
+                for tetrahedron in lattice.beyond(center, axis) {
+                    let corners = tetrahedron.map(|key| lattice.at(key));
+                    let middle = core::array::from_fn(|d| 0.25 * corners.iter().map(|c| c[d]).sum::<f64>());
+                    if inside.contains(middle) {
+                        kept.insert(tetrahedron, ());
                     }
                 }
             }
         }
         let (keys, mut mesh) = loop {
-            let (keys, mesh) = body(&kept, &at)?;
+            let (keys, mesh) = body(&kept, &lattice)?;
             // Where the steps of the lattice touch along an edge, the tetrahedra around it close the gap.
             let crowded = crowded_edges(&mesh.facets);
             if crowded.is_empty() {
@@ -97,14 +64,14 @@ impl Mesh<3> {
             }
             for edge in crowded {
                 let edge = edge.map(|node| keys[node as usize]);
-                kept.extend(around_edge(edge, &at).into_iter().map(|tetrahedron| (tetrahedron, ())));
+                kept.extend(around_edge(edge, &lattice).into_iter().map(|tetrahedron| (tetrahedron, ())));
             }
         };
         let number = |key: &Key| number(&keys, key);
         let mut skin = Skin { triangles: self.facets.clone(), ..Skin::default() };
         for (position, holder) in self.positions.iter().zip(&holders) {
             skin.carriers.push(holder.map(|key| number(&key)));
-            skin.weights.push(weights(holder.map(at), *position));
+            skin.weights.push(weights(holder.map(|key| lattice.at(key)), *position));
         }
         mesh.skin = Some(skin);
         Ok(mesh)
@@ -129,11 +96,11 @@ impl Mesh<3> {
 }
 
 /// The nodes of tetrahedra in the order of the lattice, z slowest, and the mesh of them.
-fn body(kept: &BTreeMap<[Key; 4], ()>, at: &impl Fn(Key) -> [f64; 3]) -> Result<(Vec<Key>, Mesh<3>), MeshError> {
+fn body(kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> Result<(Vec<Key>, Mesh<3>), MeshError> {
     let mut keys: Vec<Key> = kept.keys().flatten().copied().collect();
     keys.sort_unstable_by_key(|[x, y, z]| (*z, *y, *x));
     keys.dedup();
-    let mut mesh = Mesh::<3> { positions: keys.iter().map(|key| at(*key)).collect(), ..Mesh::default() };
+    let mut mesh = Mesh::<3> { positions: keys.iter().map(|key| lattice.at(*key)).collect(), ..Mesh::default() };
     mesh.cells.tetrahedra = kept.keys().map(|tetrahedron| tetrahedron.map(|key| number(&keys, &key))).collect();
     mesh.facets = mesh.facets_from_cells()?;
     Ok((keys, mesh))
@@ -153,7 +120,7 @@ fn crowded_edges(facets: &[[u32; 3]]) -> Vec<[u32; 2]> {
 }
 
 /// All tetrahedra of the lattice that have both ends of an edge.
-fn around_edge(edge: [Key; 2], at: &impl Fn(Key) -> [f64; 3]) -> Vec<[Key; 4]> {
+fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     let mut found = Vec::new();
     // Centres of cubes are odd; those that matter are at most two steps away.
     let near = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
@@ -161,7 +128,7 @@ fn around_edge(edge: [Key; 2], at: &impl Fn(Key) -> [f64; 3]) -> Vec<[Key; 4]> {
         for y in near(edge[0][1]) {
             for x in near(edge[0][0]) {
                 for axis in 0..3 {
-                    let four = beyond([x, y, z], axis, at);
+                    let four = lattice.beyond([x, y, z], axis);
                     found.extend(
                         four.into_iter().filter(|tetrahedron| edge.iter().all(|key| tetrahedron.contains(key))),
                     );
@@ -172,41 +139,17 @@ fn around_edge(edge: [Key; 2], at: &impl Fn(Key) -> [f64; 3]) -> Vec<[Key; 4]> {
     found
 }
 
-/// The four tetrahedra between a cube and the next along an axis, each of positive volume.
-fn beyond(center: Key, axis: usize, at: &impl Fn(Key) -> [f64; 3]) -> [[Key; 4]; 4] {
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let mut next = center;
-    next[axis] += 2;
-    let corner = |p: i32, q: i32| {
-        let mut key = center;
-        key[axis] += 1;
-        key[u] += p;
-        key[v] += q;
-        key
-    };
-    let face = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
-    around([center, next], face).map(|tetrahedron| {
-        let [a, b, c, d] = tetrahedron.map(at);
-        if tetrahedron_volume(a, b, c, d) < 0.0 {
-            let [p, q, r, s] = tetrahedron;
-            [p, q, s, r]
-        } else {
-            tetrahedron
-        }
-    })
-}
-
 /// The tetrahedron of the lattice that holds a point: of those around the point's cube the one in which its least weight is largest.
-fn holder(point: [f64; 3], origin: &[f64; 3], spacing: f64, at: &impl Fn(Key) -> [f64; 3]) -> [Key; 4] {
-    let cube: [i32; 3] = core::array::from_fn(|d| ((point[d] - origin[d]) / spacing).floor() as i32);
+fn holder(point: [f64; 3], lattice: &Lattice) -> [Key; 4] {
+    let cube: [i32; 3] = core::array::from_fn(|d| ((point[d] - lattice.origin[d]) / lattice.spacing).floor() as i32);
     let center = cube.map(|c| 2 * c + 1);
     let mut best = ([center; 4], f64::NEG_INFINITY);
     for axis in 0..3 {
         let mut before = center;
         before[axis] -= 2;
         for from in [before, center] {
-            for tetrahedron in beyond(from, axis, at) {
-                let least = weights(tetrahedron.map(at), point)
+            for tetrahedron in lattice.beyond(from, axis) {
+                let least = weights(tetrahedron.map(|key| lattice.at(key)), point)
                     .into_iter()
                     .fold(f64::INFINITY, |m, w| if w < m { w } else { m });
                 if least > best.1 {

@@ -10,8 +10,10 @@
 //! | which closed chambers hold gas | [`Mesh::chambers`], [`Mesh::components`], [`signed_volume`], [`Mesh::orient_outward`] |
 //! | where does it bend | [`Mesh::hinges`], [`Mesh::bends`] |
 //! | how much length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
-//! | is it sound | [`Mesh::check`], [`Mesh::validate`] |
+//! | is it sound | [`Mesh::check`], [`Mesh::validate`], [`Mesh::cell_quality`], [`Mesh::cell_measures`] |
 //! | what bounds the cells | [`Mesh::facets_from_cells`], [`Mesh::into_simplices`] |
+//! | what fills a closed surface | [`Mesh::tetrahedra_filling`], [`Mesh::lattice_filling`] |
+//! | cells of second order | [`Mesh::into_quadratic`] |
 //!
 //! Orientation. A plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise seen from outside.
 //! Both make [`signed_volume`] positive. Holes run the other way.
@@ -24,21 +26,26 @@
 mod adjacency;
 mod bending;
 mod boundary;
+mod boundary_shares;
 mod chambers;
 mod check;
 mod edges;
 mod error;
 mod geometry;
 mod lattice;
+mod lattice_bcc;
 mod lattice_filling;
 mod measure;
 mod mesh;
 pub mod outline;
 mod plane;
 mod polygon;
+mod quadratic;
+mod quality;
 mod skin;
 mod soup;
 mod sphere;
+mod stuffing;
 mod surface;
 mod transform;
 
@@ -52,6 +59,9 @@ pub use geometry::signed_volume;
 pub use measure::{Measure, Share};
 pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
 pub use polygon::Polygon;
+pub use quadratic::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES, triangle_parts};
+pub use quality::{CellMeasure, CellQuality};
 pub use skin::Skin;
 pub use soup::{Turned, weld};
 pub use sphere::MAXIMUM_SUBDIVISIONS;
+pub use stuffing::{LARGEST_DIHEDRAL_ANGLE, SMALLEST_DIHEDRAL_ANGLE};

@@ -3,6 +3,7 @@
 use crate::geometry::{
     Point, hexahedron_volume, lift, norm, quadrilateral_area, subtract, tetrahedron_volume, triangle_area,
 };
+use crate::quadratic::{self, TETRAHEDRON_SHARES, TRIANGLE_SHARES};
 use crate::{Element, Mesh, MeshError};
 
 /// How much there is of a body, in the dimension of its own matter.
@@ -31,6 +32,7 @@ pub enum Share {
     /// Every node has the same share.
     Equal,
     /// Each element gives equal parts of its own measure to its nodes: half an edge, a third of a triangle, an eighth of a hexahedron.
+    /// Quadratic cells give to corners and mid-edge nodes what [`TRIANGLE_SHARES`] and [`TETRAHEDRON_SHARES`] say.
     Proportional,
 }
 
@@ -43,7 +45,7 @@ impl<const D: usize> Mesh<D> {
     /// What [`Mesh::validate`] finds; [`MeshError::MixedMeasures`] where elements of different dimension share the mesh.
     pub fn measure(&self) -> Result<Measure, MeshError> {
         let mut total = 0.0;
-        let kind = self.visit_measures(|_, measure| total += measure)?;
+        let kind = self.visit_measures(|_, _, measure| total += measure)?;
         Ok(kind(total))
     }
 
@@ -59,17 +61,26 @@ impl<const D: usize> Mesh<D> {
                 shares.fill(each);
             }
             Share::Proportional => {
-                self.visit_measures(|nodes, measure| {
-                    let part = measure / nodes.len() as f64;
-                    nodes.iter().for_each(|&node| shares[node as usize] += part);
+                self.visit_measures(|element, nodes, measure| {
+                    let mut give = |own: &[f64]| {
+                        nodes.iter().zip(own).for_each(|(&node, share)| shares[node as usize] += share * measure);
+                    };
+                    match element {
+                        Element::QuadraticTriangle => give(&TRIANGLE_SHARES),
+                        Element::QuadraticTetrahedron => give(&TETRAHEDRON_SHARES),
+                        _ => {
+                            let part = measure / nodes.len() as f64;
+                            nodes.iter().for_each(|&node| shares[node as usize] += part);
+                        }
+                    }
                 })?;
             }
         }
         Ok(shares)
     }
 
-    /// Calls `visit(nodes, measure)` for each element that carries matter; returns which measure it is.
-    fn visit_measures(&self, mut visit: impl FnMut(&[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
+    /// Calls `visit(kind, nodes, measure)` for each element that carries matter; returns which measure it is.
+    fn visit_measures(&self, mut visit: impl FnMut(Element, &[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
         self.validate()?;
 
         // Matter is in the elements of highest dimension; those of lower dimension are a boundary, or do not belong.
@@ -77,8 +88,8 @@ impl<const D: usize> Mesh<D> {
             Element::Facet if self.cells.is_empty() => Some(D - 1),
             Element::Facet | Element::SheetQuadrilateral | Element::Edge | Element::Group => None,
             Element::Wire => Some(1),
-            Element::Sheet | Element::Triangle | Element::Quadrilateral => Some(2),
-            Element::Tetrahedron | Element::Hexahedron => Some(3),
+            Element::Sheet | Element::Triangle | Element::Quadrilateral | Element::QuadraticTriangle => Some(2),
+            Element::Tetrahedron | Element::Hexahedron | Element::QuadraticTetrahedron => Some(3),
         };
         let mut known: Option<(Element, usize)> = None;
         for (element, _, nodes) in self.elements() {
@@ -90,7 +101,7 @@ impl<const D: usize> Mesh<D> {
                 Some(_) => {}
                 None => known = Some((element, own)),
             }
-            visit(nodes, self.size_of(nodes, element).abs());
+            visit(element, nodes, self.size_of(nodes, element).abs());
         }
         Ok(match known {
             Some((_, 3)) => Measure::Volume,
@@ -101,13 +112,15 @@ impl<const D: usize> Mesh<D> {
 
     /// Length, area or volume of one element; signed for filled cells, negative where they are inverted.
     pub(crate) fn size_of(&self, nodes: &[u32], element: Element) -> f64 {
-        let mut corners: [Point; 8] = [[0.0; 3]; 8];
+        let mut corners: [Point; 10] = [[0.0; 3]; 10];
         for (corner, &node) in corners.iter_mut().zip(nodes) {
             *corner = lift(&self.positions[node as usize]);
         }
-        let [a, b, c, d, ..] = corners;
+        let [a, b, c, d, e, f, g, h, ..] = corners;
         match element {
-            Element::Hexahedron => hexahedron_volume(&corners),
+            Element::QuadraticTetrahedron => quadratic::tetrahedron_volume_of(&corners),
+            Element::QuadraticTriangle => quadratic::triangle_area(&[a, b, c, d, e, f]),
+            Element::Hexahedron => hexahedron_volume(&[a, b, c, d, e, f, g, h]),
             Element::Tetrahedron => tetrahedron_volume(a, b, c, d),
             Element::Quadrilateral => quadrilateral_area(&[a, b, c, d]),
             Element::Triangle => crate::geometry::area_vector(a, b, c)[2],

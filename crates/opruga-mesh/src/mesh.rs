@@ -18,9 +18,22 @@ pub const MAXIMUM_NODES: u64 = 1 << 25;
 ///                                  \ | /            |/     |/       +---x
 ///                                   \|/             0------1
 ///                                    1
+///
+///  quadratic triangle          quadratic tetrahedron
+///        2                         3
+///       / \                       /|\          node  4  5  6  7  8  9
+///      5   4                     7 | 9         of    0  1  2  0  1  2
+///     /     \                   /  8  \        and   1  2  0  3  3  3
+///    0---3---1                 0--6|---2
+///                               \  |  /        corners first, then the nodes in the middle of edges
+///                                4 | 5
+///                                 \|/
+///                                  1
 /// ```
 /// Triangles and quadrilaterals are counter-clockwise; a tetrahedron has (X₁−X₀)·((X₂−X₀)×(X₃−X₀)) > 0; a hexahedron has its nodes 0 1 2 3
-/// counter-clockwise seen from 4 5 6 7, which lie above them.
+/// counter-clockwise seen from 4 5 6 7, which lie above them. The corners of quadratic cells run as those of linear ones; their sides may be curved.
+///
+/// Cells are counted kind by kind, in the order of the fields below.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Cells {
     /// Triangles of the plane, 3 nodes each.
@@ -31,6 +44,10 @@ pub struct Cells {
     pub tetrahedra: Vec<[u32; 4]>,
     /// Hexahedra of space, 8 nodes each.
     pub hexahedra: Vec<[u32; 8]>,
+    /// Triangles of second order in the plane: 3 corners, then the nodes between corners 0–1, 1–2, 2–0.
+    pub quadratic_triangles: Vec<[u32; 6]>,
+    /// Tetrahedra of second order in space: 4 corners, then the nodes between corners 0–1, 1–2, 2–0, 0–3, 1–3, 2–3.
+    pub quadratic_tetrahedra: Vec<[u32; 10]>,
 }
 
 impl Cells {
@@ -41,7 +58,30 @@ impl Cells {
 
     /// Number of cells of all kinds.
     pub fn len(&self) -> usize {
-        self.triangles.len() + self.quadrilaterals.len() + self.tetrahedra.len() + self.hexahedra.len()
+        self.triangles.len()
+            + self.quadrilaterals.len()
+            + self.tetrahedra.len()
+            + self.hexahedra.len()
+            + self.quadratic_triangles.len()
+            + self.quadratic_tetrahedra.len()
+    }
+
+    /// All cells in the order in which they are counted, as (kind, index among its kind, nodes).
+    pub fn iter(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
+        rows(Element::Triangle, &self.triangles)
+            .chain(rows(Element::Quadrilateral, &self.quadrilaterals))
+            .chain(rows(Element::Tetrahedron, &self.tetrahedra))
+            .chain(rows(Element::Hexahedron, &self.hexahedra))
+            .chain(rows(Element::QuadraticTriangle, &self.quadratic_triangles))
+            .chain(rows(Element::QuadraticTetrahedron, &self.quadratic_tetrahedra))
+    }
+
+    /// The nodes of all cells, to be numbered anew.
+    pub(crate) fn nodes_mut(&mut self) -> impl Iterator<Item = &mut u32> {
+        let straight = self.triangles.iter_mut().flatten().chain(self.quadrilaterals.iter_mut().flatten());
+        let solid = self.tetrahedra.iter_mut().flatten().chain(self.hexahedra.iter_mut().flatten());
+        let quadratic = self.quadratic_triangles.iter_mut().flatten();
+        straight.chain(solid).chain(quadratic).chain(self.quadratic_tetrahedra.iter_mut().flatten())
     }
 }
 
@@ -62,6 +102,10 @@ pub struct Mesh<const D: usize> {
     pub cells: Cells,
     /// Named node sets, ascending (`left`, `right`, `bottom`, `top`, `back`, `front` for grids).
     pub groups: BTreeMap<String, Vec<u32>>,
+    /// Named sets of cells, ascending; cells are counted in the order of [`Cells::iter`].
+    pub cell_groups: BTreeMap<String, Vec<u32>>,
+    /// Named numbers, one per cell in the order of [`Cells::iter`], such as the parameters of a material; NaN for a cell that has none.
+    pub cell_values: BTreeMap<String, Vec<f64>>,
     /// What is drawn instead of the boundary, in space only.
     pub skin: Option<Skin>,
 }
@@ -83,15 +127,7 @@ impl<const D: usize> Mesh<D> {
             .chain(rows(Element::Wire, &self.wires))
             .chain(rows(Element::Sheet, &self.sheets))
             .chain(rows(Element::SheetQuadrilateral, &self.sheet_quadrilaterals))
-            .chain(self.cell_elements())
-    }
-
-    /// All filled cells as (kind, index, nodes).
-    pub(crate) fn cell_elements(&self) -> impl Iterator<Item = (Element, u32, &[u32])> {
-        rows(Element::Triangle, &self.cells.triangles)
-            .chain(rows(Element::Quadrilateral, &self.cells.quadrilaterals))
-            .chain(rows(Element::Tetrahedron, &self.cells.tetrahedra))
-            .chain(rows(Element::Hexahedron, &self.cells.hexahedra))
+            .chain(self.cells.iter())
     }
 
     /// Facets as triangles; empty in the plane.
@@ -105,8 +141,8 @@ impl<const D: usize> Mesh<D> {
     /// Checks that every index names a node and no element names a node twice, so that no reader of the mesh can go astray.
     ///
     /// # Errors
-    /// [`MeshError::TooManyNodes`], [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::WrongDimension`] or
-    /// [`MeshError::SheetPairing`], whichever is met first. [`Mesh::check`] lists every problem instead.
+    /// [`MeshError::TooManyNodes`], [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::WrongDimension`],
+    /// [`MeshError::SheetPairing`], [`MeshError::CellOutOfRange`] or [`MeshError::CellValues`], whichever is met first. [`Mesh::check`] lists every problem instead.
     pub fn validate(&self) -> Result<(), MeshError> {
         const { assert!(D == 2 || D == 3, "bodies live in the plane or in space") }
         limit_nodes(self.positions.len() as u64)?;
@@ -132,6 +168,17 @@ impl<const D: usize> Mesh<D> {
             if let Some(&node) = list.iter().find(|&&node| node >= nodes) {
                 return Err(MeshError::IndexOutOfRange { element: Element::Group, index: index as u32, node, nodes });
             }
+        }
+
+        // Groups and values of cells.
+        let cells = self.cells.len();
+        for (name, list) in &self.cell_groups {
+            if let Some(&cell) = list.iter().find(|&&cell| cell as usize >= cells) {
+                return Err(MeshError::CellOutOfRange { group: name.clone(), cell, cells });
+            }
+        }
+        if let Some((name, values)) = self.cell_values.iter().find(|(_, values)| values.len() != cells) {
+            return Err(MeshError::CellValues { name: name.clone(), values: values.len(), cells });
         }
 
         // Sheet quadrilaterals: each the union of its two triangles.
@@ -165,8 +212,9 @@ impl<const D: usize> Mesh<D> {
 fn belongs(element: Element, dimension: usize) -> bool {
     match element {
         Element::Facet | Element::Wire | Element::Edge | Element::Group => true,
-        Element::Triangle | Element::Quadrilateral => dimension == 2,
-        Element::Sheet | Element::SheetQuadrilateral | Element::Tetrahedron | Element::Hexahedron => dimension == 3,
+        Element::Triangle | Element::Quadrilateral | Element::QuadraticTriangle => dimension == 2,
+        Element::Sheet | Element::SheetQuadrilateral => dimension == 3,
+        Element::Tetrahedron | Element::Hexahedron | Element::QuadraticTetrahedron => dimension == 3,
     }
 }
 

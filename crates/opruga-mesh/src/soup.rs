@@ -100,6 +100,42 @@ pub struct Turned {
 /// A component that encloses less than this part of its extent cubed is flat.
 const FLAT: f64 = 1e-12;
 
+impl<const D: usize> Mesh<D> {
+    /// Leaves out nodes that no element names; returns how many. Groups lose them too. The carriers of a skin are nodes of elements.
+    pub fn drop_unreferenced(&mut self) -> usize {
+        let mut used = vec![false; self.nodes()];
+        for (_, _, nodes) in self.elements() {
+            nodes.iter().for_each(|node| used[*node as usize] = true);
+        }
+        let dropped = used.iter().filter(|u| !**u).count();
+        if dropped == 0 {
+            return 0;
+        }
+        let mut numbers = vec![u32::MAX; used.len()];
+        let mut kept = 0;
+        for node in 0..used.len() {
+            if used[node] {
+                numbers[node] = kept;
+                self.positions[kept as usize] = self.positions[node];
+                kept += 1;
+            }
+        }
+        self.positions.truncate(kept as usize);
+        let renumber = |node: &mut u32| *node = numbers[*node as usize];
+        self.facets.iter_mut().flatten().for_each(renumber);
+        self.wires.iter_mut().flatten().for_each(renumber);
+        self.sheets.iter_mut().flatten().for_each(renumber);
+        self.sheet_quadrilaterals.iter_mut().flatten().for_each(renumber);
+        self.cells.nodes_mut().for_each(renumber);
+        self.skin.iter_mut().flat_map(|skin| &mut skin.carriers).flatten().for_each(renumber);
+        for nodes in self.groups.values_mut() {
+            nodes.retain(|node| used[*node as usize]);
+            nodes.iter_mut().for_each(renumber);
+        }
+        dropped
+    }
+}
+
 impl Mesh<3> {
     /// Turns the triangles of every closed component outward, those of cavities (an odd number of components around them) inward.
     ///
@@ -231,40 +267,6 @@ impl Mesh<3> {
         }
         keys.sort_unstable();
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
-    }
-
-    /// Leaves out nodes that no element names; returns how many. Groups lose them too.
-    pub fn drop_unreferenced(&mut self) -> usize {
-        let mut used = vec![false; self.nodes()];
-        for (_, _, nodes) in self.elements() {
-            nodes.iter().for_each(|node| used[*node as usize] = true);
-        }
-        let dropped = used.iter().filter(|u| !**u).count();
-        if dropped == 0 {
-            return 0;
-        }
-        let mut numbers = vec![u32::MAX; used.len()];
-        let mut kept = 0;
-        for node in 0..used.len() {
-            if used[node] {
-                numbers[node] = kept;
-                self.positions[kept as usize] = self.positions[node];
-                kept += 1;
-            }
-        }
-        self.positions.truncate(kept as usize);
-        let renumber = |node: &mut u32| *node = numbers[*node as usize];
-        self.facets.iter_mut().flatten().for_each(renumber);
-        self.wires.iter_mut().flatten().for_each(renumber);
-        self.sheets.iter_mut().flatten().for_each(renumber);
-        self.sheet_quadrilaterals.iter_mut().flatten().for_each(renumber);
-        self.cells.tetrahedra.iter_mut().flatten().for_each(renumber);
-        self.cells.hexahedra.iter_mut().flatten().for_each(renumber);
-        for nodes in self.groups.values_mut() {
-            nodes.retain(|node| used[*node as usize]);
-            nodes.iter_mut().for_each(renumber);
-        }
-        dropped
     }
 
     /// Volume that the facets enclose [m³], positive for outward ones.

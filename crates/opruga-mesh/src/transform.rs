@@ -2,7 +2,7 @@
 
 use crate::geometry::{cross, dot, lift, norm};
 use crate::mesh::finite;
-use crate::{Mesh, MeshError};
+use crate::{Cells, Element, Mesh, MeshError};
 
 impl<const D: usize> Mesh<D> {
     /// Moves every node by the same vector [m].
@@ -80,11 +80,35 @@ impl<const D: usize> Mesh<D> {
         self.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
         self.sheets.iter_mut().for_each(|triangle| triangle.swap(0, 1));
         self.sheet_quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
-        self.cells.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
-        self.cells.quadrilaterals.iter_mut().for_each(|quadrilateral| quadrilateral.swap(1, 3));
-        self.cells.tetrahedra.iter_mut().for_each(|cell| cell.swap(0, 1));
-        self.cells.hexahedra.iter_mut().for_each(|cell| cell.rotate_left(4));
+        self.cells.turn_all();
         self.skin.iter_mut().flat_map(|skin| &mut skin.triangles).for_each(|triangle| triangle.swap(0, 1));
+    }
+}
+
+impl Cells {
+    /// Turns a cell round: two corners change places, and with them the nodes between.
+    pub(crate) fn turn(&mut self, element: Element, index: usize) {
+        match element {
+            Element::Triangle => self.triangles[index].swap(0, 1),
+            Element::Quadrilateral => self.quadrilaterals[index].swap(1, 3),
+            Element::Tetrahedron => self.tetrahedra[index].swap(0, 1),
+            Element::Hexahedron => self.hexahedra[index].rotate_left(4),
+            Element::QuadraticTriangle => {
+                self.quadratic_triangles[index].swap(0, 1);
+                self.quadratic_triangles[index].swap(4, 5);
+            }
+            Element::QuadraticTetrahedron => {
+                self.quadratic_tetrahedra[index].swap(0, 1);
+                self.quadratic_tetrahedra[index].swap(5, 6);
+                self.quadratic_tetrahedra[index].swap(7, 8);
+            }
+            _ => {}
+        }
+    }
+
+    fn turn_all(&mut self) {
+        let all: Vec<(Element, u32)> = self.iter().map(|(element, index, _)| (element, index)).collect();
+        all.into_iter().for_each(|(element, index)| self.turn(element, index as usize));
     }
 }
 

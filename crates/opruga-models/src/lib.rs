@@ -3,6 +3,7 @@
 pub mod as_published;
 pub mod bending;
 pub mod drag;
+pub mod fem;
 pub mod mass_spring;
 pub mod pressure;
 
@@ -21,12 +22,17 @@ pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
 
 // Not generic: the models are compiled once, with this crate, and not again with every crate that asks for them.
 fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
-    list()
+    let mut models = list();
+    models.push(Box::new(fem::FemModel));
+    models
 }
 fn of_space() -> Vec<Box<dyn Model<3>>> {
-    list()
+    let mut models = list();
+    models.push(Box::new(fem::FemModel));
+    models
 }
 
+// Those that are one source for both dimensions.
 fn list<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     vec![
         Box::new(mass_spring::MassSpring),

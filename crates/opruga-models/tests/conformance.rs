@@ -177,6 +177,8 @@ enum Fault {
     Skew,
     Vector,
     Lift,
+    /// A damping matrix that is not the derivative.
+    Brake,
 }
 
 #[derive(Debug)]
@@ -220,6 +222,12 @@ impl Potential<2> for FaultySprings {
     fn energy(&self, simd: Simd, view: &View<2>, scratch: &[f64]) -> [f64; 8] {
         self.2.energy(simd, view, scratch)
     }
+    fn damping_matrix(&self, view: &View<2>, scratch: &[f64], sink: &mut dyn Sink<2>) {
+        self.2.damping_matrix(view, scratch, sink);
+        if self.0 == Fault::Brake {
+            sink.block(3, 3, [[1e-4, 0.0], [0.0, 0.0]]);
+        }
+    }
     fn hessian(&self, view: &View<2>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<2>) {
         self.2.hessian(view, scratch, keep, sink);
         if self.0 == Fault::Skew {
@@ -237,7 +245,8 @@ fn faults_are_found() {
         (Fault::Batch, vec!["batch"]),
         (Fault::Push, vec!["net force"]),
         (Fault::Skew, vec!["hessian", "symmetry", "infinitesimal rotation"]),
-        (Fault::Lift, vec!["rigid motion", "power"]),
+        (Fault::Lift, vec!["rigid motion", "power", "damping matrix"]),
+        (Fault::Brake, vec!["damping matrix"]),
     ];
     if Simd::available().len() > 1 {
         faults.push((Fault::Vector, vec!["lanes"]));

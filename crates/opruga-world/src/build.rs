@@ -293,14 +293,9 @@ impl<const D: usize> Builder<'_, D> {
                     }
                 }
                 LoadKind::Traction(traction) => {
-                    for facet in body.mesh.facets.iter().filter(whole) {
-                        let share = facet_measure(facet, &body.mesh.positions) * depth / D as f64;
-                        for node in facet {
-                            let entry = entries.entry(layout.place(*node as usize, lane)).or_insert([0.0; D]);
-                            for d in 0..D {
-                                entry[d] += traction[d] * share;
-                            }
-                        }
+                    for (node, share) in body.mesh.boundary_shares(&nodes) {
+                        let force = traction.map(|t| t * share * depth);
+                        entries.insert(layout.place(node as usize, lane), force);
                     }
                 }
                 LoadKind::Pressure(pressure) => {
@@ -337,20 +332,6 @@ fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
         path: format!("load on `{}`", body.name),
         message: "the selected nodes hold no whole facet of the boundary".into(),
     }
-}
-
-/// Length of an edge or area of a triangle at rest.
-fn facet_measure<const D: usize>(facet: &[u32; D], positions: &[[f64; D]]) -> f64 {
-    let at = |k: usize| positions[facet[k] as usize];
-    let edge = |a: [f64; D], b: [f64; D]| -> [f64; D] { core::array::from_fn(|d| b[d] - a[d]) };
-    let square = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>();
-    let u = edge(at(0), at(1));
-    if D == 2 {
-        return square(u).sqrt();
-    }
-    let w = edge(at(0), at(D - 1));
-    let dot: f64 = u.iter().zip(&w).map(|(a, b)| a * b).sum();
-    0.5 * (square(u) * square(w) - dot * dot).sqrt()
 }
 
 /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).

@@ -1,7 +1,7 @@
 //! Forces from outside: loads, pushes, the pull of a pointer, a user's own law.
 
 use opruga_core::error::StepError;
-use opruga_core::potential::{Account, Potential, Views};
+use opruga_core::potential::{Account, Definiteness, Potential, Sink, Views};
 use opruga_core::state::{Layout, View};
 use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
@@ -9,7 +9,12 @@ use opruga_math::{Simd, WIDTH};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-const USER: Views = Views { energy: false, hessian: false, damping: false };
+const USER: Views = Views { energy: false, hessian: true, damping: false };
+
+/// A multiple of the unit matrix.
+fn isotropic<const D: usize>(value: f64) -> [[f64; D]; D] {
+    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
+}
 
 /// Adds a force at a place and enters its power.
 fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, place: usize, force: [f64; D]) {
@@ -115,6 +120,42 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
             }
         }
     }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        if keep == Definiteness::Exact {
+            self.add_hessian(view, sink);
+        }
+    }
+}
+
+/// The symmetric part of −∂F/∂x of a pressure on facets: exact for a closed surface, whose pressure has a potential.
+impl<const D: usize> FollowerPressure<D> {
+    fn add_hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
+        let strength = self.pressure * factor(&self.curve, view.time) / D as f64;
+        for facet in &self.facets {
+            // ∂A/∂x of every corner, A the area vector: F = −strength·A on every corner.
+            for (n, &moved) in facet.iter().enumerate() {
+                let mut slope = [[0.0; D]; D];
+                if D == 2 {
+                    let sign = if n == 0 { -1.0 } else { 1.0 };
+                    (slope[0][1], slope[1][0]) = (sign, -sign);
+                } else {
+                    let (p, q) = (view.position(facet[(n + 1) % D]), view.position(facet[(n + 2) % D]));
+                    for d in 0..3 {
+                        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                        // A = ½ x × (p − q) + …
+                        slope[d][e] = 0.5 * (p[f] - q[f]);
+                        slope[d][f] = -0.5 * (p[e] - q[e]);
+                    }
+                }
+                for &pushed in facet {
+                    let block: [[f64; D]; D] =
+                        core::array::from_fn(|i| core::array::from_fn(|j| 0.5 * strength * slope[i][j]));
+                    sink.block(pushed, moved, block);
+                    sink.block(moved, pushed, core::array::from_fn(|i| core::array::from_fn(|j| block[j][i])));
+                }
+            }
+        }
+    }
 }
 
 /// A spring, critically damped on the held mass, from a moving pointer to a node or to a point of a facet.
@@ -194,6 +235,25 @@ impl<const D: usize> Potential<D> for Pull<D> {
             }
         }
     }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], _keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.add_spring(view, self.stiffness, sink);
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        self.add_spring(view, self.damping, sink);
+    }
+}
+
+impl<const D: usize> Pull<D> {
+    /// A spring or damper of some strength at the held point; none where the force is at its limit.
+    fn add_spring(&self, view: &View<D>, strength: f64, sink: &mut dyn Sink<D>) {
+        let (_, _, _, limited) = self.force(view);
+        let strength = if limited { 0.0 } else { strength };
+        for (a, of_a) in &self.held {
+            for (b, of_b) in &self.held {
+                sink.block(*a, *b, isotropic(strength * of_a * of_b));
+            }
+        }
+    }
 }
 
 /// A user's law: the force on a node from its number, position, velocity and the time.
@@ -217,7 +277,7 @@ impl<const D: usize> Potential<D> for UserForce<D> {
         "user force"
     }
     fn views(&self) -> Views {
-        USER
+        Views { damping: true, ..USER }
     }
     fn account(&self) -> Account {
         Account::User
@@ -232,6 +292,39 @@ impl<const D: usize> Potential<D> for UserForce<D> {
                 let force = (self.law)(node as u32, view.position(place), view.velocity(place), view.time);
                 push(tile, view, place, force);
             }
+        }
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], _keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.add_slope(view, [1.0, 0.0], sink);
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        self.add_slope(view, [0.0, 1.0], sink);
+    }
+}
+
+impl<const D: usize> UserForce<D> {
+    /// The symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences: the law is a black box.
+    fn add_slope(&self, view: &View<D>, [of_x, of_v]: [f64; 2], sink: &mut dyn Sink<D>) {
+        const STEP: f64 = 6e-6;
+        for node in 0..view.nodes {
+            let place = self.layout.place(node, self.body);
+            let (x, v) = (view.position(place), view.velocity(place));
+            let mut slope = [[0.0; D]; D];
+            for j in 0..D {
+                let step = STEP * (1.0 + of_x * x[j].abs() + of_v * v[j].abs());
+                let at = |sign: f64| {
+                    let (mut x, mut v) = (x, v);
+                    x[j] += sign * of_x * step;
+                    v[j] += sign * of_v * step;
+                    (self.law)(node as u32, x, v, view.time)
+                };
+                let (ahead, behind) = (at(1.0), at(-1.0));
+                for i in 0..D {
+                    slope[i][j] = (behind[i] - ahead[i]) / (2.0 * step);
+                }
+            }
+            let block = core::array::from_fn(|i| core::array::from_fn(|j| 0.5 * (slope[i][j] + slope[j][i])));
+            sink.block(place, place, block);
         }
     }
 }

@@ -5,8 +5,9 @@ use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
-use opruga_core::potential::{Account, Count};
+use opruga_core::potential::{Account, CellState, Count};
 use opruga_core::stability::Stability;
+use opruga_core::system::Stage;
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -92,6 +93,21 @@ impl<const D: usize> World<D> {
         let (island, lane) = self.place[body];
         let time = self.time();
         self.islands[island].readings(lane, time)
+    }
+    /// Stress and volume ratio of the cells of a body of finite elements, in the order of its cells.
+    ///
+    /// A body that is not there, or has none, says nothing.
+    pub fn cell_states(&self, body: usize) -> Vec<CellState> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        let view = system.view(Stage::Current, self.time());
+        let mut out: Vec<CellState> =
+            system.members.iter().flat_map(|member| member.potential.cell_states(&view, lane)).collect();
+        out.sort_by_key(|state| state.cell);
+        out
     }
     /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
     pub fn rest_volume(&self, body: usize) -> f64 {

@@ -3,6 +3,7 @@
 mod from_files;
 
 pub use from_files::is_from_file;
+use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
@@ -116,6 +117,23 @@ static GRID: Spec = Spec {
     ],
 };
 
+static QUADRILATERAL: Spec = Spec {
+    kind: "quadrilateral",
+    summary: "a filled quadrilateral of cells between four corners",
+    documentation: "A grid stretched over a convex quadrilateral. Node (i, j) has number i + (n+1)·j. Groups: bottom from corner 0 to 1, right from 1 to 2, top from 3 to 2, left from 0 to 3.",
+    dimensions: &[2],
+    fields: &[
+        Field::new("corners", Allowed::Points, "m", Default::Required, "Its four corners, counter-clockwise."),
+        Field::new(
+            "cells",
+            Allowed::Integers,
+            "",
+            Default::Required,
+            "How many cells along the side from corner 0 to 1, and along that from 1 to 2.",
+        ),
+    ],
+};
+
 static SHEET: Spec = Spec {
     kind: "sheet",
     summary: "an open flat surface: cloth",
@@ -138,6 +156,8 @@ static BOX: Spec = Spec {
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
         CORNER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
@@ -156,6 +176,8 @@ static ICOSPHERE: Spec = Spec {
             "How often each face is cut in four.",
         ),
         CENTER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
@@ -176,18 +198,55 @@ static TORUS: Spec = Spec {
         Field::new("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
         Field::new("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
         CENTER,
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
     ],
 };
 
 /// All shapes.
 pub fn all() -> Vec<&'static Spec> {
-    let made: [&'static Spec; 11] =
-        [&RING, &RINGS, &REGULAR_POLYGON, &POLYGON, &LINE, &POLYLINE, &GRID, &SHEET, &BOX, &ICOSPHERE, &TORUS];
+    let made: [&'static Spec; 12] = [
+        &RING,
+        &RINGS,
+        &REGULAR_POLYGON,
+        &POLYGON,
+        &LINE,
+        &POLYLINE,
+        &GRID,
+        &QUADRILATERAL,
+        &SHEET,
+        &BOX,
+        &ICOSPHERE,
+        &TORUS,
+    ];
     made.into_iter().chain(from_files::all()).collect()
 }
 
 /// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
 pub fn node_count(shape: &Values, dimension: usize) -> u64 {
+    match (shape.text("filling"), shape.number("spacing")) {
+        (Some("lattice" | "tetrahedra"), Some(spacing)) => filling_estimate(shape, spacing),
+        _ => surface_node_count(shape, dimension),
+    }
+}
+
+/// About how many nodes a filling of a generated surface has: two in every cube of the lattice, and a layer about the surface.
+fn filling_estimate(shape: &Values, spacing: f64) -> u64 {
+    let pi = core::f64::consts::PI;
+    let (radius, tube) = (shape.number("radius").unwrap_or(0.0), shape.number("tube_radius").unwrap_or(0.0));
+    let (volume, area) = match shape.kind() {
+        "icosphere" => (4.0 / 3.0 * pi * radius * radius * radius, 4.0 * pi * radius * radius),
+        "torus" => (2.0 * pi * pi * radius * tube * tube, 4.0 * pi * pi * radius * tube),
+        _ => {
+            let [a, b, c]: [f64; 3] = shape.vector("size");
+            (a * b * c, 2.0 * (a * b + b * c + c * a))
+        }
+    };
+    let nodes = 2.0 * volume.abs() / (spacing * spacing * spacing) + 2.0 * area.abs() / (spacing * spacing);
+    if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+}
+
+fn surface_node_count(shape: &Values, dimension: usize) -> u64 {
     let whole = |name: &str| shape.integer(name).and_then(|n| u64::try_from(n).ok()).unwrap_or(0);
     let product = |cells: &[u32], more: u64| cells.iter().fold(1u64, |n, c| n.saturating_mul(u64::from(*c) + more));
     match shape.kind() {
@@ -196,7 +255,9 @@ pub fn node_count(shape: &Values, dimension: usize) -> u64 {
         "regular_polygon" => whole("sides").saturating_mul(whole("vertices_per_side")),
         "polygon" | "polyline" => shape.rows("points").len() as u64,
         "line" => whole("segments").saturating_add(1),
-        "grid" | "sheet" => product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1),
+        "grid" | "quadrilateral" | "sheet" => {
+            product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1)
+        }
         "box" => {
             let n = |a: usize| shape.integers("cells").get(a).map_or(0, |c| u64::from(*c));
             let pair = |a: usize, b: usize| n(a).saturating_mul(n(b));
@@ -300,6 +361,16 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
             shape.vector("center"),
             start,
         )?,
+        "quadrilateral" => {
+            let given = points(shape.rows("corners"));
+            let corners = <[[f64; 2]; 4]>::try_from(given).map_err(|given| MeshError::Count {
+                what: "number of corners",
+                value: given.len() as u64,
+                least: 4,
+                most: 4,
+            })?;
+            Mesh::quadrilateral(corners, cells(shape)?)?
+        }
         "polygon" => {
             let polygon = Mesh::polygon(&points(shape.rows("points")))?;
             flipped = polygon.flipped;
@@ -324,8 +395,54 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
         }
         _ => either(shape)?,
     };
+    if let Some(filling) = filling(shape)? {
+        mesh = filling.of(&mesh)?;
+    }
     place(&mut mesh, transform)?;
     Ok(Made { mesh, flipped: false })
+}
+
+/// What fills a closed surface: how, and with cubes of which side [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filling {
+    /// Equal tetrahedra that reach a little beyond the surface and carry it as a skin.
+    Lattice(f64),
+    /// Tetrahedra whose boundary follows the surface.
+    Tetrahedra(f64),
+}
+
+impl Filling {
+    /// The filled body.
+    ///
+    /// # Errors
+    /// What [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`] refuse.
+    pub fn of(self, surface: &Mesh<3>) -> Result<Mesh<3>, MeshError> {
+        match self {
+            Filling::Lattice(spacing) => surface.lattice_filling(spacing),
+            Filling::Tetrahedra(spacing) => surface.tetrahedra_filling(spacing),
+        }
+    }
+
+    /// Side of the cubes [m].
+    pub fn spacing(self) -> f64 {
+        match self {
+            Filling::Lattice(spacing) | Filling::Tetrahedra(spacing) => spacing,
+        }
+    }
+}
+
+/// The filling that a shape in space asks for.
+///
+/// # Errors
+/// [`MeshError::Missing`] for a filling without `spacing`.
+pub fn filling(shape: &Values) -> Result<Option<Filling>, MeshError> {
+    let make = match shape.text("filling") {
+        Some("lattice") => Filling::Lattice,
+        Some("tetrahedra") => Filling::Tetrahedra,
+        _ => return Ok(None),
+    };
+    let why = "the side of the cubes that the filling is made of [m]";
+    shape.number("spacing").map(|spacing| Some(make(spacing))).ok_or(MeshError::Missing { what: "spacing", why })
 }
 
 /// The shapes of both dimensions.

@@ -31,6 +31,9 @@ scenes![
     "country",
     "word",
     "emoji",
+    "cantilever",
+    "cooks-membrane",
+    "jelly",
 ];
 
 macro_rules! shapes {

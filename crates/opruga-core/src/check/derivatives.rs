@@ -23,10 +23,18 @@ impl<const D: usize> Assembled<D> {
             Layout::Batch => None,
         }
     }
-    pub(super) fn of(case: &Case<D>, keep: Definiteness) -> Vec<f64> {
+    fn empty(case: &Case<D>) -> Assembled<D> {
         let size = case.nodes * D;
-        let mut sink = Assembled::<D> { size, layout: case.layout, entries: vec![0.0; size * size] };
+        Assembled::<D> { size, layout: case.layout, entries: vec![0.0; size * size] }
+    }
+    pub(super) fn of(case: &Case<D>, keep: Definiteness) -> Vec<f64> {
+        let mut sink = Assembled::empty(case);
         case.potential.hessian(&case.view(), &case.scratch, keep, &mut sink);
+        sink.entries
+    }
+    pub(super) fn of_damping(case: &Case<D>) -> Vec<f64> {
+        let mut sink = Assembled::empty(case);
+        case.potential.damping_matrix(&case.view(), &case.scratch, &mut sink);
         sink.entries
     }
 }
@@ -164,6 +172,42 @@ impl<const D: usize> Suite<'_, D> {
 
         let negative = scale > 0.0 && !is_positive(&clamped, size, 1e-9 * largest(&clamped) + 1e-300);
         add("clamped", if negative { 1.0 } else { 0.0 }, 0.0);
+        Ok(())
+    }
+
+    pub(super) fn damping_matrix(
+        &self,
+        potential: &dyn Potential<D>,
+        add: &mut dyn FnMut(&'static str, f64, f64),
+    ) -> Answer<()> {
+        let best = Simd::best();
+        let mut case = self.case(potential, &self.bodies[0]);
+        let size = case.nodes * D;
+        let h = largest(case.v.0.iter().flat_map(|column| column.iter()));
+        let mut expected = vec![0.0; size * size];
+        for node in 0..case.nodes {
+            for d in 0..D {
+                let at = case.v.0[d][node];
+                for (shift, weight) in [(h, -1.0), (-h, 1.0)] {
+                    case.v.0[d][node] = at + shift;
+                    let (force, _) = case.plain(best)?;
+                    for (row, f) in force.iter().flatten().enumerate() {
+                        expected[row * size + node * D + d] += weight * f / (2.0 * h);
+                    }
+                }
+                case.v.0[d][node] = at;
+            }
+        }
+        case.prepare(best)?;
+        let matrix = Assembled::of_damping(&case);
+        // Forces at rest cancel in the differences: their rounding counts.
+        let rest = 1e-8 * largest(case.plain(best)?.0.iter().flatten()) / h;
+        add("damping matrix", difference(&expected, &matrix, rest), 1e-7);
+
+        let all = self.build(None)?;
+        let mut eight = Case::new(&*all, Layout::Batch, &self.bodies.iter().collect::<Vec<_>>(), self.options.time);
+        eight.prepare(best)?;
+        add("damping matrix", difference(&Assembled::of_damping(&eight), &matrix, 1e-300), 1e-12);
         Ok(())
     }
 }

@@ -19,6 +19,7 @@
 //! | net force, net torque | Σ F = 0, Σ x × F = 0, damping included |
 //! | infinitesimal rotation | H Ωx = Ω ∇U for skew Ω, also under load |
 //! | rigid motion | no damping force where v = v₀ + ω × x |
+//! | damping matrix | −∂F/∂v with central differences of the force in the velocities |
 //! | power | what the model says that damping takes is −F·v of damping and not negative |
 //! | coincident | all nodes in one point: energy and force are finite |
 //!
@@ -224,6 +225,9 @@ impl<const D: usize> Suite<'_, D> {
         }
         if views.damping && potential.account() == crate::potential::Account::Elastic {
             self.dissipation(random, &*potential, &mut add)?;
+        }
+        if views.damping && views.hessian && self.options.derivatives {
+            self.damping_matrix(&*potential, &mut add)?;
         }
         if self.options.coincident {
             let mut body = self.bodies[0].clone();

@@ -42,9 +42,9 @@ impl Integrator<2> for Rule {
     fn name(&self) -> &'static str {
         "rule"
     }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let (k, d) = (-omega * omega * h, 1.0 - c * h);
-        if self.symplectic { [[1.0 + h * k, h * d], [k, d]] } else { [[1.0, h], [k, d]] }
+        Amplification::new(if self.symplectic { [[1.0 + h * k, h * d], [k, d]] } else { [[1.0, h], [k, d]] })
     }
     fn step(&self, _system: &mut System<2>, _h: f64) -> Result<(), StepError> {
         Ok(())

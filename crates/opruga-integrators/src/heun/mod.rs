@@ -18,7 +18,7 @@ mod tests;
 
 use crate::first_stage::FirstStage;
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Integrator, IntegratorKind};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
@@ -59,10 +59,10 @@ impl<const D: usize> Integrator<D> for Heun {
     fn work_columns(&self) -> usize {
         1
     }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         // 1 + A + ½A² with A = h [[0, 1], [−ω², −c]].
         let (s, b) = (-h * omega * omega, -h * c);
-        [[1.0 + 0.5 * h * s, h + 0.5 * h * b], [s + 0.5 * b * s, 1.0 + b + 0.5 * (s * h + b * b)]]
+        Amplification::new([[1.0 + 0.5 * h * s, h + 0.5 * h * b], [s + 0.5 * b * s, 1.0 + b + 0.5 * (s * h + b * b)]])
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         system.advance(Stage::Current, 0.0, 0.5 * h, None, &FirstStage { span: h })?;

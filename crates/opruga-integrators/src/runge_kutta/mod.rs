@@ -33,7 +33,7 @@ mod tests;
 
 use crate::first_stage::FirstStage;
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Integrator, IntegratorKind};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
@@ -74,7 +74,7 @@ impl<const D: usize> Integrator<D> for RungeKutta {
     fn work_columns(&self) -> usize {
         2
     }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         // 1 + A (1 + A/2 (1 + A/3 (1 + A/4))) with A = h [[0, 1], [−ω², −c]].
         let (s, b) = (-h * omega * omega, -h * c);
         let mut r = [[1.0, 0.0], [0.0, 1.0]];
@@ -85,7 +85,7 @@ impl<const D: usize> Integrator<D> for RungeKutta {
                 [f * (s * r[0][0] + b * r[1][0]), 1.0 + f * (s * r[0][1] + b * r[1][1])],
             ];
         }
-        r
+        Amplification::new(r)
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let (half, third, sixth) = (0.5 * h, h / 3.0, h / 6.0);

@@ -8,7 +8,7 @@
 mod tests;
 
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Integrator, IntegratorKind};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
@@ -45,9 +45,9 @@ impl<const D: usize> Integrator<D> for SymplecticEuler {
     fn name(&self) -> &'static str {
         SPEC.kind
     }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let (k, d) = (-omega * omega * h, 1.0 - c * h);
-        [[1.0 + h * k, h * d], [k, d]]
+        Amplification::new([[1.0 + h * k, h * d], [k, d]])
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         system.advance(Stage::Current, 0.0, h, Some(h), &Rule { h })?;

@@ -21,7 +21,7 @@
 mod tests;
 
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::integrator::{Integrator, IntegratorKind};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::Parameter;
 use opruga_core::system::{Stage, State, System, Update};
@@ -62,7 +62,7 @@ impl<const D: usize> Integrator<D> for Verlet {
     fn work_columns(&self) -> usize {
         1
     }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> [[f64; 2]; 2] {
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let square = omega * omega;
         // What one step makes of x₀ = 1, v₀ = 0 and of x₀ = 0, v₀ = 1.
         let column = |x: f64, v: f64| {
@@ -72,7 +72,7 @@ impl<const D: usize> Integrator<D> for Verlet {
             [end, v + 0.5 * h * (a + b)]
         };
         let (of_x, of_v) = (column(1.0, 0.0), column(0.0, 1.0));
-        [[of_x[0], of_v[0]], [of_x[1], of_v[1]]]
+        Amplification::new([[of_x[0], of_v[0]], [of_x[1], of_v[1]]])
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         system.advance(Stage::Current, 0.0, 0.5 * h, None, &Drift { h })?;

@@ -8,7 +8,7 @@ use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
-use opruga_mesh::{Measure, Mesh};
+use opruga_mesh::{Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
 use std::collections::{BTreeMap, BTreeSet};
@@ -169,7 +169,8 @@ fn draft<'n, const D: usize>(
     let mass = mass(reader, node, &path, &values);
     let shape =
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
-    let loaded = shape.as_ref().and_then(|values| shape::loaded(reader, node, &path, values, reader.count() == before));
+    let loaded =
+        shape.as_ref().and_then(|values| shape::loaded::<D>(reader, node, &path, values, reader.count() == before));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let integrator = reader.integrator(node, &path);
@@ -354,6 +355,9 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
             (None, Some(shape)) => shapes::node_count(shape, D),
             (None, None) => 0,
         };
+        // At most one node for every point of a grid of half the spacing.
+        let order = draft.values.integer("order").unwrap_or(1);
+        let nodes = if order == 2 { nodes.saturating_mul(1 << D) } else { nodes };
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
@@ -362,6 +366,29 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         }
     }
     true
+}
+
+/// Cuts boxes into simplices and gives these nodes in the middle of their edges, where the body says so.
+fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>, mesh: Mesh<D>) -> Option<Mesh<D>> {
+    let (simplices, quadratic) = (draft.values.flag("simplices"), draft.values.integer("order") == Some(2));
+    let key = if quadratic { "order" } else { "simplices" };
+    let refuse = |reader: &mut Reader<'_>, error: SceneError| {
+        reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
+        None
+    };
+    if (simplices || quadratic) && mesh.cells.is_empty() {
+        let error = SceneError::new("scene.shape", format!("`{key}` is about cells, and the shape has none"));
+        return refuse(reader, error.hint("filled shapes are `grid`, files with a `filling`, and `mesh`"));
+    }
+    let cut = if simplices { mesh.into_simplices() } else { Ok(mesh) };
+    match cut.and_then(|mesh| if quadratic { mesh.into_quadratic() } else { Ok(mesh) }) {
+        Ok(mesh) => Some(mesh),
+        Err(refusal @ MeshError::NotSimplices { .. }) => {
+            let error = SceneError::new("scene.shape", refusal.to_string());
+            refuse(reader, error.hint("`simplices = true` cuts them into triangles or tetrahedra"))
+        }
+        Err(refusal) => refuse(reader, SceneError::new("scene.shape", refusal.to_string())),
+    }
 }
 
 /// Makes the mesh of a body, whatever else may be wrong with it, and checks its pins.
@@ -374,6 +401,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     let place =
         ShapePlace { name: &draft.name, place: place_of(draft.node, "shape"), path: join(&draft.path, "shape") };
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
+    let mesh = of_wanted_cells(reader, draft, mesh)?;
     // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
     let thin = match mesh.measure() {
         Ok(Measure::Length(_)) => Some("of a wire needs its width, here"),

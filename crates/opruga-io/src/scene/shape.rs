@@ -18,12 +18,18 @@ pub(super) struct ShapePlace<'a> {
 }
 
 /// Reads the file of a shape that has one. The file is looked at only where the scene itself has no errors so far.
-pub(super) fn loaded(reader: &mut Reader<'_>, node: &Node, path: &str, shape: &Values, sound: bool) -> Option<Loaded> {
+pub(super) fn loaded<const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: &str,
+    shape: &Values,
+    sound: bool,
+) -> Option<Loaded> {
     if !shapes::is_from_file(shape.kind()) || !sound {
         return None;
     }
     let (at, here) = (node.get("shape")?, join(path, "shape"));
-    match crate::shapes::load(shape, &mut |name| reader.file(name)) {
+    match crate::shapes::load(shape, D, &mut |name| reader.file(name)) {
         Ok(loaded) => {
             for notice in &loaded.notices {
                 reader.notice(at.place, notice.clone().path(&here));

@@ -9,6 +9,7 @@
 use super::Open;
 use super::json::{Raw, parse, refuse};
 use super::triangles::Triangles;
+use crate::base64;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use serde::Deserialize;
@@ -437,7 +438,9 @@ impl<'a> Reader<'a, '_, '_, '_> {
         let bytes: Arc<[u8]> = match (&buffer.uri, self.binary) {
             (None, Some(binary)) if index == 0 => Arc::from(binary),
             (None, _) => return Err(bad("gltf.syntax", "the buffer has neither an address nor a binary chunk".into())),
-            (Some(uri), _) if uri.starts_with("data:") => match uri.split_once(";base64,").and_then(|(_, t)| base64(t))
+            (Some(uri), _) if uri.starts_with("data:") => match uri
+                .split_once(";base64,")
+                .and_then(|(_, t)| base64::decode(t.as_bytes()))
             {
                 Some(bytes) => bytes.into(),
                 None => {
@@ -459,27 +462,4 @@ impl<'a> Reader<'a, '_, '_, '_> {
         self.buffers[index] = Some(Arc::clone(&bytes));
         Ok(bytes)
     }
-}
-
-/// Bytes from base64 (RFC 4648); none for other letters.
-fn base64(text: &str) -> Option<Vec<u8>> {
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut count) = (0u32, 0);
-    for letter in text.trim_end_matches('=').bytes() {
-        let value = match letter {
-            b'A'..=b'Z' => letter - b'A',
-            b'a'..=b'z' => letter - b'a' + 26,
-            b'0'..=b'9' => letter - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return None,
-        };
-        bits = bits << 6 | u32::from(value);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            out.push((bits >> count) as u8);
-        }
-    }
-    Some(out)
 }

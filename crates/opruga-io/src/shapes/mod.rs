@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! svg, map, text, bitmap ──→ curves ──drawing──→ rings at the wanted size and spacing ──┐
-//! obj, stl, ply, gltf ─────→ triangles ──→ welded, checked, turned outward, sized ───────┴→ mesh
+//! obj, stl, ply, gltf ─────→ triangles ──→ welded, checked, turned outward, sized ───────┼→ mesh
+//! msh, vtk, vtu, mesh, ele → elements ───→ checked ──────────────────────────────────────┘
 //! ```
 //! Every reader tells what is wrong with the line or byte of its file. Nothing is repaired unless the scene asks for it, and then it is counted.
 
@@ -19,13 +20,15 @@ mod svg;
 mod svg_path;
 mod text;
 mod triangles;
+mod volume;
 
+use crate::meshes;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::outline::{self, Ring};
 use opruga_mesh::{Mesh, MeshError};
-use opruga_world::shapes::{self, Made, Transform};
+use opruga_world::shapes::{self, Filling, Made, Transform};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -44,8 +47,12 @@ pub(crate) struct Loaded {
 enum Content {
     /// Rings at their final size, and the spacing of a filling.
     Outline { rings: Vec<Ring>, filling: Option<f64> },
-    /// A surface at its final size, and the spacing of a filling.
-    Surface { mesh: Box<Mesh<3>>, filling: Option<f64> },
+    /// A surface at its final size, and what fills it.
+    Surface { mesh: Box<Mesh<3>>, filling: Option<Filling> },
+    /// Cells of the plane.
+    Plane(Box<Mesh<2>>),
+    /// Cells of space.
+    Space(Box<Mesh<3>>),
 }
 
 /// Why a shape's file is refused.
@@ -70,11 +77,11 @@ impl From<SceneError> for Problem {
     }
 }
 
-/// Reads the file of a shape; `open` gives the bytes of a file by the name that the scene uses.
+/// Reads the file of a shape for a scene of 2 or 3 dimensions; `open` gives the bytes of a file by the name that the scene uses.
 ///
 /// # Errors
 /// The first that is found, with its place in the file.
-pub(crate) fn load(shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
+pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let name = shape.text("file").unwrap_or("").to_string();
     let bytes = open(&name)?;
     match shape.kind() {
@@ -91,6 +98,7 @@ pub(crate) fn load(shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Proble
             let read = bitmap::read(&bytes, shape).map_err(|e| SceneError { file: name.clone(), ..e })?;
             drawing::loaded(read, shape)
         }
+        "mesh" => volume::loaded(&name, &bytes, shape, dimension, open),
         "surface" => surface(&name, &bytes, shape, open),
         kind => Err(SceneError::new("scene.unknown_kind", format!("`{kind}` reads no file")).into()),
     }
@@ -117,10 +125,14 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
             let source = text_of(name, json)?;
             triangles::loaded(gltf::read(&source, binary, open)?, name, None, shape)
         }
+        _ if meshes::is_mesh(name) => triangles::loaded(volume::surface(name, bytes, open)?, name, None, shape),
         _ => {
             let error =
                 SceneError::new("shape.format", format!("files ending in `.{}` cannot be read", visible(&ending)));
-            Err(error.value(visible(name)).allowed("a file ending in .obj, .stl, .ply, .gltf, .glb").into())
+            Err(error
+                .value(visible(name))
+                .allowed(format!("a file ending in .obj, .stl, .ply, .gltf, .glb, {}", meshes::ENDINGS))
+                .into())
         }
     }
 }
@@ -147,8 +159,9 @@ impl Loaded {
         match &self.content {
             Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
             Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
-            Content::Surface { mesh, filling: Some(spacing) } => mesh.lattice_estimate(*spacing),
-            Content::Surface { mesh, filling: None } => mesh.nodes() as u64,
+            Content::Surface { mesh, filling: Some(filling) } => mesh.lattice_estimate(filling.spacing()),
+            Content::Surface { mesh, filling: None } | Content::Space(mesh) => mesh.nodes() as u64,
+            Content::Plane(mesh) => mesh.nodes() as u64,
         }
     }
 
@@ -165,8 +178,10 @@ impl Loaded {
             }),
             Content::Surface { mesh, filling } => Box::new(match filling {
                 None => (**mesh).clone(),
-                Some(spacing) => mesh.lattice_filling(*spacing).map_err(refuse)?,
+                Some(filling) => filling.of(mesh).map_err(refuse)?,
             }),
+            Content::Plane(mesh) => mesh.clone(),
+            Content::Space(mesh) => mesh.clone(),
         };
         let Ok(mut mesh) = made.downcast::<Mesh<D>>() else {
             return Err(SceneError::new("scene.dimension", format!("this shape does not exist in {D}D")));

@@ -6,6 +6,7 @@ use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError};
+use opruga_world::shapes;
 use std::collections::BTreeMap;
 
 /// A triangle whose area is below this part of its longest edge squared is refused.
@@ -141,19 +142,14 @@ pub(super) fn loaded(
     }
     orient(&mut mesh, &found, source, shape, &mut notices).map_err(named)?;
     place(&mut mesh, shape).map_err(named)?;
-    let filling = match shape.text("filling") {
-        Some("lattice") if mesh.facets.is_empty() => {
-            let error = SceneError::new("mesh.open", "an open surface has no inside to fill").value("lattice");
+    let filling = match shapes::filling(shape) {
+        Ok(Some(_)) if mesh.facets.is_empty() => {
+            let error = SceneError::new("mesh.open", "an open surface has no inside to fill");
+            let error = error.value(shape.text("filling").unwrap_or(""));
             return Err(Problem::new("filling", error.hint("close it with `open = \"cap\"`")));
         }
-        Some("lattice") => match shape.number("spacing") {
-            Some(spacing) => Some(spacing),
-            None => {
-                let error = SceneError::new("scene.missing", "`spacing` is missing for `filling = \"lattice\"`");
-                return Err(Problem::new("filling", error.hint("the side of the cubes of the lattice [m]")));
-            }
-        },
-        _ => None,
+        Ok(filling) => filling,
+        Err(refusal) => return Err(Problem::new("filling", SceneError::new("scene.missing", refusal.to_string()))),
     };
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), filling } })
 }

@@ -192,6 +192,11 @@ impl<const D: usize> Potential<D> for Bending {
             part.hessian(view, scratch, keep, sink);
         }
     }
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
+        for part in self.parts::<D>() {
+            part.damping_matrix(view, scratch, sink);
+        }
+    }
     fn heap_bytes(&self) -> usize {
         self.parts::<D>().iter().map(|part| part.heap_bytes()).sum()
     }

@@ -13,7 +13,7 @@ mod spec;
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Ingredients, Model, Potential, Views};
+use opruga_core::potential::{Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Parameter, View};
 use opruga_core::tile::Tile;
@@ -46,11 +46,18 @@ impl<const D: usize> Potential<D> for Drag {
         SPEC.kind
     }
     fn views(&self) -> Views {
-        Views { energy: false, hessian: false, damping: true }
+        Views { energy: false, hessian: true, damping: true }
     }
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         simd.run(Force { drag: self, view, tile });
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        for place in 0..view.nodes * view.layout.stride() {
+            let strength = self.rate.at(place) * self.mass.at(place);
+            let block = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { strength } else { 0.0 }));
+            sink.block(place, place, block);
+        }
     }
     fn heap_bytes(&self) -> usize {
         self.rate.heap_bytes() + self.mass.heap_bytes()

@@ -6,7 +6,7 @@
 //! U = ½ k (r − l₀)²,  f_a = −k (r − l₀) d/r − c (ḋ·d/r) d/r,  f_b = −f_a,
 //!
 //! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its
-//! axis; the clamped Hessian drops it. Springs resist neither bending nor a change of enclosed area.
+//! axis; the clamped Hessian drops it. −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of enclosed area.
 
 mod law;
 mod spec;
@@ -144,11 +144,13 @@ impl<const D: usize> Potential<D> for Springs {
                 let (xa, xb) = (view.position(a), view.position(b));
                 let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
                 let (length, inverse) = law::length(&d);
-                if inverse == 0.0 {
-                    continue;
-                }
-                let k = self.stiffness.at(at);
-                let mut across = k * (1.0 - self.rest_length.at(at) / length);
+                // Coincident ends have no force and no direction; their blocks are zero, so that the order of calls stays.
+                let (k, mut across) = if inverse == 0.0 {
+                    (0.0, 0.0)
+                } else {
+                    let k = self.stiffness.at(at);
+                    (k, k * (1.0 - self.rest_length.at(at) / length))
+                };
                 if keep == Definiteness::Clamped && across < 0.0 {
                     across = 0.0;
                 }
@@ -160,6 +162,24 @@ impl<const D: usize> Potential<D> for Springs {
                     })
                 });
                 let minus = block.map(|row| row.map(|c| -c));
+                sink.block(a, a, block);
+                sink.block(b, b, block);
+                sink.block(a, b, minus);
+                sink.block(b, a, minus);
+            }
+        }
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        for (spring, &[a, b]) in self.table.pairs().iter().enumerate() {
+            for body in 0..self.layout.stride() {
+                let (a, b) = (self.layout.place(a as usize, body), self.layout.place(b as usize, body));
+                let c = self.damping.at(self.layout.place(spring, body));
+                let (xa, xb) = (view.position(a), view.position(b));
+                let d: [f64; D] = core::array::from_fn(|i| xa[i] - xb[i]);
+                let (_, inverse) = law::length(&d);
+                let n = d.map(|component| component * inverse);
+                let block: [[f64; D]; D] = core::array::from_fn(|i| core::array::from_fn(|j| c * n[i] * n[j]));
+                let minus = block.map(|row| row.map(|entry| -entry));
                 sink.block(a, a, block);
                 sink.block(b, b, block);
                 sink.block(a, b, minus);

@@ -1,4 +1,4 @@
-//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces.
+//! Shapes that are read from files: drawings, maps, texts, pictures, surfaces, meshes.
 
 use super::CENTER;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
@@ -18,6 +18,20 @@ const FILLING: Field = Field::new(
     "",
     Default::Text("none"),
     "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing.",
+);
+pub(super) const FILLING_OF_SURFACES: Field = Field::new(
+    "filling",
+    Allowed::Choice(&["none", "lattice", "tetrahedra"]),
+    "",
+    Default::Text("none"),
+    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a spacing.",
+);
+pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
+    "spacing",
+    Allowed::POSITIVE,
+    "m",
+    Default::Absent,
+    "For fillings: the side of the cubes of their lattice, before `scale`; nodes lie at corners and middles.",
 );
 const OVERLAP: Field = Field::new(
     "overlap",
@@ -138,7 +152,7 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary) or glTF (.gltf, .glb), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -171,26 +185,38 @@ static SURFACE: Spec = Spec {
             Default::Text("refuse"),
             "What becomes of a surface with free boundaries: an error, closed by fans of triangles, or cloth.",
         ),
+        FILLING_OF_SURFACES,
+        SPACING_OF_FILLINGS,
+    ],
+};
+
+static MESH: Spec = Spec {
+    kind: "mesh",
+    summary: "a filled body of cells, as another program has meshed it",
+    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), by the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of cells, scalars of elements become values of cells.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
         Field::new(
-            "filling",
-            Allowed::Choice(&["none", "lattice"]),
+            "inverted",
+            Allowed::Choice(&["refuse", "turn"]),
             "",
-            Default::Text("none"),
-            "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra inside, which carry the surface for drawing.",
+            Default::Text("refuse"),
+            "What becomes of cells of negative area or volume: an error, or turned round, and counted.",
         ),
         Field::new(
-            "spacing",
-            Allowed::POSITIVE,
-            "m",
-            Default::Absent,
-            "The side of the cubes of the lattice, before `scale`; nodes lie at their corners and middles.",
+            "unreferenced",
+            Allowed::Choice(&["refuse", "leave_out"]),
+            "",
+            Default::Text("refuse"),
+            "What becomes of nodes that no cell names: an error, or left out, and counted.",
         ),
     ],
 };
 
 /// All of them.
 pub(super) fn all() -> Vec<&'static Spec> {
-    vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE]
+    vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE, &MESH]
 }
 
 /// Whether a shape of this kind is made from a file, which only its reader can do.

@@ -1,0 +1,103 @@
+//! # Backward Euler
+//!
+//! x₁ = x₀ + h v₁,  M (v₁ − v₀) = h F(x₁, v₁, t₁).
+//!
+//! First order, stable for every step. The end of the step is the minimum of the incremental potential
+//! Φ(x) = |x − x₀ − h v₀|²_M / 2h² + U(x) (Martin et al. 2011): a step always exists.
+//!
+//! It damps: the amplitude of an oscillation falls by 1/√(1 + h²ω²) in a step, 0.995 at hω = 0.1 and 0.1 at hω = 10. This
+//! is an error of the rule and no physics, and it is what makes the rule forgiving: what is too fast for the step dies out at
+//! once, and what is slow stays. Rest is exact: where the forces balance, nothing moves, whatever h is. Free fall is
+//! −½ g t² (1 + h/t).
+//!
+//! Source: Baraff and Witkin 1998; Hairer and Wanner, *Solving Ordinary Differential Equations II*, IV.3.
+
+#[cfg(test)]
+mod tests;
+
+use crate::implicit::newton::Balance;
+use crate::implicit::room::Room;
+use crate::implicit::settings::{FIELDS, Settings};
+use crate::implicit::step::{Rule, advance, same_bits_everywhere};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
+use opruga_core::potential::Views;
+use opruga_core::spec::{Spec, Values};
+use opruga_core::system::System;
+
+/// The parameters.
+pub const SPEC: Spec = Spec {
+    kind: "backward_euler",
+    summary: "implicit, first order, stable for every step; damps what is fast",
+    documentation: "x₁ = x₀ + h v₁, M (v₁ − v₀) = h F(x₁, v₁), solved by Newton's method. Stable for every step; the amplitude of an \
+oscillation falls by 1/√(1 + h²ω²) in a step, which is an error of the rule. With `accuracy = \"exact\"` the equations hold to \
+`tolerance`; with \"real_time\" the step has a fixed budget. Obstacles hold nodes within the solution: bodies come to rest on \
+them and stick or slip by Coulomb's law. One body an island: bodies are not stepped side by side.",
+    dimensions: &[2, 3],
+    fields: FIELDS,
+};
+
+/// The kind `backward_euler`.
+#[derive(Debug)]
+pub struct BackwardEulerKind;
+
+/// Backward Euler.
+#[derive(Clone, Copy, Debug)]
+pub struct BackwardEuler {
+    settings: Settings,
+}
+
+impl<const D: usize> IntegratorKind<D> for BackwardEulerKind {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn batches(&self) -> bool {
+        false
+    }
+    fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
+        Ok(Box::new(BackwardEuler { settings: Settings::new(values) }))
+    }
+}
+
+impl<const D: usize> Rule<D> for BackwardEuler {
+    const NAME: &'static str = SPEC.kind;
+    const TRAPEZOID: bool = false;
+    fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+        for (y, v) in room.y.iter_mut().zip(&room.v0) {
+            *y = h * v;
+        }
+        room.z.fill(0.0);
+        Balance { sigma: 1.0 / (h * h), beta: 1.0 / h, theta: 1.0, time: h, h }
+    }
+    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
+        for k in 0..room.u.len() {
+            room.u1[k] = room.u[k];
+            room.v1[k] = balance.beta * room.u[k];
+        }
+    }
+}
+
+impl<const D: usize> Integrator<D> for BackwardEuler {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn needs(&self) -> Views {
+        Views { hessian: true, ..Views::default() }
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        // v₁ (1 + h c + h²ω²) = v₀ − h ω² x₀.
+        let square = omega * omega;
+        let factor = 1.0 / (1.0 + h * c + h * h * square);
+        let (of_x, of_v) = (-h * square * factor, factor);
+        Amplification::new([[1.0 + h * of_x, h * of_v], [of_x, of_v]])
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        same_bits_everywhere(self.settings.solver, system)
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        advance(*self, &self.settings, system, h)
+    }
+}

@@ -1,0 +1,140 @@
+//! # BDF2, the backward differentiation formula of second order
+//!
+//! With steps of equal length
+//!
+//! x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁,  M v₁ = M (4 v₀ − v₋₁)/3 + ⅔ h F(x₁, v₁, t₁);
+//!
+//! where the step changes, the coefficients follow it. Second order, stable for every step; what is much faster than the
+//! step is damped within a few steps (L-stable), what is slow hardly at all: the amplitude falls by (hω)⁴/4 per step where
+//! backward Euler takes (hω)²/2.
+//!
+//! **What it remembers** is the displacement and the velocity before the last step. They are part of the state: of
+//! checkpoints, hashes and replays. The first step, and the first after a command has changed the body, is one of backward
+//! Euler. Nodes that an obstacle has stopped go on as if they had always moved as they do then: a difference across an
+//! impact says nothing of the motion behind it.
+//!
+//! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
+
+#[cfg(test)]
+mod tests;
+
+use crate::implicit::newton::Balance;
+use crate::implicit::room::Room;
+use crate::implicit::settings::{FIELDS, Settings};
+use crate::implicit::step::{Rule, advance, same_bits_everywhere};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::potential::Views;
+use opruga_core::spec::{Spec, Values};
+use opruga_core::system::System;
+
+/// The parameters.
+pub const SPEC: Spec = Spec {
+    kind: "bdf2",
+    summary: "implicit, second order, stable for every step; damps what is much faster than the step",
+    documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. The amplitude of an \
+oscillation falls by (hω)⁴/4 in a step where hω is small. It remembers the step before; its first step is one of backward \
+Euler. One body an island.",
+    dimensions: &[2, 3],
+    fields: FIELDS,
+};
+
+/// The kind `bdf2`.
+#[derive(Debug)]
+pub struct Bdf2Kind;
+
+/// The backward differentiation formula of second order.
+#[derive(Clone, Copy, Debug)]
+pub struct Bdf2 {
+    settings: Settings,
+}
+
+impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn batches(&self) -> bool {
+        false
+    }
+    fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
+        Ok(Box::new(Bdf2 { settings: Settings::new(values) }))
+    }
+}
+
+impl<const D: usize> Rule<D> for Bdf2 {
+    const NAME: &'static str = SPEC.kind;
+    const TRAPEZOID: bool = true;
+    fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+        // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
+        let last = system.history.numbers[0];
+        let r = if last > 0.0 { h / last } else { 0.0 };
+        let (share, span) = (r * r / (1.0 + 2.0 * r), h * (1.0 + r) / (1.0 + 2.0 * r));
+        let [way, before] = [&system.history.columns[0], &system.history.columns[1]];
+        for node in 0..system.nodes {
+            for d in 0..D {
+                let k = node * D + d;
+                let velocity = room.v0[k];
+                room.z[k] = share * way.0[d][node];
+                room.y[k] = room.z[k] + span * (velocity + share * (velocity - before.0[d][node]));
+            }
+        }
+        if r == 0.0 {
+            for k in 0..room.z.len() {
+                (room.z[k], room.y[k]) = (0.0, span * room.v0[k]);
+            }
+        }
+        Balance { sigma: 1.0 / (span * span), beta: 1.0 / span, theta: 1.0, time: h, h }
+    }
+    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
+        for k in 0..room.u.len() {
+            room.u1[k] = room.u[k];
+            room.v1[k] = balance.beta * (room.u[k] - room.z[k]);
+        }
+    }
+    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+        let [way, before] = &mut system.history.columns[..] else { return };
+        for node in 0..system.nodes {
+            for d in 0..D {
+                let k = node * D + d;
+                (way.0[d][node], before.0[d][node]) = (room.u1[k], room.v0[k]);
+            }
+        }
+        for &node in &room.struck {
+            for d in 0..D {
+                let velocity = room.v1[node * D + d];
+                (way.0[d][node], before.0[d][node]) = (h * velocity, velocity);
+            }
+        }
+        system.history.numbers[0] = h;
+    }
+}
+
+impl<const D: usize> Integrator<D> for Bdf2 {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn needs(&self) -> Views {
+        Views { hessian: true, ..Views::default() }
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: 2, numbers: 1 }
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        // Carried are x, v, the last displacement, the last v but one; z = x + ⅓ way, w = 4/3 v − ⅓ before.
+        let (square, g) = (omega * omega, 2.0 * h / 3.0);
+        let factor = 1.0 / (1.0 + g * c + g * g * square);
+        let third = 1.0 / 3.0;
+        let v = [-g * square * factor, 4.0 * third * factor, -g * square * third * factor, -third * factor];
+        let way = [g * v[0], g * v[1], third + g * v[2], g * v[3]];
+        Amplification::new([[1.0 + way[0], way[1], way[2], way[3]], v, way, [0.0, 1.0, 0.0, 0.0]])
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        same_bits_everywhere(self.settings.solver, system)
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        advance(*self, &self.settings, system, h)
+    }
+}

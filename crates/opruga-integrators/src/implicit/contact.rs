@@ -1,0 +1,447 @@
+//! Which nodes obstacles hold within a step, and whether they stick or slip.
+//!
+//! ```text
+//!         n ▲   f = λ n + t     active:   the node ends on the surface, λ ≥ 0
+//!           │  ╱                stick:    |t| ≤ µ λ, it goes where the surface goes
+//!     ──────●──────             slip:     t = µ λ s, s against its motion along the surface
+//! ```
+//!
+//! Whether a node is held is decided again in every iteration of Newton, from the gap that the last correction left and the
+//! force that the constraint would take. A contact that changes sides too often keeps the side that it has: then the last
+//! word is that no node may be inside.
+
+use opruga_core::contacts::Touch;
+use opruga_core::system::System;
+use opruga_math::WIDTH;
+use opruga_solve::blocks::{Block, isotropic, nodes};
+
+/// The nodes that obstacles hold.
+#[derive(Debug, Default)]
+pub(crate) struct Contacting<const D: usize> {
+    pub(crate) contacts: Vec<Contact<D>>,
+    /// Those before the last look.
+    known: Vec<Contact<D>>,
+    /// Room for what one node touches.
+    found: Vec<Touch<D>>,
+}
+
+/// One node on one surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact<const D: usize> {
+    pub(crate) node: usize,
+    touch: Touch<D>,
+    hold: Hold,
+    /// The force along the normal in the last iteration [N].
+    normal_force: f64,
+    /// The direction of the force of friction.
+    push: [f64; D],
+    /// How often it changed between hold and release, or between stick and slip.
+    changes: u8,
+}
+
+/// How a node is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hold {
+    /// Not at all: the surface would have to pull.
+    Released,
+    /// It may go along the surface, against friction.
+    Slip,
+    /// It goes with the surface.
+    Stick,
+}
+
+/// After so many changes a contact keeps what it has.
+const MOST_CHANGES: u8 = 8;
+
+/// Depths and slides below this part of the extent of a body do not count.
+pub(crate) const SMALL: f64 = 1e-9;
+
+/// A slipping contact is settled when its force changes by no more than this part of itself.
+const SETTLED: f64 = 1e-9;
+
+fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    let mut sum = 0.0;
+    for d in 0..D {
+        sum += a[d] * b[d];
+    }
+    sum
+}
+
+impl<const D: usize> Contact<D> {
+    fn is_held(&self) -> bool {
+        self.hold != Hold::Released
+    }
+    /// What is left of a vector along the surface.
+    fn along(&self, vector: &[f64; D]) -> [f64; D] {
+        let normal = dot(vector, &self.touch.normal);
+        core::array::from_fn(|d| vector[d] - normal * self.touch.normal[d])
+    }
+}
+
+impl<const D: usize> Contacting<D> {
+    /// Forgets the contacts of an earlier step.
+    pub(crate) fn clear(&mut self) {
+        self.contacts.clear();
+    }
+    /// Whether any node is held.
+    pub(crate) fn any(&self) -> bool {
+        self.contacts.iter().any(Contact::is_held)
+    }
+
+    /// Looks where nodes are that start at `x0` and end displaced by `u / theta`; nodes that are inside are held from now
+    /// on. Depths below a billionth of `extent` [m] do not count.
+    pub(crate) fn look(&mut self, system: &System<D>, x0: &[f64], u: &[f64], theta: f64, h: f64, extent: f64) -> bool {
+        let Some(obstacles) = &system.contacts else {
+            self.contacts.clear();
+            return false;
+        };
+        let (time, small) = (system.time + h, SMALL * extent);
+        let mut changed = false;
+        core::mem::swap(&mut self.known, &mut self.contacts);
+        self.contacts.clear();
+        let known = &self.known;
+        let mut next = 0;
+        for (node, (from, u)) in nodes::<D>(x0).iter().zip(nodes::<D>(u)).enumerate() {
+            let to: [f64; D] = core::array::from_fn(|d| from[d] + u[d] / theta);
+            if !to.iter().all(|x| x.is_finite()) {
+                continue;
+            }
+            let first = next;
+            while next < known.len() && known[next].node == node {
+                next += 1;
+            }
+            let old = &known[first..next];
+            // A node that is held may lie off a curved surface by more than rounding while the iteration goes on.
+            let reach = if old.is_empty() { small } else { 0.1 * extent };
+            self.found.clear();
+            let found = &mut self.found;
+            obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
+            for touch in &self.found {
+                let depth = small + touch.rounding;
+                match old.iter().find(|contact| contact.touch.surface == touch.surface) {
+                    Some(contact) => {
+                        let mut contact = Contact { touch: *touch, ..*contact };
+                        if !contact.is_held() && touch.gap < -depth && contact.changes < MOST_CHANGES {
+                            contact.hold = if touch.friction > 0.0 { Hold::Stick } else { Hold::Slip };
+                            contact.changes += 1;
+                            changed = true;
+                        }
+                        self.contacts.push(contact);
+                    }
+                    // A node that rests on the surface is held until it turns out that it need not be.
+                    None if touch.gap <= touch.rounding => {
+                        changed = true;
+                        self.contacts.push(Contact {
+                            node,
+                            touch: *touch,
+                            hold: if touch.friction > 0.0 { Hold::Stick } else { Hold::Slip },
+                            normal_force: 0.0,
+                            push: [0.0; D],
+                            changes: 0,
+                        });
+                    }
+                    None => {}
+                }
+            }
+        }
+        changed
+    }
+
+    /// Takes what is held out of the free directions, and writes how far held nodes have to go in the stage.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn hold(
+        &self,
+        u: &[f64],
+        theta: f64,
+        held: &[f64],
+        x0: &[f64],
+        free: &mut [bool],
+        projectors: &mut [Block<D>],
+        prescribed: &mut [f64],
+    ) -> f64 {
+        let mut farthest: f64 = 0.0;
+        let mut next = 0;
+        for node in 0..free.len() {
+            let first = next;
+            while next < self.contacts.len() && self.contacts[next].node == node {
+                next += 1;
+            }
+            let at = node * D;
+            let pinned = held[at..at + D].iter().any(|x| !x.is_nan());
+            prescribed[at..at + D].fill(0.0);
+            free[node] = true;
+            if first == next && !pinned {
+                continue;
+            }
+            // Orthonormal directions that are held, and how far to go along each.
+            let mut basis = [[0.0; D]; D];
+            let mut rank = 0;
+            let mut way = [0.0; D];
+            let mut require = |direction: &[f64; D], distance: f64, way: &mut [f64; D]| {
+                let mut rest = *direction;
+                for known in &basis[..rank] {
+                    let along = dot(direction, known);
+                    for d in 0..D {
+                        rest[d] -= along * known[d];
+                    }
+                }
+                let size = dot(&rest, &rest).sqrt();
+                // What is held already, or nearly so, is not held twice.
+                if rank == D || size < 1e-6 {
+                    return;
+                }
+                let missing = (distance - dot(direction, way)) / size;
+                for d in 0..D {
+                    rest[d] /= size;
+                    way[d] += missing * rest[d];
+                }
+                basis[rank] = rest;
+                rank += 1;
+            };
+            for d in 0..D {
+                if !held[at + d].is_nan() {
+                    let mut axis = [0.0; D];
+                    axis[d] = 1.0;
+                    require(&axis, held[at + d] - u[at + d], &mut way);
+                }
+            }
+            let contacts = &self.contacts[first..next];
+            for contact in contacts.iter().filter(|contact| contact.is_held()) {
+                require(&contact.touch.normal, -theta * contact.touch.gap, &mut way);
+            }
+            for contact in contacts.iter().filter(|contact| contact.hold == Hold::Stick) {
+                // Where the surface would take the node.
+                let carried = &contact.touch.carried;
+                let slide: [f64; D] = core::array::from_fn(|d| theta * (carried[d] - x0[at + d]) - u[at + d]);
+                for d in 0..D {
+                    let mut axis = [0.0; D];
+                    axis[d] = 1.0;
+                    let axis = contact.along(&axis);
+                    require(&axis, dot(&axis, &slide), &mut way);
+                }
+            }
+            if rank == 0 {
+                continue;
+            }
+            free[node] = false;
+            let mut projector = isotropic::<D>(1.0);
+            for known in &basis[..rank] {
+                for i in 0..D {
+                    for j in 0..D {
+                        projector[i][j] -= known[i] * known[j];
+                    }
+                }
+            }
+            projectors[node] = projector;
+            for d in 0..D {
+                prescribed[at + d] = way[d];
+                farthest = if way[d].abs() > farthest { way[d].abs() } else { farthest };
+            }
+        }
+        farthest
+    }
+
+    /// Subtracts the force of friction of slipping nodes from what is out of balance.
+    pub(crate) fn subtract_friction(&self, residual: &mut [f64]) {
+        for contact in self.contacts.iter().filter(|contact| contact.hold == Hold::Slip) {
+            let strength = contact.touch.friction * contact.normal_force;
+            for d in 0..D {
+                residual[contact.node * D + d] -= strength * contact.push[d];
+            }
+        }
+    }
+
+    /// Decides anew from the forces that the constraints take (`reaction`, per node) and from the displacements after the
+    /// correction; says whether anything changed.
+    pub(crate) fn judge(&mut self, reaction: &[f64], u: &[f64], theta: f64, x0: &[f64], extent: f64) -> bool {
+        let small = SMALL * extent;
+        let mut changed = false;
+        let mut first = 0;
+        while first < self.contacts.len() {
+            let node = self.contacts[first].node;
+            let mut last = first;
+            while last < self.contacts.len() && self.contacts[last].node == node {
+                last += 1;
+            }
+            let at = node * D;
+            let force: [f64; D] = core::array::from_fn(|d| reaction[at + d]);
+            let normal_forces = split(&self.contacts[first..last], &force);
+            for (k, contact) in self.contacts[first..last].iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
+                let normal_force = normal_forces[k.min(D - 1)];
+                if normal_force < 0.0 {
+                    if contact.changes < MOST_CHANGES {
+                        contact.hold = Hold::Released;
+                        contact.normal_force = 0.0;
+                        contact.changes += 1;
+                        changed = true;
+                    }
+                    continue;
+                }
+                if contact.touch.friction == 0.0 {
+                    contact.normal_force = normal_force;
+                    continue;
+                }
+                let most = contact.touch.friction * normal_force;
+                match contact.hold {
+                    Hold::Stick => {
+                        let pull = contact.along(&force);
+                        let size = dot(&pull, &pull).sqrt();
+                        if size > most * (1.0 + 1e-12) && contact.changes < MOST_CHANGES {
+                            contact.hold = Hold::Slip;
+                            contact.push = pull.map(|p| p / size);
+                            contact.changes += 1;
+                            changed = true;
+                        }
+                    }
+                    _ => {
+                        let carried = &contact.touch.carried;
+                        let slide: [f64; D] = core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d]));
+                        let slide = contact.along(&slide);
+                        let size = dot(&slide, &slide).sqrt();
+                        if dot(&slide, &contact.push) > 0.0 && size > small {
+                            // Friction would push it along.
+                            if contact.changes < MOST_CHANGES {
+                                contact.hold = Hold::Stick;
+                                contact.changes += 1;
+                                changed = true;
+                            }
+                        } else if size > small {
+                            let push = slide.map(|s| -s / size);
+                            let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
+                            changed |= turn > 1e-6;
+                            contact.push = push;
+                        }
+                        changed |= (normal_force - contact.normal_force).abs() > SETTLED * normal_force;
+                    }
+                }
+                contact.normal_force = normal_force;
+            }
+            first = last;
+        }
+        changed
+    }
+
+    /// Puts nodes that are nevertheless inside onto the surface; `reaction` is what was out of balance without them.
+    pub(crate) fn expel(
+        &self,
+        system: &mut System<D>,
+        x0: &[f64],
+        u1: &mut [f64],
+        reaction: &[f64],
+        h: f64,
+        extent: f64,
+    ) {
+        let Some(obstacles) = system.contacts.clone() else { return };
+        let time = system.time + h;
+        for (node, from) in nodes::<D>(x0).iter().enumerate() {
+            let at = node * D;
+            let to: [f64; D] = core::array::from_fn(|d| from[d] + u1[at + d]);
+            let mut deepest: Option<Touch<D>> = None;
+            obstacles.touch(from, &to, time, h, 0.0, &mut |touch| {
+                let deep = touch.gap < -(SMALL * extent + touch.rounding);
+                if deep && deepest.is_none_or(|other| touch.gap < other.gap) {
+                    deepest = Some(touch);
+                }
+            });
+            if let Some(touch) = deepest {
+                for d in 0..D {
+                    u1[at + d] -= touch.gap * touch.normal[d];
+                    system.work.correction[node % WIDTH] -= reaction[at + d] * touch.gap * touch.normal[d];
+                }
+            }
+        }
+    }
+
+    /// Ends a step: enters the work of the forces that held nodes (`reaction`), and deals with velocities. `u1` and `v1`
+    /// are displacements and velocities at the end. Returns through `struck` the nodes whose velocity it set.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn end(
+        &mut self,
+        system: &mut System<D>,
+        mass: &[f64],
+        reaction: &[f64],
+        x0: &[f64],
+        v0: &[f64],
+        u1: &[f64],
+        v1: &mut [f64],
+        struck: &mut Vec<usize>,
+    ) {
+        struck.clear();
+        let mut first = 0;
+        while first < self.contacts.len() {
+            let node = self.contacts[first].node;
+            let mut last = first;
+            while last < self.contacts.len() && self.contacts[last].node == node {
+                last += 1;
+            }
+            let at = node * D;
+            let force: [f64; D] = core::array::from_fn(|d| reaction[at + d]);
+            let normal_forces = split(&self.contacts[first..last], &force);
+            let (lane, mass) = (node % WIDTH, mass[node]);
+            let mut rest = force;
+            let mut carrier = None;
+            for (k, contact) in self.contacts[first..last].iter().enumerate().filter(|(_, c)| c.is_held()) {
+                let touch = &contact.touch;
+                let ride: [f64; D] = core::array::from_fn(|d| touch.carried[d] - x0[at + d]);
+                let own: [f64; D] = core::array::from_fn(|d| u1[at + d] - ride[d]);
+                let normal_force = normal_forces[k.min(D - 1)];
+                for d in 0..D {
+                    rest[d] -= normal_force * touch.normal[d];
+                }
+                system.work.user[lane] += normal_force * dot(&touch.normal, &ride);
+                system.work.contact[lane] -= normal_force * dot(&touch.normal, &own);
+                carrier = carrier.or(Some((ride, own)));
+
+                // What the node brings along the normal is lost, or a part of it returns.
+                let velocity: [f64; D] = core::array::from_fn(|d| v1[at + d] - touch.velocity[d]);
+                let coming: [f64; D] = core::array::from_fn(|d| v0[at + d] - touch.velocity[d]);
+                let (speed, came) = (dot(&velocity, &touch.normal), -dot(&coming, &touch.normal));
+                let bounces = came > touch.rest_speed && touch.gap_before > touch.rounding;
+                let back = if bounces { touch.restitution * came } else { 0.0 };
+                let mut gained: [f64; D] = core::array::from_fn(|d| (back - speed) * touch.normal[d]);
+                let lost = 0.5 * mass * (speed * speed - back * back);
+                let mut rubbed = 0.0;
+                if contact.hold == Hold::Stick {
+                    let slide = contact.along(&velocity);
+                    rubbed = 0.5 * mass * dot(&slide, &slide);
+                    for d in 0..D {
+                        gained[d] -= slide[d];
+                    }
+                }
+                system.work.contact[lane] += lost;
+                system.work.friction[lane] += rubbed;
+                system.work.user[lane] += mass * dot(&gained, &touch.velocity);
+                for d in 0..D {
+                    v1[at + d] += gained[d];
+                }
+                if struck.last() != Some(&node) {
+                    struck.push(node);
+                }
+            }
+            if let Some((ride, own)) = carrier {
+                system.work.user[lane] += dot(&rest, &ride);
+                system.work.friction[lane] -= dot(&rest, &own);
+            }
+            first = last;
+        }
+    }
+}
+
+/// The forces along the normals of the held contacts of one node that together make up what is normal in a force.
+fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
+    let mut out = [0.0; D];
+    let held: Vec<usize> = (0..contacts.len().min(D)).filter(|k| contacts[*k].is_held()).collect();
+    if let [only] = held[..] {
+        out[only] = dot(force, &contacts[only].touch.normal);
+        return out;
+    }
+    let n = held.len();
+    let normal = |k: usize| &contacts[held[k]].touch.normal;
+    let gram: Vec<f64> = (0..n * n).map(|k| dot(normal(k / n), normal(k % n))).collect();
+    if let Some(inverse) = opruga_solve::dense::inverse(&gram, n) {
+        for i in 0..n {
+            out[held[i]] = (0..n).map(|j| inverse[i * n + j] * dot(force, normal(j))).sum();
+        }
+    }
+    out
+}

@@ -1,0 +1,245 @@
+//! The direction of an iteration: (σM + βC + K) Δ = b in the directions that are free.
+
+use super::settings::{Settings, Solver};
+use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::system::{Stage, System};
+use opruga_solve::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
+use opruga_solve::{
+    BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, IncompleteCholesky, Indefinite, conjugate_gradients,
+};
+
+/// The matrix of an iteration, and what solves with it.
+#[derive(Debug, Default)]
+pub(crate) struct Linear<const D: usize> {
+    /// The matrix with nothing taken out.
+    whole: BlockMatrix<D>,
+    /// The same without the directions that are held.
+    constrained: BlockMatrix<D>,
+    /// The diagonal blocks alone, where there is no matrix.
+    diagonal: Vec<Block<D>>,
+    jacobi: BlockJacobi<D>,
+    incomplete: IncompleteCholesky<D>,
+    cholesky: Cholesky,
+    factors: Factors,
+    directions: Directions,
+}
+
+/// What a matrix is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mixture<'a, const D: usize> {
+    pub(crate) system: &'a System<D>,
+    pub(crate) sigma: f64,
+    pub(crate) beta: f64,
+    pub(crate) mass: &'a [f64],
+    pub(crate) stage: Stage,
+    pub(crate) time: f64,
+    pub(crate) keep: Definiteness,
+    /// Whether products are made without a matrix.
+    pub(crate) matrix_free: bool,
+}
+
+/// Which directions are free: all of a node, or those of its projector.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Filter<'a, const D: usize> {
+    pub(crate) free: &'a [bool],
+    pub(crate) projectors: &'a [Block<D>],
+}
+
+impl<const D: usize> Filter<'_, D> {
+    /// What is free of a vector.
+    pub(crate) fn apply(&self, vector: &mut [f64]) {
+        for (node, x) in nodes_mut::<D>(vector).iter_mut().enumerate() {
+            if !self.free[node] {
+                *x = times(&self.projectors[node], x);
+            }
+        }
+    }
+}
+
+/// Multiplies blocks with a vector as they arrive.
+struct ProductSink<'a, const D: usize> {
+    factor: f64,
+    x: &'a [[f64; D]],
+    y: &'a mut [[f64; D]],
+}
+
+impl<const D: usize> Sink<D> for ProductSink<'_, D> {
+    fn block(&mut self, a: usize, b: usize, value: Block<D>) {
+        let part = times(&value, &self.x[b]);
+        for d in 0..D {
+            self.y[a][d] += self.factor * part[d];
+        }
+    }
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
+        let mut along = 0.0;
+        for (place, entry) in u {
+            for d in 0..D {
+                along += entry[d] * self.x[*place][d];
+            }
+        }
+        for (place, entry) in u {
+            for d in 0..D {
+                self.y[*place][d] += self.factor * c * along * entry[d];
+            }
+        }
+    }
+}
+
+/// Keeps the diagonal blocks of what arrives.
+struct DiagonalSink<'a, const D: usize> {
+    factor: f64,
+    blocks: &'a mut [Block<D>],
+}
+
+impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
+    fn block(&mut self, a: usize, b: usize, value: Block<D>) {
+        if a == b {
+            for i in 0..D {
+                for j in 0..D {
+                    self.blocks[a][i][j] += self.factor * value[i][j];
+                }
+            }
+        }
+    }
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
+        for (place, entry) in u {
+            for i in 0..D {
+                for j in 0..D {
+                    self.blocks[*place][i][j] += self.factor * c * entry[i] * entry[j];
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize> Mixture<'_, D> {
+    /// Delivers K, then C after `scale` was told its factor.
+    fn deliver<S: Sink<D>>(&self, sink: &mut S, scale: impl Fn(&mut S, f64)) {
+        self.system.hessian(self.stage, self.time, self.keep, sink);
+        if self.beta != 0.0 {
+            scale(sink, self.beta);
+            self.system.damping_matrix(self.stage, self.time, sink);
+            scale(sink, 1.0);
+        }
+    }
+}
+
+impl<const D: usize> Linear<D> {
+    /// Takes the derivatives of a state, after its forces were evaluated.
+    pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
+        if mixture.matrix_free {
+            self.diagonal.clear();
+            self.diagonal.extend(mixture.mass.iter().map(|mass| isotropic::<D>(mixture.sigma * mass)));
+            let mut sink = DiagonalSink { factor: 1.0, blocks: &mut self.diagonal };
+            mixture.deliver(&mut sink, |sink, factor| sink.factor = factor);
+            return;
+        }
+        let script = usize::from(mixture.keep == Definiteness::Clamped);
+        self.whole.assemble(mixture.mass.len(), script, |matrix| {
+            mixture.deliver(matrix, BlockMatrix::scale);
+            for (node, mass) in mixture.mass.iter().enumerate() {
+                matrix.add_diagonal(node, mixture.sigma * mass);
+            }
+        });
+    }
+
+    /// y = A x with nothing taken out.
+    pub(crate) fn multiply(&self, mixture: &Mixture<D>, x: &[f64], y: &mut [f64]) {
+        if !mixture.matrix_free {
+            return self.whole.multiply(x, y);
+        }
+        let (x, y) = (nodes::<D>(x), nodes_mut::<D>(y));
+        for ((y, x), mass) in y.iter_mut().zip(x).zip(mixture.mass) {
+            *y = x.map(|x| mixture.sigma * mass * x);
+        }
+        mixture.deliver(&mut ProductSink { factor: 1.0, x, y }, |sink, factor| sink.factor = factor);
+    }
+
+    /// The size of the diagonal block of a node.
+    pub(crate) fn size_at(&self, mixture: &Mixture<D>, node: usize) -> f64 {
+        let block = if mixture.matrix_free { &self.diagonal[node] } else { self.whole.diagonal_block(node) };
+        let mut size = 0.0;
+        for d in 0..D {
+            size += block[d][d].abs();
+        }
+        size
+    }
+
+    /// Solves for the correction; b and what comes out lie in the free directions. Returns the products that it took.
+    pub(crate) fn solve(
+        &mut self,
+        mixture: &Mixture<D>,
+        filter: &Filter<D>,
+        settings: &Settings,
+        tolerance: f64,
+        b: &[f64],
+        out: &mut [f64],
+    ) -> Result<u32, Indefinite> {
+        let most = settings.products;
+        if mixture.matrix_free {
+            for (node, block) in self.diagonal.iter_mut().enumerate().filter(|(node, _)| !filter.free[*node]) {
+                let projector = &filter.projectors[node];
+                let inner = product(projector, &product(block, projector));
+                let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
+                let size = if size > 0.0 { size } else { 1.0 };
+                for i in 0..D {
+                    for j in 0..D {
+                        let unit = if i == j { 1.0 } else { 0.0 };
+                        block[i][j] = inner[i][j] + size * (unit - projector[i][j]);
+                    }
+                }
+            }
+            self.jacobi.update(self.diagonal.iter())?;
+            let mut directions = std::mem::take(&mut self.directions);
+            let multiply = |x: &[f64], y: &mut [f64]| {
+                self.multiply(mixture, x, y);
+                filter.apply(y);
+            };
+            let ended = conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut directions);
+            self.directions = directions;
+            return finite(out, ended?.iterations);
+        }
+        self.constrain(filter);
+        if settings.solver.is_direct::<D>(self.whole.rows()) {
+            self.cholesky.update(&self.constrained)?;
+            out.copy_from_slice(b);
+            self.cholesky.solve(out);
+            return finite(out, 1);
+        }
+        let constrained = &self.constrained;
+        let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
+        // The incomplete factor needs fewer products and takes longer to make: it pays where many would be needed.
+        let ended = if settings.budget {
+            self.jacobi.update((0..constrained.rows()).map(|node| constrained.diagonal_block(node)))?;
+            conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut self.directions)?
+        } else {
+            self.incomplete.update(constrained)?;
+            conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?
+        };
+        finite(out, ended.iterations)
+    }
+
+    fn constrain(&mut self, filter: &Filter<D>) {
+        self.constrained.copy_from(&self.whole);
+        self.constrained.constrain(filter.free, filter.projectors);
+    }
+
+    /// Factors the constrained matrix whatever the signs of its eigenvalues.
+    pub(crate) fn factor(&mut self, filter: &Filter<D>) -> Result<(), Indefinite> {
+        self.constrain(filter);
+        self.factors.update(&self.constrained)
+    }
+    /// Solves with those factors in place.
+    pub(crate) fn solve_by_factors(&self, x: &mut [f64]) -> Result<(), Indefinite> {
+        if self.factors.solve(x) { Ok(()) } else { Err(Indefinite) }
+    }
+}
+
+/// Whether the solver of a body works without a matrix.
+pub(crate) fn is_matrix_free(solver: Solver) -> bool {
+    solver == Solver::MatrixFree
+}
+
+fn finite(out: &[f64], products: u32) -> Result<u32, Indefinite> {
+    if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
+}

@@ -1,0 +1,36 @@
+//! What the implicit rules share: one stage, solved by Newton's method.
+//!
+//! Every rule here looks for a stage x_s at which the forces balance the change of motion:
+//!
+//! r(x_s) = σ M (x_s − y) − F(x_s, v_s, t_s) = f_contact,  v_s = β (x_s − z),
+//!
+//! with numbers σ, β and vectors y, z that the rule works out of the state and of what it remembers. Where F has a
+//! potential U, the stage is the minimum of the incremental potential Φ = ½ σ |x_s − y|²_M + U(x_s).
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
+//! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
+//! | `newton` | the iteration: derivatives, direction, line search |
+//! | `linear` | the direction: conjugate gradients or sparse Cholesky |
+//! | `contact` | which nodes obstacles hold, and whether they stick or slip |
+//!
+//! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
+//! each element's block without its negative eigenvalues, for which every direction leads downhill. What the damping force
+//! changes with position is left out: with damping, convergence is fast but linear. The line search accepts a step when the
+//! slope of Φ along it has fallen (Hager and Zhang 2005, approximate Wolfe condition) and, where Φ is known, when Φ has not
+//! risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
+//!
+//! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is put onto the surface
+//! within the iteration, all others follow as the elasticity wants, and the force of the constraint comes out of the
+//! balance. A node is released when that force pulls; it sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n
+//! and slips against a friction of µ f_n beyond. This is the primal–dual active set, a semi-smooth Newton method
+//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Velocities are
+//! dealt with at the end of the step: what a node brings along the normal is lost or returned by the restitution.
+
+pub(crate) mod contact;
+pub(crate) mod linear;
+pub(crate) mod newton;
+pub(crate) mod room;
+pub(crate) mod settings;
+pub(crate) mod step;

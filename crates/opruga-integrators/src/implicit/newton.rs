@@ -1,0 +1,306 @@
+//! Newton's method on the balance of forces of a stage.
+
+use super::linear::{Filter, Mixture, is_matrix_free};
+use super::room::Room;
+use super::settings::Settings;
+use opruga_core::error::StepError;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_math::Lane;
+use opruga_solve::dot;
+
+/// The balance of a stage: σ M (u − y) = F(x₀ + u, β (u − z)) at a time after the start of the step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Balance {
+    /// The factor of the mass [1/s²].
+    pub(crate) sigma: f64,
+    /// The factor of displacements in velocities [1/s].
+    pub(crate) beta: f64,
+    /// Which part of the way to the end of the step the stage is.
+    pub(crate) theta: f64,
+    /// The time of the stage after the start of the step [s].
+    pub(crate) time: f64,
+    /// The length of the step [s].
+    pub(crate) h: f64,
+}
+
+/// How the iteration ended.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Solved {
+    pub(crate) iterations: u32,
+    pub(crate) products: u32,
+    /// The largest displacement of a node in the last iteration [m].
+    pub(crate) correction: f64,
+    pub(crate) converged: bool,
+}
+
+/// The part of the slope that may be left after a step of the line search.
+const SLOPE_LEFT: f64 = 0.8;
+
+/// The most halvings, or thereabouts, of a step.
+const MOST_TRIALS: usize = 14;
+
+/// Rounding of a force, in units of stiffness times size.
+const ROUNDING: f64 = 4e-15;
+
+/// Looks for the stage from the displacement in `room.u` on; on success forces and residual belong to what is found.
+pub(crate) fn solve<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Result<Solved, StepError> {
+    let mut solved = Solved::default();
+    let goal = settings.tolerance * room.extent;
+    let mut size: f64 = 0.0;
+    for x in &room.x0 {
+        size = x.abs().larger(size);
+    }
+    evaluate(system, room, balance, false)?;
+    let mut first_norm = 0.0;
+    let mut clamped = settings.budget;
+    while solved.iterations < settings.iterations {
+        solved.iterations += 1;
+        // Which nodes are held, and how far they have to go.
+        let mut changed = look(system, room, balance);
+        let farthest = room.contacting.hold(
+            &room.u,
+            balance.theta,
+            &room.held,
+            &room.x0,
+            &mut room.free,
+            &mut room.projectors,
+            &mut room.prescribed,
+        );
+        let moves = farthest > 0.0;
+
+        // The direction; the exact derivatives as long as they are positive definite.
+        let direction = loop {
+            let keep = if clamped { Definiteness::Clamped } else { Definiteness::Exact };
+            match find_direction(system, room, balance, settings, keep, moves, &mut first_norm) {
+                Ok((products, slope)) => {
+                    solved.products += products;
+                    if slope <= 0.0 || moves || clamped {
+                        break Some(slope);
+                    }
+                }
+                Err(products) => {
+                    solved.products += products;
+                    if clamped {
+                        break None;
+                    }
+                }
+            }
+            clamped = true;
+        };
+        let Some(slope) = direction else { break };
+
+        let mut longest: f64 = 0.0;
+        for node in room.step.as_chunks::<D>().0 {
+            longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
+        }
+        solved.correction = longest.sqrt();
+        if moves || changed || settings.budget || solved.correction <= goal {
+            full_step(system, room, balance)?;
+        } else {
+            let length = line_search(system, room, balance, slope)?;
+            solved.correction *= length;
+            if length == 0.0 {
+                solved.converged = at_rounding(system, room, balance, settings, size);
+                break;
+            }
+        }
+        // Derivatives that were not positive may be so near the solution.
+        clamped = settings.budget || (clamped && solved.correction > 1e-2 * room.extent);
+
+        // What the constraints would take says who stays held.
+        if system.contacts.is_some() {
+            changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+        }
+        if !changed && (solved.correction <= goal || at_rounding(system, room, balance, settings, size)) {
+            solved.converged = true;
+            break;
+        }
+    }
+    solved.converged |= settings.budget;
+    Ok(solved)
+}
+
+fn look<const D: usize>(system: &System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
+    let Room { contacting, x0, u, extent, .. } = room;
+    contacting.look(system, x0, u, balance.theta, balance.h, *extent)
+}
+
+fn mixture<'a, const D: usize>(
+    system: &'a System<D>,
+    mass: &'a [f64],
+    balance: &Balance,
+    keep: Definiteness,
+    settings: &Settings,
+) -> Mixture<'a, D> {
+    Mixture {
+        system,
+        sigma: balance.sigma,
+        beta: balance.beta,
+        mass,
+        stage: Room::<D>::STAGE,
+        time: balance.time,
+        keep,
+        matrix_free: is_matrix_free(settings.solver),
+    }
+}
+
+/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take. Gives the number of
+/// products, and the slope of the incremental potential along the step.
+fn find_direction<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    keep: Definiteness,
+    moves: bool,
+    first_norm: &mut f64,
+) -> Result<(u32, f64), u32> {
+    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } =
+        room;
+    let mixture = mixture(system, mass, balance, keep, settings);
+    linear.assemble(&mixture);
+    // b = −(r − friction) − A d in the free directions.
+    trial.copy_from_slice(residual);
+    contacting.subtract_friction(trial);
+    if moves {
+        linear.multiply(&mixture, prescribed, right);
+        for (t, r) in trial.iter_mut().zip(&*right) {
+            *t += r;
+        }
+    }
+    for (r, t) in right.iter_mut().zip(&*trial) {
+        *r = -t;
+    }
+    let filter = Filter { free, projectors };
+    filter.apply(right);
+    let norm = dot(right, right).sqrt();
+    *first_norm = norm.larger(*first_norm);
+    // Far from the solution a rough direction does (Eisenstat and Walker 1996).
+    let share = if *first_norm > 0.0 && !settings.budget { (norm / *first_norm).larger(1e-9) } else { 1.0 };
+    let products =
+        linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
+    filter.apply(step);
+    let slope = -dot(right, step);
+    if moves {
+        for (s, p) in step.iter_mut().zip(&*prescribed) {
+            *s += p;
+        }
+    }
+    // What is out of balance after the step in the directions that are held: r + A Δ.
+    if contacting.any() {
+        linear.multiply(&mixture, step, reaction);
+        for (r, residual) in reaction.iter_mut().zip(&*residual) {
+            *r += residual;
+        }
+    }
+    Ok((products, slope))
+}
+
+/// The forces at x₀ + u (or at the trial), and what is out of balance.
+fn evaluate<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    trial: bool,
+) -> Result<(), StepError> {
+    let u = if trial { &room.trial } else { &room.u };
+    Room::show(system, &room.x0, u, &room.z, balance.beta);
+    system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
+    for node in 0..system.nodes {
+        for d in 0..D {
+            let k = node * D + d;
+            room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
+        }
+    }
+    Ok(())
+}
+
+fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {
+    for (u, s) in room.u.iter_mut().zip(&room.step) {
+        *u += s;
+    }
+    evaluate(system, room, balance, false)
+}
+
+/// Goes along the step so far that the slope of the incremental potential has fallen and, where that potential is known, it
+/// has not risen; gives the part of the step that was gone.
+fn line_search<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    slope: f64,
+) -> Result<f64, StepError> {
+    let conservative = !system.is_damped() && !room.contacting.any();
+    let before = if conservative { potential(system, room, balance, false) } else { None };
+    let mut length = 1.0;
+    for _ in 0..MOST_TRIALS {
+        for k in 0..room.u.len() {
+            room.trial[k] = room.u[k] + length * room.step[k];
+        }
+        let allowed = evaluate(system, room, balance, true).is_ok();
+        let now = if allowed { slope_along(room) } else { f64::NAN };
+        // Differences of energies are lost in rounding where the step is small.
+        let risen = match before {
+            Some((energy, magnitude)) if allowed => {
+                potential(system, room, balance, true).is_none_or(|(after, _)| after > energy + 1e-12 * magnitude)
+            }
+            _ => false,
+        };
+        if allowed && now.is_finite() && now <= SLOPE_LEFT * slope.abs() && !risen {
+            room.u.copy_from_slice(&room.trial);
+            return Ok(length);
+        }
+        let secant = slope.abs() / (slope.abs() + now);
+        length *= if secant.is_finite() && !risen { secant.larger(0.1).smaller(0.6) } else { 0.4 };
+    }
+    // No progress: the state stays where it was, and with it the forces.
+    evaluate(system, room, balance, false)?;
+    Ok(0.0)
+}
+
+/// The slope of the incremental potential along the step, friction included.
+fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
+    room.right.copy_from_slice(&room.residual);
+    room.contacting.subtract_friction(&mut room.right);
+    dot(&room.right, &room.step)
+}
+
+/// The incremental potential and the size of its parts [J].
+fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balance, trial: bool) -> Option<(f64, f64)> {
+    let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
+    let u = if trial { &room.trial } else { &room.u };
+    let mut inertia = 0.0;
+    for (node, mass) in room.mass.iter().enumerate() {
+        for k in node * D..(node + 1) * D {
+            let way = u[k] - room.y[k];
+            inertia += mass * way * way;
+        }
+    }
+    inertia *= 0.5 * balance.sigma;
+    Some((energy + inertia, energy.abs() + inertia))
+}
+
+/// Whether what is out of balance is no more than the rounding of the forces.
+fn at_rounding<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) -> bool {
+    room.right.copy_from_slice(&room.residual);
+    room.contacting.subtract_friction(&mut room.right);
+    let filter = Filter { free: &room.free, projectors: &room.projectors };
+    filter.apply(&mut room.right);
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    room.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
+        let floor = ROUNDING * room.linear.size_at(&mixture, node) * size;
+        rest.iter().all(|r| r.abs() <= floor)
+    })
+}

@@ -1,0 +1,166 @@
+//! The vectors that an implicit step works on.
+
+use super::contact::Contacting;
+use super::linear::Linear;
+use opruga_core::state::Columns;
+use opruga_core::system::{Stage, System};
+use opruga_math::Lane;
+use opruga_solve::blocks::{Block, isotropic};
+
+/// Room for an implicit step. Long vectors hold the coordinates of one node after the other.
+#[derive(Debug)]
+pub(crate) struct Room<const D: usize> {
+    /// State at the start.
+    pub(crate) x0: Vec<f64>,
+    pub(crate) v0: Vec<f64>,
+    /// Acceleration at the start, of rules that have one [m/s²].
+    pub(crate) a0: Vec<f64>,
+    /// Mass of every node [kg].
+    pub(crate) mass: Vec<f64>,
+    /// The vectors of the stage, less x₀.
+    pub(crate) y: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+    /// The displacement of the stage from the start, u = x_s − x₀: so velocities lose no digits far from the origin.
+    pub(crate) u: Vec<f64>,
+    /// Displacement and velocity at the end of the step.
+    pub(crate) u1: Vec<f64>,
+    pub(crate) v1: Vec<f64>,
+    /// The force of the models, and what is out of balance.
+    pub(crate) force: Columns<D>,
+    pub(crate) residual: Vec<f64>,
+    pub(crate) trial: Vec<f64>,
+    pub(crate) step: Vec<f64>,
+    pub(crate) right: Vec<f64>,
+    /// What held directions take of the force [N].
+    pub(crate) reaction: Vec<f64>,
+    pub(crate) prescribed: Vec<f64>,
+    /// How far held axes have to go in the stage; not a number where an axis is free.
+    pub(crate) held: Vec<f64>,
+    /// Which nodes are quite free, and the projectors of the others.
+    pub(crate) free: Vec<bool>,
+    pub(crate) projectors: Vec<Block<D>>,
+    /// Nodes whose velocity an obstacle has set in this step.
+    pub(crate) struck: Vec<usize>,
+    pub(crate) linear: Linear<D>,
+    pub(crate) contacting: Contacting<D>,
+    /// The largest extent of the body [m].
+    pub(crate) extent: f64,
+}
+
+impl<const D: usize> Default for Room<D> {
+    fn default() -> Self {
+        Room {
+            x0: Vec::new(),
+            v0: Vec::new(),
+            a0: Vec::new(),
+            mass: Vec::new(),
+            y: Vec::new(),
+            z: Vec::new(),
+            u: Vec::new(),
+            u1: Vec::new(),
+            v1: Vec::new(),
+            force: Columns::zeros(0),
+            residual: Vec::new(),
+            trial: Vec::new(),
+            step: Vec::new(),
+            right: Vec::new(),
+            reaction: Vec::new(),
+            struck: Vec::new(),
+            prescribed: Vec::new(),
+            held: Vec::new(),
+            free: Vec::new(),
+            projectors: Vec::new(),
+            linear: Linear::default(),
+            contacting: Contacting::default(),
+            extent: 1.0,
+        }
+    }
+}
+
+/// Columns into a long vector.
+pub(crate) fn gather<const D: usize>(columns: &Columns<D>, nodes: usize, out: &mut [f64]) {
+    for d in 0..D {
+        for node in 0..nodes {
+            out[node * D + d] = columns.0[d][node];
+        }
+    }
+}
+
+impl<const D: usize> Room<D> {
+    /// Takes the state of a system at the start of a step.
+    pub(crate) fn load(&mut self, system: &System<D>) {
+        let size = system.nodes * D;
+        for vector in [
+            &mut self.x0,
+            &mut self.v0,
+            &mut self.y,
+            &mut self.z,
+            &mut self.u,
+            &mut self.u1,
+            &mut self.v1,
+            &mut self.residual,
+            &mut self.trial,
+            &mut self.step,
+            &mut self.right,
+            &mut self.reaction,
+            &mut self.prescribed,
+            &mut self.held,
+        ] {
+            vector.resize(size, 0.0);
+        }
+        self.mass.clear();
+        self.mass.extend((0..system.nodes).map(|node| system.mass.at(node)));
+        self.free.resize(system.nodes, true);
+        self.projectors.resize(system.nodes, isotropic(1.0));
+        for column in &mut self.force.0 {
+            column.grow(system.places() + opruga_math::WIDTH);
+        }
+        gather(&system.state.x, system.nodes, &mut self.x0);
+        gather(&system.state.v, system.nodes, &mut self.v0);
+        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for node in self.x0.as_chunks::<D>().0 {
+            for d in 0..D {
+                low[d] = node[d].smaller(low[d]);
+                high[d] = node[d].larger(high[d]);
+            }
+        }
+        self.extent = 0.0;
+        for d in 0..D {
+            self.extent = (high[d] - low[d]).larger(self.extent);
+        }
+        if !(self.extent > 0.0 && self.extent.is_finite()) {
+            self.extent = 1.0;
+        }
+    }
+
+    /// Notes how far held axes have to go in the stage: a part `theta` of the way to where they have to be at the end of
+    /// the step, `h` after its start.
+    pub(crate) fn hold(&mut self, system: &System<D>, theta: f64, h: f64) {
+        self.held.fill(f64::NAN);
+        for pin in &system.pins {
+            let (target, _) = pin.target(system.time + h);
+            for d in 0..D {
+                if pin.axes[d] {
+                    let k = pin.place * D + d;
+                    self.held[k] = theta * (target[d] - self.x0[k]);
+                }
+            }
+        }
+    }
+
+    /// Writes a stage into the work columns of a system: x₀ + u, and the velocities β (u − z).
+    pub(crate) fn show(system: &mut System<D>, x0: &[f64], u: &[f64], z: &[f64], beta: f64) {
+        let (places, nodes) = (system.places(), system.nodes);
+        let [columns, velocities] = &mut system.state.work[0];
+        for d in 0..D {
+            for place in 0..places {
+                let k = place.min(nodes - 1) * D + d;
+                columns.0[d][place] = x0[k] + u[k];
+                velocities.0[d][place] = beta * (u[k] - z[k]);
+            }
+        }
+    }
+
+    /// The stage as forces are evaluated in it.
+    pub(crate) const STAGE: Stage = Stage::Work(0);
+}

@@ -1,0 +1,132 @@
+//! The parameters that all implicit rules have.
+
+use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
+
+/// How the equations of a step are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Settings {
+    /// Iterations of Newton at most.
+    pub(crate) iterations: u32,
+    /// The correction that ends the iteration, in extents of the body.
+    pub(crate) tolerance: f64,
+    /// Whether a step that spent its iterations is as good as one that converged.
+    pub(crate) budget: bool,
+    /// Iterations of conjugate gradients at most, and their tolerance.
+    pub(crate) products: u32,
+    pub(crate) linear_tolerance: f64,
+    pub(crate) solver: Solver,
+    pub(crate) otherwise: Otherwise,
+}
+
+/// Which linear solver is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Solver {
+    /// By size and dimension.
+    Auto,
+    /// Conjugate gradients on the assembled matrix.
+    ConjugateGradients,
+    /// Conjugate gradients without a matrix.
+    MatrixFree,
+    /// The sparse Cholesky factor.
+    Cholesky,
+}
+
+/// What happens when a step does not converge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Otherwise {
+    /// An error; the state stays.
+    Error,
+    /// The step is made in two halves, these again if need be.
+    Halve,
+    /// The step counts, and is counted.
+    Accept,
+}
+
+/// The number of Newton's iterations.
+const ITERATIONS: Field = Field::new(
+    "iterations",
+    Allowed::Integer { least: 1, greatest: 1000 },
+    "",
+    Default::Absent,
+    "Iterations of Newton's method at most; 60, or 2 where `accuracy` is \"real_time\".",
+);
+/// When the iteration ends.
+const TOLERANCE: Field = Field::new(
+    "tolerance",
+    Allowed::Number { least: Bound::Closed(1e-14), greatest: Bound::Closed(0.1) },
+    "",
+    Default::Number(1e-9),
+    "The iteration ends when no node is corrected by more than this part of the body's extent.",
+);
+/// The linear solver.
+const LINEAR_SOLVER: Field = Field::new(
+    "linear_solver",
+    Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
+    "",
+    Default::Text("auto"),
+    "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
+processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
+the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes.",
+);
+/// What to do without convergence.
+const OTHERWISE: Field = Field::new(
+    "when_not_converged",
+    Allowed::Choice(&["error", "halve", "accept"]),
+    "",
+    Default::Text("error"),
+    "What happens to a step that does not converge: an error that leaves the state as it was, two steps of half the length \
+(these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
+);
+
+/// The fields of the rules that step through time.
+pub(crate) const FIELDS: &[Field] = &[ACCURACY, ITERATIONS, TOLERANCE, LINEAR_SOLVER, OTHERWISE];
+
+/// Exact or in real time.
+pub(crate) const ACCURACY: Field = Field::new(
+    "accuracy",
+    Allowed::Choice(&["exact", "real_time"]),
+    "",
+    Default::Text("exact"),
+    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: two iterations \
+from the motion of the last step, at most 60 products with the matrix each; the rest of the error, of second order in the \
+rotation of a step, is made up for in the steps that follow.",
+);
+
+/// The fields of statics.
+pub(crate) const STATIC_FIELDS: [Field; 3] = [ITERATIONS, TOLERANCE, LINEAR_SOLVER];
+
+impl Settings {
+    /// From the parameters of a scene.
+    pub(crate) fn new(values: &Values) -> Settings {
+        let real_time = values.text("accuracy") == Some("real_time");
+        Settings {
+            iterations: values.integer("iterations").map_or(if real_time { 2 } else { 60 }, |n| n as u32),
+            tolerance: values.number("tolerance").unwrap_or(1e-9),
+            budget: real_time,
+            products: if real_time { 60 } else { 20_000 },
+            linear_tolerance: if real_time { 1e-3 } else { 1e-2 },
+            solver: match values.text("linear_solver") {
+                Some("conjugate_gradients") => Solver::ConjugateGradients,
+                Some("matrix_free") => Solver::MatrixFree,
+                Some("cholesky") => Solver::Cholesky,
+                _ => Solver::Auto,
+            },
+            otherwise: match values.text("when_not_converged") {
+                Some("halve") => Otherwise::Halve,
+                Some("accept") => Otherwise::Accept,
+                _ => Otherwise::Error,
+            },
+        }
+    }
+}
+
+impl Solver {
+    /// Whether the sparse factor is taken for a body.
+    pub(crate) fn is_direct<const D: usize>(self, nodes: usize) -> bool {
+        match self {
+            Solver::Cholesky => true,
+            Solver::ConjugateGradients | Solver::MatrixFree => false,
+            Solver::Auto => nodes >= 200 && (D == 2 || nodes <= 3000),
+        }
+    }
+}

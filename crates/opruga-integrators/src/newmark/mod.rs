@@ -1,0 +1,181 @@
+//! # Newmark's rule and the generalised-α method
+//!
+//! x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁),  v₁ = v₀ + h ((1 − γ) a₀ + γ a₁),
+//! M ((1 − α_m) a₁ + α_m a₀) = F(x_s, v_s, t_s),  x_s = (1 − α_f) x₁ + α_f x₀, v_s and t_s likewise.
+//!
+//! Without `spectral_radius` it is the rule of average acceleration: α_m = α_f = 0, γ = ½, β = ¼. Second order, stable for
+//! every step on linear systems, no damping at any frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α
+//! method, whose amplitude at hω → ∞ falls by the factor ρ in a step and whose damping of slow motion is the least that this
+//! allows: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
+//!
+//! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a command has changed the body.
+//! Nodes that an obstacle holds forget theirs: it belongs to the time before the impact. Free fall is exact.
+//!
+//! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
+//! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
+
+#[cfg(test)]
+mod tests;
+
+use crate::implicit::newton::Balance;
+use crate::implicit::room::Room;
+use crate::implicit::settings::{FIELDS, Settings};
+use crate::implicit::step::{Rule, advance, same_bits_everywhere};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::potential::Views;
+use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
+use opruga_core::system::System;
+
+/// The parameters.
+pub const SPEC: Spec = Spec {
+    kind: "newmark",
+    summary: "implicit, second order, stable for every step: average acceleration, or generalised-α by its spectral radius",
+    documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average \
+acceleration (β = ¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps what is faster \
+than the step. It remembers the acceleration. One body an island.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new(
+            "spectral_radius",
+            Allowed::FRACTION,
+            "",
+            Default::Absent,
+            "The factor by which the fastest oscillations fall in a step: 1 keeps them, 0 takes them out at once. Absent: the \
+rule of average acceleration.",
+        ),
+        FIELDS[0],
+        FIELDS[1],
+        FIELDS[2],
+        FIELDS[3],
+        FIELDS[4],
+    ],
+};
+
+/// The kind `newmark`.
+#[derive(Debug)]
+pub struct NewmarkKind;
+
+/// Newmark's rule or the generalised-α method.
+#[derive(Clone, Copy, Debug)]
+pub struct Newmark {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+    settings: Settings,
+}
+
+impl<const D: usize> IntegratorKind<D> for NewmarkKind {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn batches(&self) -> bool {
+        false
+    }
+    fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
+        Ok(Box::new(Newmark::new(values)))
+    }
+}
+
+impl Newmark {
+    fn new(values: &Values) -> Newmark {
+        let settings = Settings::new(values);
+        let (alpha_m, alpha_f) = match values.number("spectral_radius") {
+            Some(rho) => ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)),
+            None => (0.0, 0.0),
+        };
+        let excess = alpha_f - alpha_m;
+        let beta = 0.25 * (1.0 + excess) * (1.0 + excess);
+        Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess, settings }
+    }
+}
+
+impl<const D: usize> Rule<D> for Newmark {
+    const NAME: &'static str = SPEC.kind;
+    const TRAPEZOID: bool = true;
+    fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+        let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
+        let begun = system.history.numbers[0] > 0.0;
+        let theta = 1.0 - alpha_f;
+        let rate = gamma / (beta * h);
+        room.a0.resize(room.u.len(), 0.0);
+        for node in 0..system.nodes {
+            let inverse = system.inverse_mass.at(node);
+            for d in 0..D {
+                let k = node * D + d;
+                let a = if begun { system.history.columns[0].0[d][node] } else { room.force.0[d][node] * inverse };
+                let v = room.v0[k];
+                room.a0[k] = a;
+                let way = h * v + h * h * (0.5 - beta) * a;
+                room.y[k] = theta * (way - alpha_m * beta * h * h / (1.0 - alpha_m) * a);
+                // v_s = rate (u − z)
+                room.z[k] = theta * way - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
+            }
+        }
+        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h }
+    }
+    fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
+        for k in 0..room.u.len() {
+            room.u1[k] = room.u[k] / balance.theta;
+            let a1 = self.acceleration(room, k, h);
+            room.v1[k] = room.v0[k] + h * ((1.0 - self.gamma) * room.a0[k] + self.gamma * a1);
+        }
+    }
+    fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+        for node in 0..system.nodes {
+            for d in 0..D {
+                system.history.columns[0].0[d][node] = self.acceleration(room, node * D + d, h);
+            }
+        }
+        for &node in &room.struck {
+            system.history.columns[0].set(node, [0.0; D]);
+        }
+        system.history.numbers[0] = 1.0;
+    }
+}
+
+impl Newmark {
+    /// a₁ from the displacement of the step.
+    fn acceleration<const D: usize>(&self, room: &Room<D>, k: usize, h: f64) -> f64 {
+        (room.u1[k] - h * room.v0[k] - h * h * (0.5 - self.beta) * room.a0[k]) / (self.beta * h * h)
+    }
+}
+
+impl<const D: usize> Integrator<D> for Newmark {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn needs(&self) -> Views {
+        Views { hessian: true, ..Views::default() }
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: 1, numbers: 1 }
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
+        let (square, theta) = (omega * omega, 1.0 - alpha_f);
+        let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
+        let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
+        let a = [
+            -square * factor,
+            -(square * theta * h + c) * factor,
+            -(alpha_m + square * theta * early + c * theta * kick) * factor,
+        ];
+        let (x, v) = (h * h * beta, h * gamma);
+        Amplification::new([
+            [1.0 + x * a[0], h + x * a[1], early + x * a[2]],
+            [v * a[0], 1.0 + v * a[1], kick + v * a[2]],
+            a,
+        ])
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        same_bits_everywhere(self.settings.solver, system)
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        advance(*self, &self.settings, system, h)
+    }
+}

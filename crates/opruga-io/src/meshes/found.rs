@@ -1,0 +1,180 @@
+//! Nodes and elements as a mesh file gives them, before a body is made of them.
+
+use super::scanner::Scanner;
+use crate::problem::SceneError;
+use std::collections::BTreeMap;
+
+/// Elements that Opruga knows, numbered as in [`opruga_mesh::Cells`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    Point,
+    Line,
+    /// Ends, then the middle.
+    QuadraticLine,
+    Triangle,
+    Quadrilateral,
+    QuadraticTriangle,
+    Tetrahedron,
+    Hexahedron,
+    QuadraticTetrahedron,
+}
+
+/// What an error says about elements that can be read.
+pub(super) const SUPPORTED: &str =
+    "points, lines of 2 or 3 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra of 8";
+
+impl Kind {
+    /// Number of dimensions that it spans.
+    pub(crate) fn dimension(self) -> usize {
+        match self {
+            Kind::Point => 0,
+            Kind::Line | Kind::QuadraticLine => 1,
+            Kind::Triangle | Kind::Quadrilateral | Kind::QuadraticTriangle => 2,
+            Kind::Tetrahedron | Kind::Hexahedron | Kind::QuadraticTetrahedron => 3,
+        }
+    }
+
+    /// Number of nodes.
+    pub(crate) fn nodes(self) -> usize {
+        match self {
+            Kind::Point => 1,
+            Kind::Line => 2,
+            Kind::QuadraticLine | Kind::Triangle => 3,
+            Kind::Quadrilateral | Kind::Tetrahedron => 4,
+            Kind::QuadraticTriangle => 6,
+            Kind::Hexahedron => 8,
+            Kind::QuadraticTetrahedron => 10,
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Kind::Point => "point",
+            Kind::Line => "line",
+            Kind::QuadraticLine => "quadratic line",
+            Kind::Triangle => "triangle",
+            Kind::Quadrilateral => "quadrilateral",
+            Kind::QuadraticTriangle => "quadratic triangle",
+            Kind::Tetrahedron => "tetrahedron",
+            Kind::Hexahedron => "hexahedron",
+            Kind::QuadraticTetrahedron => "quadratic tetrahedron",
+        }
+    }
+}
+
+/// An element of a file.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    pub(crate) kind: Kind,
+    nodes: [u32; 10],
+    /// Its number in the file.
+    pub(crate) number: u64,
+    /// The byte where it stands.
+    pub(crate) place: usize,
+}
+
+impl Item {
+    pub(crate) fn nodes(&self) -> &[u32] {
+        &self.nodes[..self.kind.nodes()]
+    }
+}
+
+/// What a reader found.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// Positions of nodes in the order of the file [m]; z is 0 where the file has none.
+    pub(crate) positions: Vec<[f64; 3]>,
+    /// The byte where each node stands; empty where the format has no place for single nodes.
+    pub(crate) node_places: Vec<usize>,
+    /// The number that the file gives each node.
+    pub(crate) node_numbers: Vec<u64>,
+    pub(crate) items: Vec<Item>,
+    /// Named sets of items.
+    pub(crate) item_groups: BTreeMap<String, Vec<u32>>,
+    /// Named sets of nodes.
+    pub(crate) node_groups: BTreeMap<String, Vec<u32>>,
+    /// Named numbers, one per item; NaN for items that have none.
+    pub(crate) item_values: BTreeMap<String, Vec<f64>>,
+    /// What is left out, counted.
+    pub(crate) notices: Vec<SceneError>,
+}
+
+impl Found {
+    /// Adds a node.
+    pub(super) fn node(&mut self, number: u64, position: [f64; 3], place: usize) {
+        self.positions.push(position);
+        self.node_numbers.push(number);
+        self.node_places.push(place);
+    }
+
+    /// Adds an element whose nodes stand in the order of Opruga.
+    pub(super) fn item(&mut self, kind: Kind, nodes: &[u32], number: u64, place: usize) {
+        let mut own = [0; 10];
+        own[..nodes.len()].copy_from_slice(nodes);
+        self.items.push(Item { kind, nodes: own, number, place });
+    }
+
+    /// Adds the item that was added last to a group.
+    pub(super) fn join(&mut self, group: String) {
+        let last = self.items.len() as u32 - 1;
+        let list = self.item_groups.entry(group).or_default();
+        if list.last() != Some(&last) {
+            list.push(last);
+        }
+    }
+
+    /// Says what of the file has no place in a body at rest.
+    pub(super) fn left_out(&mut self, what: String, value: String) {
+        self.notices.push(SceneError::new("mesh.left_out", what).value(value));
+    }
+}
+
+/// From the numbers of a file to places in a list.
+pub(super) struct Numbers(Vec<(u64, u32)>);
+
+impl Numbers {
+    /// # Errors
+    /// `mesh.duplicate_node` for a number that comes twice.
+    pub(super) fn of(found: &Found, scanner: &Scanner<'_>) -> Result<Numbers, SceneError> {
+        let mut pairs: Vec<(u64, u32)> =
+            found.node_numbers.iter().zip(0..).map(|(number, node)| (*number, node)).collect();
+        pairs.sort_unstable();
+        if let Some(pair) = pairs.windows(2).filter(|pair| pair[0].0 == pair[1].0).min_by_key(|pair| pair[1].1) {
+            let (number, second) = pair[1];
+            let error = scanner.error(
+                "mesh.duplicate_node",
+                format!("two nodes have the number {number}"),
+                found.node_places[second as usize],
+            );
+            return Err(error.value(number.to_string()).allowed("a number of its own for every node"));
+        }
+        Ok(Numbers(pairs))
+    }
+
+    /// The node of a number that stands at a byte of the file.
+    ///
+    /// # Errors
+    /// `mesh.index`.
+    pub(super) fn node(
+        &self,
+        number: u64,
+        scanner: &Scanner<'_>,
+        element: &str,
+        place: usize,
+    ) -> Result<u32, SceneError> {
+        match self.0.binary_search_by_key(&number, |pair| pair.0) {
+            Ok(at) => Ok(self.0[at].1),
+            Err(_) => {
+                let error =
+                    scanner.error("mesh.index", format!("{element} names node {number}, which is not there"), place);
+                let allowed = match (self.0.first(), self.0.last()) {
+                    (Some(low), Some(high)) => {
+                        format!("one of the {} nodes from {} to {}", self.0.len(), low.0, high.0)
+                    }
+                    _ => "the file has no nodes".to_string(),
+                };
+                Err(error.value(number.to_string()).allowed(allowed))
+            }
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Gmsh, versions 2.2 and 4.1, as text or as bytes of either order: sections, names of groups, values of elements.
+//!
+//! Physical groups become groups: those of points, curves and surfaces of nodes, those of what fills the body of nodes and of cells. A group without a
+//! name is called after its dimension and number: `curve 3`. `$ElementData` of one component becomes a value of cells.
+//!
+//! # Source
+//! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".
+
+use super::found::{Found, Kind, Numbers, SUPPORTED};
+use super::scanner::Scanner;
+use super::{gmsh_2, gmsh_4};
+use crate::problem::{SceneError, visible};
+use std::collections::BTreeMap;
+
+pub(super) const SYNTAX: &str = "msh.syntax";
+pub(super) const SIZE: &str = "msh.size";
+
+/// Names of physical groups, by dimension and number.
+#[derive(Debug, Default)]
+pub(super) struct Names(BTreeMap<(usize, i64), String>);
+
+impl Names {
+    pub(super) fn of(&self, dimension: usize, number: i64) -> String {
+        match self.0.get(&(dimension, number)) {
+            Some(name) => name.clone(),
+            None => format!("{} {number}", ["point", "curve", "surface", "volume"][dimension.min(3)]),
+        }
+    }
+}
+
+/// What the sections share.
+#[derive(Debug, Default)]
+pub(super) struct Context {
+    pub(super) found: Found,
+    pub(super) names: Names,
+    /// Physical groups of entities, by dimension and number (version 4.1).
+    pub(super) entities: BTreeMap<(usize, i32), Vec<i64>>,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// `msh.syntax`, `msh.size`, `msh.version` with the line or byte; `mesh.…` for what the elements say.
+pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
+    let modern = format(scanner)?;
+    let mut context = Context::default();
+    let mut numbers: Option<Numbers> = None;
+    let mut elements = false;
+    while let Some((word, from)) = scanner.peek() {
+        let Some(section) = word.strip_prefix('$') else {
+            let error = scanner.error(SYNTAX, format!("`{}` stands between sections", visible(word)), from);
+            return Err(error.value(visible(word)).allowed("a section such as $Nodes"));
+        };
+        let (section, _) = (section.to_string(), scanner.line());
+        match section.as_str() {
+            "PhysicalNames" => physical_names(scanner, &mut context.names)?,
+            "Entities" if modern => gmsh_4::entities(scanner, &mut context)?,
+            "Nodes" if numbers.is_none() => {
+                if modern {
+                    gmsh_4::nodes(scanner, &mut context.found)?;
+                } else {
+                    gmsh_2::nodes(scanner, &mut context.found)?;
+                }
+                numbers = Some(Numbers::of(&context.found, scanner)?);
+            }
+            "Elements" if !elements => {
+                let Some(numbers) = &numbers else {
+                    let error = scanner.error(SYNTAX, "the elements come before the nodes", from);
+                    return Err(error.value("$Elements").allowed("$Nodes"));
+                };
+                if modern {
+                    gmsh_4::elements(scanner, &mut context, numbers)?;
+                } else {
+                    gmsh_2::elements(scanner, &mut context, numbers)?;
+                }
+                elements = true;
+            }
+            "ElementData" if elements => element_data(scanner, &mut context.found)?,
+            "Nodes" | "Elements" => {
+                let error = scanner.error(SYNTAX, format!("there is a second section ${section}"), from);
+                return Err(error.value(format!("${section}")).allowed("one"));
+            }
+            other => skip(scanner, other, from, &mut context.found)?,
+        }
+        scanner.expect(SYNTAX, &format!("$End{section}"))?;
+    }
+    if !elements {
+        return Err(scanner.ends(SYNTAX, if numbers.is_some() { "`$Elements`" } else { "`$Nodes`" }));
+    }
+    Ok(context.found)
+}
+
+/// `$MeshFormat`: whether it is version 4.1; the scanner knows afterwards whether numbers are binary, and their order.
+fn format(scanner: &mut Scanner<'_>) -> Result<bool, SceneError> {
+    scanner.expect(SYNTAX, "$MeshFormat")?;
+    let (version, from) = scanner.word(SYNTAX, "the version")?;
+    let modern = match version {
+        "2" | "2.0" | "2.1" | "2.2" => false,
+        "4.1" => true,
+        _ => {
+            let error = scanner.error("msh.version", format!("version `{}` cannot be read", visible(version)), from);
+            let error = error.value(visible(version)).allowed("2.2 or 4.1");
+            return Err(error.hint("Gmsh writes another version with `-format msh41` or `-format msh22`"));
+        }
+    };
+    let (kind, from) = scanner.whole::<u32>(SYNTAX, "the kind of file, 0 or 1")?;
+    if kind > 1 {
+        let error = scanner.error(SYNTAX, format!("{kind} is no kind of file"), from);
+        return Err(error.value(kind.to_string()).allowed("0 (text) or 1 (binary)"));
+    }
+    let (size, from) = scanner.whole::<u32>(SYNTAX, "the size of numbers")?;
+    if size != 8 {
+        let error = scanner.error("msh.version", format!("numbers have {size} bytes"), from);
+        return Err(error.value(size.to_string()).allowed("8"));
+    }
+    scanner.line_end(SYNTAX, "the format")?;
+    if kind == 1 {
+        scanner.binary = true;
+        let from = scanner.at;
+        match scanner.binary_i32(SYNTAX, "the number 1")? {
+            1 => {}
+            0x0100_0000 => scanner.big_endian = true,
+            other => {
+                let error = scanner.error("msh.endianness", format!("{other} stands where 1 should"), from);
+                return Err(error.value(other.to_string()).allowed("1, in the order of the file's bytes"));
+            }
+        }
+    }
+    scanner.expect(SYNTAX, "$EndMeshFormat")?;
+    Ok(modern)
+}
+
+/// `$PhysicalNames`: a text in all files. Names may hold blanks.
+fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), SceneError> {
+    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of names")?;
+    let count = scanner.fits(SIZE, count, 6, "names", from)?;
+    for _ in 0..count {
+        let (dimension, from) = scanner.whole::<usize>(SYNTAX, "a dimension")?;
+        if dimension > 3 {
+            let error = scanner.error(SYNTAX, format!("a group has {dimension} dimensions"), from);
+            return Err(error.value(dimension.to_string()).allowed("0 to 3"));
+        }
+        let (number, _) = scanner.whole::<i64>(SYNTAX, "the number of a group")?;
+        let (text, from) = scanner.line();
+        let Some(name) = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|name| !name.is_empty())
+        else {
+            let error = scanner.error(SYNTAX, "the name of a group does not stand in quotes", from);
+            return Err(error.value(visible(&text)).allowed("\"name\""));
+        };
+        names.0.insert((dimension, number), name.to_string());
+    }
+    Ok(())
+}
+
+/// Passes over a section that says nothing about a body at rest.
+fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found) -> Result<(), SceneError> {
+    let end = format!("$End{section}");
+    let place = scanner.bytes[scanner.at..].windows(end.len()).position(|window| window == end.as_bytes());
+    let Some(place) = place else {
+        let error = scanner.error(SYNTAX, format!("the section ${} has no end", visible(section)), from);
+        return Err(error.value(visible(&format!("${section}"))).allowed(visible(&end)).hint("the file is cut off"));
+    };
+    scanner.at += place;
+    if section != "Comments" {
+        found.left_out(format!("the section ${} is left out", visible(section)), visible(section));
+    }
+    Ok(())
+}
+
+/// `$ElementData`: a number for every element, or for some.
+fn element_data(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), SceneError> {
+    let start = scanner.at;
+    let (texts, from) = scanner.whole::<u64>(SYNTAX, "the number of texts")?;
+    let texts = scanner.fits(SIZE, texts, 2, "texts", from)?;
+    scanner.line_end(SYNTAX, "the number of texts")?;
+    let mut name = String::new();
+    for k in 0..texts {
+        let text = scanner.line().0;
+        if k == 0 {
+            name = text.trim_matches('"').to_string();
+        }
+    }
+    let (reals, from) = scanner.whole::<u64>(SYNTAX, "the number of real tags")?;
+    for _ in 0..scanner.fits(SIZE, reals, 2, "real tags", from)? {
+        scanner.number(SYNTAX, "a real tag")?;
+    }
+    let (wholes, from) = scanner.whole::<u64>(SYNTAX, "the number of whole tags")?;
+    let mut tags = Vec::new();
+    for _ in 0..scanner.fits(SIZE, wholes, 2, "whole tags", from)? {
+        tags.push(scanner.whole::<u64>(SYNTAX, "a whole tag")?);
+    }
+    let (Some(&(components, _)), Some(&(count, from))) = (tags.get(1), tags.get(2)) else {
+        let error = scanner.error(SYNTAX, "step, components and count of values are missing", from);
+        return Err(error.value(tags.len().to_string()).allowed("3 whole tags or more"));
+    };
+    if components != 1 {
+        found.left_out(
+            format!("values of {components} components are left out: `{}`", visible(&name)),
+            components.to_string(),
+        );
+        scanner.at = start;
+        let end = b"$EndElementData";
+        let place = scanner.bytes[start..].windows(end.len()).position(|window| window == end);
+        return match place {
+            Some(place) => {
+                scanner.at += place;
+                Ok(())
+            }
+            None => Err(scanner.ends(SYNTAX, "`$EndElementData`")),
+        };
+    }
+    scanner.line_end(SYNTAX, "the count of values")?;
+    let mut order: Vec<(u64, usize)> = found.items.iter().zip(0..).map(|(item, k)| (item.number, k)).collect();
+    order.sort_unstable();
+    let mut values = vec![f64::NAN; found.items.len()];
+    for _ in 0..scanner.fits(SIZE, count, 4, "values", from)? {
+        let place = scanner.at;
+        let (number, value) = if scanner.binary {
+            let number = scanner.binary_i32(SIZE, "the number of an element")?;
+            (number as u64, scanner.binary_f64(SIZE, "a value")?)
+        } else {
+            (scanner.whole::<u64>(SYNTAX, "the number of an element")?.0, scanner.number(SYNTAX, "a value")?)
+        };
+        let Ok(at) = order.binary_search_by_key(&number, |entry| entry.0) else {
+            let error =
+                scanner.error("mesh.index", format!("a value names element {number}, which is not there"), place);
+            return Err(error.value(number.to_string()).allowed("the number of an element"));
+        };
+        values[order[at].1] = value;
+    }
+    found.item_values.insert(name, values);
+    Ok(())
+}
+
+/// What a number of a type means.
+///
+/// # Errors
+/// `mesh.unsupported_element` with name and number.
+pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, place: usize) -> Result<Kind, SceneError> {
+    let (name, found) = match number {
+        1 => ("line", Some(Kind::Line)),
+        2 => ("triangle", Some(Kind::Triangle)),
+        3 => ("quadrilateral", Some(Kind::Quadrilateral)),
+        4 => ("tetrahedron", Some(Kind::Tetrahedron)),
+        5 => ("hexahedron", Some(Kind::Hexahedron)),
+        6 => ("prism", None),
+        7 => ("pyramid", None),
+        8 => ("quadratic line", Some(Kind::QuadraticLine)),
+        9 => ("quadratic triangle", Some(Kind::QuadraticTriangle)),
+        10 => ("quadratic quadrilateral", None),
+        11 => ("quadratic tetrahedron", Some(Kind::QuadraticTetrahedron)),
+        12 => ("quadratic hexahedron", None),
+        13 => ("quadratic prism", None),
+        14 => ("quadratic pyramid", None),
+        15 => ("point", Some(Kind::Point)),
+        16 => ("serendipity quadrilateral", None),
+        17 => ("serendipity hexahedron", None),
+        18 => ("serendipity prism", None),
+        19 => ("serendipity pyramid", None),
+        20 | 22 | 24 => ("incomplete triangle of higher order", None),
+        21 => ("cubic triangle", None),
+        23 => ("triangle of order 4", None),
+        25 => ("triangle of order 5", None),
+        26 => ("cubic line", None),
+        27 => ("line of order 4", None),
+        28 => ("line of order 5", None),
+        29 => ("cubic tetrahedron", None),
+        30 => ("tetrahedron of order 4", None),
+        31 => ("tetrahedron of order 5", None),
+        92 => ("cubic hexahedron", None),
+        _ => ("element of an unknown type", None),
+    };
+    match found {
+        Some(kind) => Ok(kind),
+        None => {
+            let error =
+                scanner.error("mesh.unsupported_element", format!("a {name} (type {number}) cannot be read"), place);
+            Err(error.value(number.to_string()).allowed(SUPPORTED))
+        }
+    }
+}
+
+/// Brings the nodes of an element into the order of Opruga: Gmsh lists the middles of edges 2–3 and 1–3 the other way round.
+pub(super) fn reorder(kind: Kind, nodes: &mut [u32]) {
+    if kind == Kind::QuadraticTetrahedron {
+        nodes.swap(8, 9);
+    }
+}

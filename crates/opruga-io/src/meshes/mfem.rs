@@ -1,0 +1,138 @@
+//! MFEM meshes, version 1: straight elements with attributes.
+//!
+//! Attributes of elements become groups of nodes and cells, `attribute 1`; those of the boundary groups of nodes, `boundary 3`.
+//!
+//! # Source
+//! MFEM project, "Mesh formats", https://mfem.org/mesh-format-v1.0/.
+
+use super::found::{Found, Kind, SUPPORTED};
+use super::scanner::Scanner;
+use crate::problem::{SceneError, visible};
+
+const SYNTAX: &str = "mfem.syntax";
+const SIZE: &str = "mfem.size";
+
+/// An element before the number of vertices is known.
+struct Draft {
+    kind: Kind,
+    nodes: Vec<(u64, usize)>,
+    attribute: i64,
+    boundary: bool,
+    place: usize,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// `mfem.syntax`, `mfem.size`, `mfem.curved`, `mesh.index`, `mesh.unsupported_element` with the line.
+pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
+    scanner.expect(SYNTAX, "MFEM")?;
+    scanner.expect(SYNTAX, "mesh")?;
+    let (version, from) = scanner.word(SYNTAX, "the version")?;
+    if !matches!(version, "v1.0" | "v1.2" | "v1.3") {
+        let error = scanner.error("mfem.version", format!("version `{}` cannot be read", visible(version)), from);
+        return Err(error.value(visible(version)).allowed("v1.0, v1.2, v1.3"));
+    }
+    let (mut drafts, mut found, mut vertices) = (Vec::new(), Found::default(), false);
+    while let Some((section, from)) = scanner.peek() {
+        scanner.word(SYNTAX, "a section")?;
+        match section {
+            "dimension" => {
+                let (dimension, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
+                if !(1..=3).contains(&dimension) {
+                    let error = scanner.error(SYNTAX, format!("the dimension is {dimension}"), at);
+                    return Err(error.value(dimension.to_string()).allowed("1, 2 or 3"));
+                }
+            }
+            "elements" | "boundary" => elements(scanner, &mut drafts, section == "boundary")?,
+            "vertices" => {
+                self::vertices(scanner, &mut found)?;
+                vertices = true;
+            }
+            "mfem_mesh_end" => {}
+            "nodes" => {
+                let error = scanner.error("mfem.curved", "curved elements (`nodes`) cannot be read", from);
+                return Err(error.value("nodes").allowed("`vertices` with coordinates").hint("save a straight mesh"));
+            }
+            other => {
+                let error = scanner.error(SYNTAX, format!("`{}` is no section that can be read", visible(other)), from);
+                return Err(error.value(visible(other)).allowed("dimension, elements, boundary, vertices"));
+            }
+        }
+    }
+    if !vertices {
+        return Err(scanner.ends(SYNTAX, "`vertices`"));
+    }
+    for (number, draft) in drafts.iter().enumerate() {
+        let mut nodes = [0; 10];
+        for (slot, &(node, at)) in nodes.iter_mut().zip(&draft.nodes) {
+            if node >= found.positions.len() as u64 {
+                let what = if draft.boundary { "a boundary element" } else { "an element" };
+                let error = scanner.error("mesh.index", format!("{what} names vertex {node}"), at);
+                let allowed = format!("0 to {}", found.positions.len().saturating_sub(1));
+                return Err(error.value(node.to_string()).allowed(allowed));
+            }
+            *slot = node as u32;
+        }
+        found.item(draft.kind, &nodes[..draft.nodes.len()], number as u64, draft.place);
+        found.join(format!("{} {}", if draft.boundary { "boundary" } else { "attribute" }, draft.attribute));
+    }
+    Ok(found)
+}
+
+fn elements(scanner: &mut Scanner<'_>, drafts: &mut Vec<Draft>, boundary: bool) -> Result<(), SceneError> {
+    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of elements")?;
+    scanner.line_end(SYNTAX, "the number of elements")?;
+    for _ in 0..scanner.fits(SIZE, count, 6, "elements", from)? {
+        let (attribute, place) = scanner.whole::<i64>(SYNTAX, "an attribute")?;
+        let (geometry, at) = scanner.whole::<u64>(SYNTAX, "the geometry of an element")?;
+        let kind = match geometry {
+            0 => Kind::Point,
+            1 => Kind::Line,
+            2 => Kind::Triangle,
+            3 => Kind::Quadrilateral,
+            4 => Kind::Tetrahedron,
+            5 => Kind::Hexahedron,
+            _ => {
+                let name = match geometry {
+                    6 => "prism",
+                    7 => "pyramid",
+                    _ => "element of an unknown geometry",
+                };
+                let message = format!("a {name} (geometry {geometry}) cannot be read");
+                let error = scanner.error("mesh.unsupported_element", message, at);
+                return Err(error.value(geometry.to_string()).allowed(SUPPORTED));
+            }
+        };
+        let mut nodes = Vec::with_capacity(kind.nodes());
+        for _ in 0..kind.nodes() {
+            nodes.push(scanner.whole::<u64>(SYNTAX, "a vertex of an element")?);
+        }
+        scanner.line_end(SYNTAX, "an element")?;
+        drafts.push(Draft { kind, nodes, attribute, boundary, place });
+    }
+    Ok(())
+}
+
+fn vertices(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), SceneError> {
+    let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of vertices")?;
+    if scanner.peek().is_some_and(|(word, _)| word == "nodes") {
+        return Ok(()); // coordinates stand in `nodes`, which is refused
+    }
+    let (dimension, at) = scanner.whole::<usize>(SYNTAX, "the number of coordinates")?;
+    if !(1..=3).contains(&dimension) {
+        let error = scanner.error(SYNTAX, format!("vertices have {dimension} coordinates"), at);
+        return Err(error.value(dimension.to_string()).allowed("1, 2 or 3"));
+    }
+    for number in 0..scanner.fits(SIZE, count, 2 * dimension as u64, "vertices", from)? {
+        scanner.peek();
+        let place = scanner.at;
+        let mut position = [0.0; 3];
+        for x in &mut position[..dimension] {
+            *x = scanner.number(SYNTAX, "a coordinate")?;
+        }
+        scanner.line_end(SYNTAX, "a vertex")?;
+        found.node(number as u64, position, place);
+    }
+    Ok(())
+}

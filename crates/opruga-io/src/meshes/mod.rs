@@ -1,0 +1,144 @@
+//! Meshes of other programs: nodes, elements of all kinds, groups and values of cells, from files and to files.
+//!
+//! ```text
+//! .msh (Gmsh 2.2, 4.1) ─┐
+//! .vtk, .vtu ───────────┤             ┌→ assemble → Mesh: cells, groups, values (a body)
+//! .node + .ele (TetGen) ┼→ Found ─────┤
+//! .mesh (MFEM, Medit) ──┘             └→ triangles of a surface, as from OBJ
+//! ```
+//! A reader gives what its file says, in Opruga's order of nodes, each with its place. What bodies need is checked once for all formats: nothing is
+//! dropped, joined or turned unless it is asked for, and then it is counted.
+
+mod assemble;
+mod found;
+mod gmsh;
+mod gmsh_2;
+mod gmsh_4;
+mod medit;
+mod mfem;
+mod scanner;
+mod tetgen;
+mod vtk;
+mod vtu;
+mod write;
+
+pub use assemble::Mending;
+pub(crate) use found::{Found, Kind};
+pub use write::{WRITTEN, Written, write};
+
+use crate::problem::{SceneError, visible};
+use found::Numbers;
+use opruga_mesh::Mesh;
+use scanner::Scanner;
+use std::sync::Arc;
+
+/// Gives the bytes of a file by its name.
+pub type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
+
+/// What the files end with that can be read.
+pub const ENDINGS: &str = ".msh, .vtk, .vtu, .mesh, .mfem, .node, .ele";
+
+/// A mesh file that has been read, before a body is made of it.
+#[derive(Debug)]
+pub struct MeshFile<'a> {
+    found: Found,
+    scanner: Scanner<'a>,
+}
+
+/// Whether a file of this name may hold a mesh.
+pub fn is_mesh(name: &str) -> bool {
+    matches!(ending(name).as_str(), "msh" | "vtk" | "vtu" | "mesh" | "mfem" | "node" | "ele")
+}
+
+fn ending(name: &str) -> String {
+    name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase()
+}
+
+/// Reads a file by its ending and its first words; TetGen's other file is asked of `open`.
+///
+/// # Errors
+/// `msh.…`, `vtk.…`, `vtu.…`, `tetgen.…`, `mfem.…`, `medit.…`, `mesh.…` with line or byte.
+pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<MeshFile<'a>, SceneError> {
+    let mut scanner = Scanner::new(name, bytes, None);
+    if scanner.clone().is_done() {
+        let error = scanner.error("mesh.empty", "the file is empty", 0);
+        return Err(error.value("0 bytes").allowed("a mesh"));
+    }
+    let found = match ending(name).as_str() {
+        "msh" => gmsh::read(&mut scanner)?,
+        "vtk" => vtk::read(&mut scanner)?,
+        "vtu" => {
+            let found = vtu::read(name, bytes)?;
+            // Places are those of the text before appended data, which are the same in the file.
+            scanner.binary = core::str::from_utf8(bytes).is_err();
+            found
+        }
+        "mesh" | "mfem" => {
+            scanner.comment = Some(b'#');
+            match scanner.peek() {
+                Some(("MFEM", _)) => mfem::read(&mut scanner)?,
+                Some(("MeshVersionFormatted", _)) => medit::read(&mut scanner)?,
+                other => {
+                    let (word, from) = other.unwrap_or(("", 0));
+                    let error = scanner.error("mesh.format", "the file is no mesh of MFEM or Medit", from);
+                    return Err(error
+                        .value(visible(word))
+                        .allowed("`MFEM mesh v1.0` or `MeshVersionFormatted 2` at its head"));
+                }
+            }
+        }
+        kind @ ("node" | "ele") => {
+            let (stem, _) = name.rsplit_once('.').unwrap_or((name, ""));
+            let other = format!("{stem}.{}", if kind == "node" { "ele" } else { "node" });
+            let more = open(&other)?;
+            let (node_bytes, element_bytes) = if kind == "node" { (bytes, &*more) } else { (&*more, bytes) };
+            let names = if kind == "node" { (name, other.as_str()) } else { (other.as_str(), name) };
+            let mut nodes = Scanner::new(names.0, node_bytes, Some(b'#'));
+            let mut elements = Scanner::new(names.1, element_bytes, Some(b'#'));
+            let mut found = tetgen::nodes(&mut nodes)?;
+            let numbers = Numbers::of(&found, &nodes)?;
+            tetgen::elements(&mut elements, &mut found, &numbers)?;
+            // Only places in the file that was named can be shown.
+            scanner.comment = Some(b'#');
+            if kind == "node" {
+                found.items.iter_mut().for_each(|item| item.place = 0);
+            } else {
+                found.node_places.clear();
+            }
+            found
+        }
+        other => {
+            let error =
+                SceneError::new("shape.format", format!("files ending in `.{}` cannot be read", visible(other)));
+            let error = error.value(visible(name)).allowed(format!("a file ending in {ENDINGS}"));
+            return Err(SceneError { file: name.to_string(), ..error });
+        }
+    };
+    Ok(MeshFile { found, scanner })
+}
+
+impl MeshFile<'_> {
+    /// The dimension of the elements that fill the body: 1, 2 or 3; 0 without elements.
+    pub fn dimension(&self) -> usize {
+        self.found.items.iter().map(|item| item.kind.dimension()).max().unwrap_or(0)
+    }
+
+    /// Whether all nodes lie in one plane z = constant.
+    pub fn is_plane(&self) -> bool {
+        self.found.positions.windows(2).all(|pair| pair[0][2] == pair[1][2])
+    }
+
+    /// The body; nodes keep their order. Returns what was left out or mended, counted.
+    ///
+    /// # Errors
+    /// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
+    /// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
+    pub fn assemble<const D: usize>(self, mending: Mending) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
+        assemble::assemble(self.found, &self.scanner, mending)
+    }
+
+    /// What the file says, for those that want its triangles only.
+    pub(crate) fn into_found(self) -> Found {
+        self.found
+    }
+}

@@ -1,0 +1,376 @@
+//! VTK XML unstructured grids (`.vtu`): text, base64 or raw bytes at the end, of either order, zlib or not compressed.
+//!
+//! # Source
+//! Kitware, "VTK XML Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+
+use super::found::Found;
+use super::scanner::Scanner;
+use super::vtk;
+use crate::base64;
+use crate::problem::{SceneError, visible};
+use roxmltree::{Document, Node, ParsingOptions};
+use std::io::Read;
+
+const SYNTAX: &str = "vtu.syntax";
+const SIZE: &str = "vtu.size";
+
+/// No compression of zlib makes data more than about so many times smaller.
+const MOST_COMPRESSED: u64 = 1100;
+
+/// What the head of the file says about its arrays.
+struct Reader<'a> {
+    scanner: &'a Scanner<'a>,
+    big_endian: bool,
+    /// Bytes of the numbers in front of binary arrays.
+    header: usize,
+    compressed: bool,
+    /// Appended data behind its underscore: raw, or letters.
+    appended: Option<(&'a [u8], bool)>,
+}
+
+/// An error at an element of the file.
+fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, code: &'static str, message: impl Into<String>) -> SceneError {
+    let range = node.range();
+    let end = scanner.bytes[range.start..].iter().position(|b| *b == b'>').map_or(range.end, |k| range.start + k + 1);
+    scanner.mark(SceneError::new(code, message), range.start, end)
+}
+
+/// The text of the file without appended data, and that data.
+fn split(bytes: &[u8]) -> (Vec<u8>, Option<(&[u8], bool)>) {
+    let find = |from: usize, what: &[u8]| bytes[from..].windows(what.len()).position(|w| w == what).map(|k| from + k);
+    let Some(start) = find(0, b"<AppendedData") else { return (bytes.to_vec(), None) };
+    let Some(tag) = find(start, b">") else { return (bytes.to_vec(), None) };
+    let raw = find(start, b"\"raw\"").is_some_and(|k| k < tag) || find(start, b"'raw'").is_some_and(|k| k < tag);
+    let Some(mark) = find(tag, b"_") else { return (bytes.to_vec(), None) };
+    // Raw bytes may hold anything, so the end is looked for from behind.
+    let close = b"</AppendedData>";
+    let end = bytes.windows(close.len()).rposition(|w| w == close).filter(|end| *end > mark);
+    let Some(end) = end else { return (bytes.to_vec(), None) };
+    let head = [&bytes[..=mark], &bytes[end..]].concat();
+    (head, Some((&bytes[mark + 1..end], raw)))
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// `vtu.syntax`, `vtu.size`, `vtu.compressor` with the line of the array; `mesh.…` for what the cells say.
+pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
+    let (head, appended) = split(bytes);
+    let scanner = Scanner::new(file, &head, None);
+    let text = match core::str::from_utf8(&head) {
+        Ok(text) => text,
+        Err(e) => {
+            let error = scanner.error(SYNTAX, "the file is no text in UTF-8", e.valid_up_to());
+            return Err(error.value(format!("byte {}", e.valid_up_to())).hint("it is cut off, or no VTU"));
+        }
+    };
+    let options = ParsingOptions { nodes_limit: 1_000_000, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options).map_err(|e| {
+        let place = e.pos();
+        let from = crate::source::Source { file, text }.offset(place.row as usize, place.col as usize);
+        scanner.error(SYNTAX, visible(&e.to_string()), from).value("XML").hint("the file is cut off, or no VTU")
+    })?;
+    let root = document.root_element();
+    if root.tag_name().name() != "VTKFile" || root.attribute("type") != Some("UnstructuredGrid") {
+        let kind = root.attribute("type").unwrap_or(root.tag_name().name());
+        let error = at(&scanner, root, SYNTAX, format!("the file holds `{}`", visible(kind)));
+        return Err(error.value(visible(kind)).allowed("<VTKFile type=\"UnstructuredGrid\">"));
+    }
+    let compressor = root.attribute("compressor");
+    if !matches!(compressor, None | Some("vtkZLibDataCompressor")) {
+        let name = visible(compressor.unwrap_or(""));
+        let error = at(&scanner, root, "vtu.compressor", format!("data compressed by `{name}` cannot be read"));
+        return Err(error
+            .value(name)
+            .allowed("vtkZLibDataCompressor, or none")
+            .hint("ParaView saves with other compressors too"));
+    }
+    let header = match root.attribute("header_type") {
+        None | Some("UInt32") => 4,
+        Some("UInt64") => 8,
+        Some(other) => {
+            let error = at(&scanner, root, SYNTAX, format!("`{}` is no type of headers", visible(other)));
+            return Err(error.value(visible(other)).allowed("UInt32, UInt64"));
+        }
+    };
+    let big_endian = root.attribute("byte_order") == Some("BigEndian");
+    let reader = Reader { scanner: &scanner, big_endian, header, compressed: compressor.is_some(), appended };
+    let mut found = Found::default();
+    let pieces = root.descendants().filter(|node| node.has_tag_name("Piece"));
+    let mut any = false;
+    for piece in pieces {
+        any = true;
+        reader.piece(piece, &mut found)?;
+    }
+    if !any {
+        return Err(at(&scanner, root, SYNTAX, "there is no piece")
+            .value("0")
+            .allowed("<Piece> in <UnstructuredGrid>"));
+    }
+    Ok(found)
+}
+
+impl Reader<'_> {
+    fn count(&self, piece: Node<'_, '_>, name: &str) -> Result<u64, SceneError> {
+        let text = piece.attribute(name).unwrap_or("");
+        match text.parse() {
+            Ok(count) if count <= 1 << 31 => Ok(count),
+            _ => {
+                let error = at(self.scanner, piece, SYNTAX, format!("{name} is `{}`", visible(text)));
+                Err(error.value(visible(text)).allowed("a whole number up to 2147483648"))
+            }
+        }
+    }
+
+    /// The array of a name below an element of a piece.
+    fn array<'a>(&self, piece: Node<'a, 'a>, of: &str, name: Option<&str>) -> Result<Node<'a, 'a>, SceneError> {
+        let parent = piece.children().find(|node| node.has_tag_name(of));
+        let found = parent.and_then(|parent| {
+            parent
+                .children()
+                .find(|node| node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name))
+        });
+        found.ok_or_else(|| {
+            let what = name.map_or(String::new(), |name| format!(" `{name}`"));
+            let error = at(self.scanner, parent.unwrap_or(piece), SYNTAX, format!("<{of}> has no array{what}"));
+            error.value("0").allowed("<DataArray>")
+        })
+    }
+
+    fn piece(&self, piece: Node<'_, '_>, found: &mut Found) -> Result<(), SceneError> {
+        let (points, cells) = (self.count(piece, "NumberOfPoints")?, self.count(piece, "NumberOfCells")?);
+        let first = found.positions.len() as u64;
+        let first_cell = found.items.len();
+        let array = self.array(piece, "Points", None)?;
+        let place = array.range().start;
+        let numbers = self.values(array, points * 3)?;
+        for (number, x) in numbers.chunks_exact(3).enumerate() {
+            if let Some(bad) = x.iter().find(|x| !x.is_finite()) {
+                let error =
+                    at(self.scanner, array, "scene.not_finite", format!("a coordinate of point {number} is {bad}"));
+                return Err(error.value(bad.to_string()).allowed("a finite number"));
+            }
+            found.node(first + number as u64, [x[0], x[1], x[2]], place);
+        }
+        let offset_array = self.array(piece, "Cells", Some("offsets"))?;
+        let offsets = self.values(offset_array, cells)?;
+        let type_array = self.array(piece, "Cells", Some("types"))?;
+        let types = self.values(type_array, cells)?;
+        let total = offsets.last().copied().unwrap_or(0.0);
+        if !(0.0..=1e10).contains(&total) {
+            let error = at(self.scanner, offset_array, SIZE, format!("the last cell ends at {total}"));
+            return Err(error.value(total.to_string()).allowed("0 or more"));
+        }
+        let array = self.array(piece, "Cells", Some("connectivity"))?;
+        let place = array.range().start;
+        let nodes = self.values(array, total as u64)?;
+        let mut start = 0.0;
+        for (cell, (&end, kind)) in offsets.iter().zip(types).enumerate() {
+            if !(end >= start && end <= nodes.len() as f64) {
+                let error = at(self.scanner, offset_array, SIZE, format!("cell {cell} reaches from {start} to {end}"));
+                return Err(error.value(end.to_string()).allowed(format!("{start} to {}", nodes.len())));
+            }
+            let own: Vec<u64> = nodes[start as usize..end as usize]
+                .iter()
+                .map(|node| if *node >= 0.0 && *node < points as f64 { first + *node as u64 } else { u64::MAX })
+                .collect();
+            let number = if kind >= 0.0 { kind as u64 } else { u64::MAX };
+            vtk::add(found, number, &own, place).map_err(|error| {
+                let of = if error.code == "mesh.unsupported_element" { type_array } else { array };
+                let marked = at(self.scanner, of, error.code, error.message);
+                SceneError { value: error.value, allowed: error.allowed, ..marked }
+            })?;
+            start = end;
+        }
+        self.data(piece, cells, first_cell, found)
+    }
+
+    /// Values of cells of one component; others, and those of points, are counted.
+    fn data(&self, piece: Node<'_, '_>, cells: u64, first: usize, found: &mut Found) -> Result<(), SceneError> {
+        for (of, node) in piece.children().filter(Node::is_element).flat_map(|parent| {
+            parent.children().filter(|n| n.has_tag_name("DataArray")).map(move |n| (parent.tag_name().name(), n))
+        }) {
+            let name = node.attribute("Name").unwrap_or("values");
+            let single = matches!(node.attribute("NumberOfComponents"), None | Some("1" | "0"));
+            match of {
+                "CellData" if single => {
+                    let own = self.values(node, cells)?;
+                    let values = found.item_values.entry(name.to_string()).or_default();
+                    values.resize(first, f64::NAN);
+                    values.extend(own);
+                }
+                "CellData" | "PointData" => {
+                    found.left_out(format!("the values `{}` are left out", visible(name)), visible(name));
+                }
+                _ => {}
+            }
+        }
+        let items = found.items.len();
+        found.item_values.values_mut().for_each(|values| values.resize(items, f64::NAN));
+        Ok(())
+    }
+
+    /// The numbers of an array, exactly so many.
+    fn values(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<f64>, SceneError> {
+        let kind = array.attribute("type").unwrap_or("");
+        let size: usize = match kind {
+            "Int8" | "UInt8" => 1,
+            "Int16" | "UInt16" => 2,
+            "Int32" | "UInt32" | "Float32" => 4,
+            "Int64" | "UInt64" | "Float64" => 8,
+            _ => {
+                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no type of numbers", visible(kind)));
+                return Err(error.value(visible(kind)).allowed("Int8 … UInt64, Float32, Float64"));
+            }
+        };
+        let text: String = array.children().filter_map(|n| n.text()).collect();
+        let bytes = match array.attribute("format") {
+            Some("ascii") | None => return self.words(array, &text, count),
+            Some("binary") => {
+                let letters: Vec<u8> = text.bytes().filter(|b| !b.is_ascii_whitespace()).collect();
+                self.unpack(array, &letters, false, count, size)?
+            }
+            Some("appended") => {
+                let Some((data, raw)) = self.appended else {
+                    let error = at(self.scanner, array, SIZE, "there is no appended data");
+                    return Err(error.value("appended").allowed("<AppendedData>").hint("the file is cut off"));
+                };
+                let offset = array.attribute("offset").and_then(|text| text.parse::<usize>().ok());
+                let Some(rest) = offset.and_then(|offset| data.get(offset..)) else {
+                    let value = visible(array.attribute("offset").unwrap_or("no offset"));
+                    let error = at(self.scanner, array, SIZE, "the array begins behind the end of the appended data");
+                    return Err(error.value(value).allowed(format!("0 to {}", data.len())).hint("the file is cut off"));
+                };
+                self.unpack(array, rest, raw, count, size)?
+            }
+            Some(other) => {
+                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no format of arrays", visible(other)));
+                return Err(error.value(visible(other)).allowed("ascii, binary, appended"));
+            }
+        };
+        let number = |word: &[u8]| {
+            let mut eight = [0; 8];
+            eight[..size].copy_from_slice(word);
+            if self.big_endian {
+                eight[..size].reverse();
+            }
+            let [a, b, c, d, ..] = eight;
+            match kind {
+                "Int8" => f64::from(a as i8),
+                "Int16" => f64::from(i16::from_le_bytes([a, b])),
+                "Int32" => f64::from(i32::from_le_bytes([a, b, c, d])),
+                "Int64" => i64::from_le_bytes(eight) as f64,
+                "Float32" => f64::from(f32::from_le_bytes([a, b, c, d])),
+                "Float64" => f64::from_le_bytes(eight),
+                _ => u64::from_le_bytes(eight) as f64,
+            }
+        };
+        Ok(bytes.chunks_exact(size).map(number).collect())
+    }
+
+    fn wrong_count(&self, array: Node<'_, '_>, there: u64, count: u64) -> SceneError {
+        let error = at(self.scanner, array, SIZE, format!("the array has {there} values, not {count}"));
+        error.value(there.to_string()).allowed(count.to_string()).hint("the file is cut off, or its counts are wrong")
+    }
+
+    fn words(&self, array: Node<'_, '_>, text: &str, count: u64) -> Result<Vec<f64>, SceneError> {
+        let mut out = Vec::new();
+        for word in text.split_ascii_whitespace() {
+            match word.parse::<f64>() {
+                Ok(x) => out.push(x),
+                Err(_) => {
+                    let error = at(self.scanner, array, SYNTAX, format!("`{}` is no number", visible(word)));
+                    return Err(error.value(visible(word)).allowed("a number such as 1.5 or -2e-3"));
+                }
+            }
+        }
+        if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
+    }
+
+    /// The bytes of a binary array: a header with sizes, then the data, as raw bytes or as letters.
+    fn unpack(
+        &self,
+        array: Node<'_, '_>,
+        data: &[u8],
+        raw: bool,
+        count: u64,
+        size: usize,
+    ) -> Result<Vec<u8>, SceneError> {
+        let wanted = count * size as u64;
+        let cut = || {
+            at(self.scanner, array, SIZE, "the data of the array is cut off")
+                .value(format!("{} bytes", data.len()))
+                .allowed(format!("{wanted} bytes of numbers"))
+        };
+        let letters = || {
+            at(self.scanner, array, SYNTAX, "the data of the array is no base64")
+                .value("base64")
+                .allowed("A–Z a–z 0–9 + / =")
+        };
+        // Bytes from the beginning on, at least so many.
+        let take = |least: u64| -> Result<Vec<u8>, SceneError> {
+            let least = usize::try_from(least).map_err(|_| cut())?;
+            let bytes = if raw {
+                data.get(..least).ok_or_else(cut)?.to_vec()
+            } else {
+                base64::decode_up_to(letters_of(data), least).ok_or_else(letters)?.0
+            };
+            if bytes.len() < least { Err(cut()) } else { Ok(bytes) }
+        };
+        let word = |bytes: &[u8], k: usize| {
+            let mut eight = [0; 8];
+            eight[..self.header].copy_from_slice(&bytes[k * self.header..(k + 1) * self.header]);
+            if self.big_endian {
+                eight[..self.header].reverse();
+            }
+            u64::from_le_bytes(eight)
+        };
+        let header = self.header as u64;
+        if !self.compressed {
+            let own = word(&take(header)?, 0);
+            if own != wanted {
+                return Err(self.wrong_count(array, own / size as u64, count));
+            }
+            let bytes = take(header + wanted)?;
+            return Ok(bytes[self.header..][..wanted as usize].to_vec());
+        }
+        // Number of blocks, their size, the size of the last one, then the compressed sizes.
+        let blocks = word(&take(header)?, 0);
+        if blocks > wanted + 1 {
+            return Err(self.wrong_count(array, blocks, count));
+        }
+        let head = take(header * (3 + blocks))?;
+        let (block, last) = (word(&head, 1), word(&head, 2));
+        let plain = |k: u64| if k + 1 == blocks && last > 0 { last } else { block };
+        let mut total = 0u64;
+        let mut packed = 0u64;
+        for k in 0..blocks {
+            total = total.saturating_add(plain(k));
+            packed = packed.saturating_add(word(&head, 3 + k as usize));
+        }
+        if total != wanted || total > packed.saturating_mul(MOST_COMPRESSED) + MOST_COMPRESSED {
+            return Err(self.wrong_count(array, total / size as u64, count));
+        }
+        let start = (header * (3 + blocks)) as usize;
+        let bytes = take((start as u64).saturating_add(packed))?;
+        let (mut at_byte, mut out) = (start, Vec::with_capacity(wanted as usize));
+        for k in 0..blocks {
+            let length = word(&head, 3 + k as usize) as usize;
+            let own = bytes.get(at_byte..at_byte + length).ok_or_else(cut)?;
+            at_byte += length;
+            let mut piece = Vec::new();
+            let read = flate2::read::ZlibDecoder::new(own).take(plain(k) + 1).read_to_end(&mut piece);
+            if read.is_err() || piece.len() as u64 != plain(k) {
+                let error = at(self.scanner, array, SYNTAX, format!("block {k} of the array cannot be decompressed"));
+                return Err(error.value(format!("{} bytes", piece.len())).allowed(format!("{} bytes", plain(k))));
+            }
+            out.extend_from_slice(&piece);
+        }
+        Ok(out)
+    }
+}
+
+/// Letters without blanks at their end; appended data may be followed by a line end.
+fn letters_of(data: &[u8]) -> &[u8] {
+    data.trim_ascii()
+}

@@ -1,0 +1,355 @@
+//! Meshes to files of other programs.
+
+use super::found::Kind;
+use crate::problem::{SceneError, visible};
+use crate::series::vtu;
+use opruga_mesh::{Element, Mesh};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// The endings of files that can be written.
+pub const WRITTEN: &str = ".msh (Gmsh 4.1), .vtk, .vtu, .mesh (Medit), .mfem (MFEM), .node and .ele (TetGen)";
+
+/// A mesh as files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Endings, without the dot, and contents.
+    pub files: Vec<(&'static str, Vec<u8>)>,
+    /// What the format has no place for.
+    pub left_out: Vec<String>,
+}
+
+/// Writes the cells of a mesh, its groups and values of cells, in the format of an ending (without the dot).
+///
+/// # Errors
+/// `mesh.write` for an unknown ending, a mesh without cells, and cells that the format does not have.
+pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, SceneError> {
+    if mesh.cells.is_empty() {
+        let error = SceneError::new("mesh.write", "the mesh has no cells").value("0");
+        return Err(error.allowed("at least one cell").hint("a filling makes cells in a surface or an outline"));
+    }
+    match ending.to_ascii_lowercase().as_str() {
+        "msh" => Ok(Written { files: vec![("msh", gmsh(mesh).into_bytes())], left_out: Vec::new() }),
+        "vtk" => Ok(named_values("vtk", vtk(mesh).into_bytes(), mesh)),
+        "vtu" => Ok(named_values("vtu", vtu_file(mesh), mesh)),
+        "mesh" => medit(mesh),
+        "mfem" => mfem(mesh),
+        "node" | "ele" => tetgen(mesh),
+        other => {
+            let error =
+                SceneError::new("mesh.write", format!("files ending in `.{}` cannot be written", visible(other)));
+            Err(error.value(visible(other)).allowed(WRITTEN))
+        }
+    }
+}
+
+/// The kind of a cell.
+fn kind(element: Element) -> Kind {
+    match element {
+        Element::Quadrilateral => Kind::Quadrilateral,
+        Element::Tetrahedron => Kind::Tetrahedron,
+        Element::Hexahedron => Kind::Hexahedron,
+        Element::QuadraticTriangle => Kind::QuadraticTriangle,
+        Element::QuadraticTetrahedron => Kind::QuadraticTetrahedron,
+        _ => Kind::Triangle,
+    }
+}
+
+/// Coordinates with all their digits, z zero in the plane.
+fn three<const D: usize>(x: &[f64; D]) -> String {
+    format!("{:e} {:e} {:e}", x[0], x[1], x.get(2).copied().unwrap_or(0.0))
+}
+
+/// A name that may stand between quotes on a line.
+fn word(name: &str) -> String {
+    name.chars().map(|c| if c == '"' || c.is_control() { '_' } else { c }).collect()
+}
+
+fn listed(nodes: &[u32], shift: u32) -> String {
+    nodes.iter().map(|node| (node + shift).to_string()).collect::<Vec<_>>().join(" ")
+}
+
+/// Files that hold values of cells and no groups.
+fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mesh<D>) -> Written {
+    let mut left_out = Vec::new();
+    if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {
+        let names: Vec<&String> = mesh.groups.keys().chain(mesh.cell_groups.keys()).collect();
+        left_out.push(format!("groups: {} names", names.len()));
+    }
+    Written { files: vec![(ending, bytes)], left_out }
+}
+
+/// Gmsh 4.1 as text. Cells of the same groups are an entity; every group of nodes is an entity of points.
+fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
+    let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_string();
+    let cell_names: Vec<&String> = mesh.cell_groups.keys().collect();
+    // Groups of nodes that are just those of a group of cells come back with it.
+    let all: Vec<&[u32]> = mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
+    let of_cells = |name: &String| {
+        let mut nodes: Vec<u32> = Vec::new();
+        mesh.cell_groups.get(name).into_iter().flatten().for_each(|cell| nodes.extend(all[*cell as usize]));
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    };
+    let node_names: Vec<&String> =
+        mesh.groups.iter().filter(|(name, nodes)| of_cells(name) != **nodes).map(|(name, _)| name).collect();
+    if !cell_names.is_empty() || !node_names.is_empty() {
+        let _ = writeln!(out, "$PhysicalNames\n{}", cell_names.len() + node_names.len());
+        for (k, name) in node_names.iter().enumerate() {
+            let _ = writeln!(out, "0 {} \"{}\"", k + 1, word(name));
+        }
+        for (k, name) in cell_names.iter().enumerate() {
+            let _ = writeln!(out, "{D} {} \"{}\"", k + 1, word(name));
+        }
+        out.push_str("$EndPhysicalNames\n");
+    }
+
+    // Entities: cells by the groups that they are in.
+    let mut sets: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
+    for (k, cells) in mesh.cell_groups.values().enumerate() {
+        cells.iter().for_each(|cell| sets[*cell as usize].push(k + 1));
+    }
+    let mut entities: BTreeMap<&Vec<usize>, usize> = BTreeMap::new();
+    for set in &sets {
+        let next = entities.len() + 1;
+        entities.entry(set).or_insert(next);
+    }
+    let mut counts = [0; 4];
+    counts[0] = node_names.len();
+    counts[D] = entities.len();
+    let _ = writeln!(out, "$Entities\n{} {} {} {}", counts[0], counts[1], counts[2], counts[3]);
+    for k in 1..=node_names.len() {
+        let _ = writeln!(out, "{k} 0 0 0 1 {k}");
+    }
+    let mut by_number: Vec<(usize, &Vec<usize>)> = entities.iter().map(|(set, number)| (*number, *set)).collect();
+    by_number.sort_unstable();
+    for (number, set) in by_number {
+        let groups: String = set.iter().map(|group| format!(" {group}")).collect();
+        let _ = writeln!(out, "{number} 0 0 0 0 0 0 {}{groups} 0", set.len());
+    }
+    out.push_str("$EndEntities\n");
+
+    // Nodes in one block.
+    let n = mesh.nodes();
+    let _ = writeln!(out, "$Nodes\n1 {n} 1 {n}\n{D} 1 0 {n}");
+    out.extend((1..=n).map(|node| format!("{node}\n")));
+    out.extend(mesh.positions.iter().map(|x| three(x) + "\n"));
+    out.push_str("$EndNodes\n");
+
+    // Cells in blocks of one kind and one entity, in their order; then points.
+    let mut blocks: Vec<(usize, i32, Vec<String>)> = Vec::new();
+    for (cell, (element, _, nodes)) in mesh.cells.iter().enumerate() {
+        let kind = match kind(element) {
+            Kind::Triangle => 2,
+            Kind::Quadrilateral => 3,
+            Kind::Tetrahedron => 4,
+            Kind::Hexahedron => 5,
+            Kind::QuadraticTriangle => 9,
+            _ => 11,
+        };
+        let mut own = nodes.to_vec();
+        super::gmsh::reorder(self::kind(element), &mut own);
+        let row = format!("{} {}", cell + 1, listed(&own, 1));
+        let entity = entities[&sets[cell]];
+        match blocks.last_mut() {
+            Some((e, k, rows)) if *e == entity && *k == kind => rows.push(row),
+            _ => blocks.push((entity, kind, vec![row])),
+        }
+    }
+    let points: usize = node_names.iter().map(|name| mesh.groups[*name].len()).sum();
+    let total = mesh.cells.len() + points;
+    let _ = writeln!(out, "$Elements\n{} {total} 1 {total}", blocks.len() + node_names.len());
+    for (entity, kind, rows) in blocks {
+        let _ = writeln!(out, "{D} {entity} {kind} {}\n{}", rows.len(), rows.join("\n"));
+    }
+    let mut number = mesh.cells.len();
+    for (k, name) in node_names.iter().enumerate() {
+        let nodes = &mesh.groups[*name];
+        let _ = writeln!(out, "0 {} 15 {}", k + 1, nodes.len());
+        for node in nodes {
+            number += 1;
+            let _ = writeln!(out, "{number} {}", node + 1);
+        }
+    }
+    out.push_str("$EndElements\n");
+    for (name, values) in &mesh.cell_values {
+        let given: Vec<(usize, &f64)> = values.iter().enumerate().filter(|(_, x)| x.is_finite()).collect();
+        let _ = writeln!(out, "$ElementData\n1\n\"{}\"\n1\n0\n3\n0\n1\n{}", word(name), given.len());
+        out.extend(given.iter().map(|(cell, x)| format!("{} {x:e}\n", cell + 1)));
+        out.push_str("$EndElementData\n");
+    }
+    out
+}
+
+/// The number that VTK gives a kind of cell.
+fn vtk_type(element: Element) -> u8 {
+    match kind(element) {
+        Kind::Triangle => 5,
+        Kind::Quadrilateral => 9,
+        Kind::Tetrahedron => 10,
+        Kind::Hexahedron => 12,
+        Kind::QuadraticTriangle => 22,
+        _ => 24,
+    }
+}
+
+fn vtk<const D: usize>(mesh: &Mesh<D>) -> String {
+    let mut out = "# vtk DataFile Version 3.0\nmesh by Opruga\nASCII\nDATASET UNSTRUCTURED_GRID\n".to_string();
+    let _ = writeln!(out, "POINTS {} double", mesh.nodes());
+    out.extend(mesh.positions.iter().map(|x| three(x) + "\n"));
+    let cells = mesh.cells.len();
+    let size: usize = mesh.cells.iter().map(|(_, _, nodes)| nodes.len() + 1).sum();
+    let _ = writeln!(out, "CELLS {cells} {size}");
+    for (_, _, nodes) in mesh.cells.iter() {
+        let _ = writeln!(out, "{} {}", nodes.len(), listed(nodes, 0));
+    }
+    let _ = writeln!(out, "CELL_TYPES {cells}");
+    out.extend(mesh.cells.iter().map(|(element, _, _)| format!("{}\n", vtk_type(element))));
+    if !mesh.cell_values.is_empty() {
+        let _ = writeln!(out, "CELL_DATA {cells}");
+    }
+    for (name, values) in &mesh.cell_values {
+        let _ = writeln!(out, "SCALARS {} double 1\nLOOKUP_TABLE default", name.replace(char::is_whitespace, "%20"));
+        out.extend(values.iter().map(|x| format!("{x:e}\n")));
+    }
+    out
+}
+
+fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
+    let mut out = Vec::new();
+    let points: Vec<f64> = mesh.positions.iter().flat_map(|x| [x[0], x[1], x.get(2).copied().unwrap_or(0.0)]).collect();
+    let cells: Vec<(u8, Vec<usize>)> = mesh
+        .cells
+        .iter()
+        .map(|(element, _, nodes)| (vtk_type(element), nodes.iter().map(|node| *node as usize).collect()))
+        .collect();
+    let mut write = || -> std::io::Result<()> {
+        vtu::head(&mut out, &points, cells.len())?;
+        vtu::cells(&mut out, cells.iter().map(|(kind, nodes)| (*kind, &nodes[..])))?;
+        std::io::Write::write_all(&mut out, b"<CellData>\n")?;
+        for (name, values) in &mesh.cell_values {
+            vtu::reals(&mut out, name, 1, values)?;
+        }
+        std::io::Write::write_all(&mut out, b"</CellData>\n")?;
+        vtu::foot(&mut out)
+    };
+    // Memory does not fail.
+    let _ = write();
+    out
+}
+
+/// Refuses cells of second order, which a format does not have.
+fn linear<const D: usize>(mesh: &Mesh<D>, format: &str) -> Result<(), SceneError> {
+    let quadratic = mesh.cells.quadratic_triangles.len() + mesh.cells.quadratic_tetrahedra.len();
+    if quadratic == 0 {
+        return Ok(());
+    }
+    let error = SceneError::new("mesh.write", format!("{format} has no cells of second order"));
+    Err(error.value(quadratic.to_string()).allowed("linear cells").hint("`.msh`, `.vtk` and `.vtu` have them"))
+}
+
+/// One number per cell: the place of its group, from 1; 0 without one. Cells of several groups have that of the first by name.
+fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<String>) -> Vec<usize> {
+    let mut out = vec![0; mesh.cells.len()];
+    for (k, cells) in mesh.cell_groups.values().enumerate().rev() {
+        cells.iter().for_each(|cell| out[*cell as usize] = k + 1);
+    }
+    if !mesh.cell_groups.is_empty() {
+        left_out.push(format!(
+            "names of {} groups of cells: numbers in the order of the alphabet stand for them",
+            mesh.cell_groups.len()
+        ));
+    }
+    if !mesh.groups.is_empty() {
+        left_out.push(format!("{} groups of nodes", mesh.groups.len()));
+    }
+    if !mesh.cell_values.is_empty() {
+        left_out.push(format!("{} values of cells", mesh.cell_values.len()));
+    }
+    out
+}
+
+fn medit<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
+    linear(mesh, "Medit")?;
+    let mut left_out = Vec::new();
+    let references = references(mesh, &mut left_out);
+    let mut out = format!("MeshVersionFormatted 2\nDimension {D}\nVertices\n{}\n", mesh.nodes());
+    for x in &mesh.positions {
+        let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();
+        let _ = writeln!(out, "{} 0", words.join(" "));
+    }
+    for (keyword, element) in [
+        ("Triangles", Element::Triangle),
+        ("Quadrilaterals", Element::Quadrilateral),
+        ("Tetrahedra", Element::Tetrahedron),
+        ("Hexahedra", Element::Hexahedron),
+    ] {
+        let rows: Vec<String> = mesh
+            .cells
+            .iter()
+            .zip(&references)
+            .filter(|((kind, ..), _)| *kind == element)
+            .map(|((_, _, nodes), reference)| format!("{} {reference}", listed(nodes, 1)))
+            .collect();
+        if !rows.is_empty() {
+            let _ = writeln!(out, "{keyword}\n{}\n{}", rows.len(), rows.join("\n"));
+        }
+    }
+    out.push_str("End\n");
+    Ok(Written { files: vec![("mesh", out.into_bytes())], left_out })
+}
+
+fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
+    linear(mesh, "MFEM's format of straight meshes")?;
+    let mut left_out = Vec::new();
+    let references = references(mesh, &mut left_out);
+    let mut out = format!("MFEM mesh v1.0\n\ndimension\n{D}\n\nelements\n{}\n", mesh.cells.len());
+    for ((element, _, nodes), reference) in mesh.cells.iter().zip(references) {
+        let geometry = match kind(element) {
+            Kind::Triangle => 2,
+            Kind::Quadrilateral => 3,
+            Kind::Tetrahedron => 4,
+            _ => 5,
+        };
+        // Attributes count from 1: cells without a group have the one behind the last.
+        let attribute = if reference == 0 { mesh.cell_groups.len() + 1 } else { reference };
+        let _ = writeln!(out, "{attribute} {geometry} {}", listed(nodes, 0));
+    }
+    // Faces of hexahedra are quadrilaterals, which facets do not tell: MFEM finds a boundary that is not given.
+    let _ = writeln!(out, "\nboundary\n0\n\nvertices\n{}\n{D}", mesh.nodes());
+    for x in &mesh.positions {
+        let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();
+        let _ = writeln!(out, "{}", words.join(" "));
+    }
+    Ok(Written { files: vec![("mfem", out.into_bytes())], left_out })
+}
+
+fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
+    linear(mesh, "TetGen's format as it is written here")?;
+    let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
+    if boxes > 0 {
+        let error = SceneError::new("mesh.write", "TetGen has no quadrilaterals and hexahedra");
+        return Err(error.value(boxes.to_string()).allowed("triangles or tetrahedra"));
+    }
+    let mut left_out = Vec::new();
+    if !mesh.cell_groups.is_empty() || !mesh.groups.is_empty() {
+        left_out.push(format!("{} groups", mesh.cell_groups.len() + mesh.groups.len()));
+    }
+    let mut nodes = format!("{} {D} 0 0\n", mesh.nodes());
+    for (node, x) in mesh.positions.iter().enumerate() {
+        let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();
+        let _ = writeln!(nodes, "{node} {}", words.join(" "));
+    }
+    // Attributes have no names, and no gaps.
+    let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|v| v.iter().all(|x| x.is_finite())).collect();
+    if !mesh.cell_values.is_empty() {
+        left_out.push(format!("names of {} values of cells", mesh.cell_values.len()));
+    }
+    let mut elements = format!("{} {} {}\n", mesh.cells.len(), D + 1, values.len());
+    for (cell, (_, _, corners)) in mesh.cells.iter().enumerate() {
+        let more: String = values.iter().map(|v| format!(" {:e}", v[cell])).collect();
+        let _ = writeln!(elements, "{cell} {}{more}", listed(corners, 0));
+    }
+    Ok(Written { files: vec![("node", nodes.into_bytes()), ("ele", elements.into_bytes())], left_out })
+}

@@ -1,0 +1,68 @@
+//! Bodies of cells from mesh files, and surfaces from the triangles of such files.
+
+use super::triangles::Triangles;
+use super::{Content, Loaded, Open, Problem};
+use crate::meshes::{self, Kind, Mending};
+use crate::problem::SceneError;
+use opruga_core::spec::Values;
+use opruga_mesh::triangle_parts;
+
+/// A body as the file has it, node by node.
+pub(super) fn loaded(
+    name: &str,
+    bytes: &[u8],
+    shape: &Values,
+    dimension: usize,
+    open: &mut Open<'_>,
+) -> Result<Loaded, Problem> {
+    let mending = Mending {
+        turn_inverted: shape.text("inverted") == Some("turn"),
+        leave_out_unreferenced: shape.text("unreferenced") == Some("leave_out"),
+    };
+    let file = meshes::read(name, bytes, open)?;
+    let (content, mut notices) = if dimension == 2 {
+        let (mesh, notices) = file.assemble(mending)?;
+        (Content::Plane(Box::new(mesh)), notices)
+    } else {
+        let (mesh, notices) = file.assemble(mending)?;
+        (Content::Space(Box::new(mesh)), notices)
+    };
+    notices.iter_mut().for_each(|notice| notice.file = name.to_string());
+    Ok(Loaded { notices, content })
+}
+
+/// The triangles of a file that holds a surface; quadrilaterals become two triangles, quadratic triangles four.
+pub(super) fn surface(name: &str, bytes: &[u8], open: &mut Open<'_>) -> Result<Triangles, SceneError> {
+    let file = meshes::read(name, bytes, open)?;
+    let named = |error: SceneError| SceneError { file: name.to_string(), ..error };
+    if file.dimension() > 2 {
+        let error = SceneError::new("mesh.dimension", "the file holds cells that fill a body, and no surface alone");
+        return Err(named(
+            error.value("3").allowed("triangles and quadrilaterals").hint("`kind = \"mesh\"` reads filled bodies"),
+        ));
+    }
+    let found = file.into_found();
+    let mut out = Triangles { positions: found.positions, notices: found.notices, ..Triangles::default() };
+    out.groups = found.node_groups;
+    for (name, items) in &found.item_groups {
+        let nodes = out.groups.entry(name.clone()).or_default();
+        items.iter().for_each(|item| nodes.extend(found.items[*item as usize].nodes()));
+    }
+    for nodes in out.groups.values_mut() {
+        nodes.sort_unstable();
+        nodes.dedup();
+    }
+    for item in &found.items {
+        match (item.kind, item.nodes()) {
+            (Kind::QuadraticTriangle, &[a, b, c, d, e, f]) => out.triangles.extend(triangle_parts(&[a, b, c, d, e, f])),
+            (Kind::Triangle | Kind::Quadrilateral, corners) => {
+                if let Err(why) = out.polygon(corners) {
+                    let error = SceneError::new("mesh.degenerate_face", format!("{why}: element {}", item.number));
+                    return Err(named(error.value(format!("{corners:?}"))));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(out)
+}

@@ -1,0 +1,195 @@
+//! How good cells are: measures, the worst corner, angles.
+
+use crate::geometry::{Point, cross, dot, lift, norm, subtract};
+use crate::{Element, Mesh};
+
+/// How large a cell is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellMeasure {
+    /// Its signed area [m²] or volume [m³].
+    pub whole: f64,
+    /// The least and the greatest det ∂x/∂ξ at its nodes, as the area or volume of a cell that has it everywhere.
+    pub least: f64,
+    /// See `least`.
+    pub greatest: f64,
+    /// The longest distance between two of its nodes [m].
+    pub longest: f64,
+}
+
+/// How good the cells of a mesh are. Angles are those between faces of tetrahedra and between sides of others, straight ones through the corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellQuality {
+    /// Number of cells.
+    pub cells: usize,
+    /// Number of cells with a negative Jacobian at one of their nodes.
+    pub inverted: usize,
+    /// Area or volume of all of them [m², m³].
+    pub measure: f64,
+    /// The smallest angle [rad].
+    pub smallest_angle: f64,
+    /// The largest angle [rad].
+    pub largest_angle: f64,
+    /// The shortest straight edge [m].
+    pub shortest_edge: f64,
+    /// The longest straight edge [m].
+    pub longest_edge: f64,
+}
+
+/// Corners of a cell that angles are measured at: every corner with its two, or three, neighbours.
+const QUADRILATERAL_CORNERS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 0], [2, 3, 1], [3, 0, 2]];
+const HEXAHEDRON_CORNERS: [[usize; 4]; 8] =
+    [[0, 1, 3, 4], [1, 2, 0, 5], [2, 3, 1, 6], [3, 0, 2, 7], [4, 7, 5, 0], [5, 4, 6, 1], [6, 5, 7, 2], [7, 6, 4, 3]];
+
+const HEXAHEDRON_EDGES: [[usize; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+
+impl<const D: usize> Mesh<D> {
+    /// How large every cell is, in the order of [`crate::Cells::iter`]. Indices must be sound.
+    pub fn cell_measures(&self) -> Vec<CellMeasure> {
+        let measure = |(element, _, nodes): (Element, u32, &[u32])| {
+            let whole = self.size_of(nodes, element);
+            let (least, greatest) = self.extreme_measures(element, nodes, whole);
+            let mut longest = 0.0;
+            for (place, &a) in nodes.iter().enumerate() {
+                for &b in &nodes[..place] {
+                    let length = norm(subtract(self.point(a), self.point(b)));
+                    if length > longest {
+                        longest = length;
+                    }
+                }
+            }
+            CellMeasure { whole, least, greatest, longest }
+        };
+        self.cells.iter().map(measure).collect()
+    }
+
+    fn point(&self, node: u32) -> Point {
+        lift(&self.positions[node as usize])
+    }
+
+    /// Least and greatest Jacobian at the nodes of a cell, as areas or volumes.
+    pub(crate) fn extreme_measures(&self, element: Element, nodes: &[u32], whole: f64) -> (f64, f64) {
+        let at = |k: usize| self.point(nodes[k]);
+        let side = |a: usize, b: usize| subtract(at(b), at(a));
+        let values: Vec<f64> = match element {
+            Element::QuadraticTriangle => crate::quadratic::triangle_areas(&core::array::from_fn(at)).to_vec(),
+            Element::QuadraticTetrahedron => crate::quadratic::tetrahedron_volumes(&core::array::from_fn(at)).to_vec(),
+            Element::Quadrilateral => QUADRILATERAL_CORNERS.map(|[o, a, b]| cross(side(o, a), side(o, b))[2]).to_vec(),
+            Element::Hexahedron => {
+                HEXAHEDRON_CORNERS.map(|[o, a, b, c]| dot(side(o, a), cross(side(o, b), side(o, c)))).to_vec()
+            }
+            _ => return (whole, whole),
+        };
+        values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (if x < low { x } else { low }, if x > high { x } else { high })
+        })
+    }
+
+    /// Turns cells round, so that their measure changes its sign; cells are counted in the order of [`crate::Cells::iter`].
+    pub fn turn_cells(&mut self, cells: &[u32]) {
+        let places: Vec<(Element, u32)> = self.cells.iter().map(|(element, index, _)| (element, index)).collect();
+        for cell in cells {
+            let (element, index) = places[*cell as usize];
+            self.cells.turn(element, index as usize);
+        }
+    }
+
+    /// Nodes that no element names, ascending.
+    pub fn unreferenced_nodes(&self) -> Vec<u32> {
+        let mut named = vec![false; self.nodes()];
+        for (_, _, nodes) in self.elements() {
+            nodes.iter().for_each(|&node| named[node as usize] = true);
+        }
+        (0..named.len()).filter(|&node| !named[node]).map(|node| node as u32).collect()
+    }
+
+    /// How good the cells are; none without cells.
+    pub fn cell_quality(&self) -> Option<CellQuality> {
+        if self.cells.is_empty() {
+            return None;
+        }
+        let mut quality = CellQuality {
+            cells: self.cells.len(),
+            inverted: 0,
+            measure: 0.0,
+            smallest_angle: f64::INFINITY,
+            largest_angle: 0.0,
+            shortest_edge: f64::INFINITY,
+            longest_edge: 0.0,
+        };
+        for (element, _, nodes) in self.cells.iter() {
+            let whole = self.size_of(nodes, element);
+            quality.measure += whole;
+            if self.extreme_measures(element, nodes, whole).0 < 0.0 {
+                quality.inverted += 1;
+            }
+            let at = |k: usize| self.point(nodes[k]);
+            let (low, high) = self.angles_of(element, nodes);
+            if low < quality.smallest_angle {
+                quality.smallest_angle = low;
+            }
+            if high > quality.largest_angle {
+                quality.largest_angle = high;
+            }
+            let edges: &[[usize; 2]] = match element {
+                Element::Tetrahedron | Element::QuadraticTetrahedron => &crate::quadratic::TETRAHEDRON_EDGES,
+                Element::Triangle | Element::QuadraticTriangle => &crate::quadratic::TRIANGLE_SIDES,
+                Element::Quadrilateral => &[[0, 1], [1, 2], [2, 3], [3, 0]],
+                _ => &HEXAHEDRON_EDGES,
+            };
+            for &[a, b] in edges {
+                let length = norm(subtract(at(a), at(b)));
+                if length < quality.shortest_edge {
+                    quality.shortest_edge = length;
+                }
+                if length > quality.longest_edge {
+                    quality.longest_edge = length;
+                }
+            }
+        }
+        Some(quality)
+    }
+}
+
+impl<const D: usize> Mesh<D> {
+    /// The smallest angle of every cell [rad], as [`Mesh::cell_quality`] measures them, in the order of [`crate::Cells::iter`].
+    pub fn smallest_cell_angles(&self) -> Vec<f64> {
+        self.cells.iter().map(|(element, _, nodes)| self.angles_of(element, nodes).0).collect()
+    }
+
+    /// The smallest and the largest angle of a cell: between faces of tetrahedra, between sides of others [rad].
+    fn angles_of(&self, element: Element, nodes: &[u32]) -> (f64, f64) {
+        let at = |k: usize| self.point(nodes[k]);
+        let corner = |o: usize, a: usize, b: usize| between(subtract(at(a), at(o)), subtract(at(b), at(o)));
+        let angles = match element {
+            Element::Tetrahedron | Element::QuadraticTetrahedron => {
+                dihedral_angles([at(0), at(1), at(2), at(3)]).to_vec()
+            }
+            Element::Triangle | Element::QuadraticTriangle => vec![corner(0, 1, 2), corner(1, 2, 0), corner(2, 0, 1)],
+            Element::Quadrilateral => QUADRILATERAL_CORNERS.iter().map(|[o, a, b]| corner(*o, *a, *b)).collect(),
+            _ => {
+                let all = HEXAHEDRON_CORNERS.iter().flat_map(|&[o, a, b, c]| [[o, a, b], [o, b, c], [o, c, a]]);
+                all.map(|[o, a, b]| corner(o, a, b)).collect()
+            }
+        };
+        angles.into_iter().fold((f64::INFINITY, 0.0), |(low, high), angle| {
+            (if angle < low { angle } else { low }, if angle > high { angle } else { high })
+        })
+    }
+}
+
+/// The angle between two directions [rad].
+fn between(a: Point, b: Point) -> f64 {
+    libm::atan2(norm(cross(a, b)), dot(a, b))
+}
+
+/// The six angles between the faces of a tetrahedron, inside it [rad].
+pub(crate) fn dihedral_angles(corners: [Point; 4]) -> [f64; 6] {
+    // At edge ij with the other corners k and l: the angle between the parts of ik and il across the edge.
+    const EDGES: [[usize; 4]; 6] = [[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [0, 3, 1, 2], [1, 3, 2, 0], [2, 3, 0, 1]];
+    EDGES.map(|[i, j, k, l]| {
+        let edge = subtract(corners[j], corners[i]);
+        let across = |to: usize| cross(edge, subtract(corners[to], corners[i]));
+        between(across(k), across(l))
+    })
+}

@@ -1,0 +1,272 @@
+//! What a material is: energy density, stress and tangent as functions of the deformation gradient.
+
+use core::fmt::Debug;
+use opruga_core::potential::Definiteness;
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::singular::Singular;
+use opruga_math::{Lane, symmetric};
+
+/// The parameters of a material at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameters<S> {
+    /// Lamé's second parameter, the shear modulus μ = E/2(1 + ν) [Pa].
+    pub mu: S,
+    /// Lamé's first parameter λ = Eν/((1 + ν)(1 − 2ν)) [Pa].
+    pub lambda: S,
+    /// A number of the material's own; the share of the second constant for Mooney–Rivlin.
+    pub own: S,
+}
+
+/// ∂Pᵢⱼ/∂Fₖₗ as `[i][j][k][l]` [Pa].
+pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
+
+/// A law of the deformation gradient F = ∂x/∂X, in the plane (plane strain) or in space.
+///
+/// Energies are the sum of a part with μ and one with λ, each linear in it: so either can be looked at by itself.
+/// Formulas are straight code over [`Lane`], without closures and branches on values; a new material is a file with this
+/// trait and a line in the list of materials.
+pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
+    /// The word in scenes.
+    const NAME: &'static str;
+    /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
+    fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
+    /// The tangent ∂P/∂F [Pa].
+    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D>;
+    /// The tangent without the negative eigenvalues of its D² × D² matrix.
+    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D>;
+    /// Either of the two.
+    #[inline(always)]
+    fn tangent_of<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, keep: Definiteness) -> Tangent<S, D> {
+        match keep {
+            Definiteness::Exact => Self::tangent(p, f),
+            Definiteness::Clamped => Self::clamped_tangent(p, f),
+        }
+    }
+}
+
+/// Second derivatives of an isotropic energy ψ(σ₁, …) by principal stretches: all that its tangent is made of.
+///
+/// In the frame of the singular vectors the tangent has the eigenvectors uᵢvⱼᵀ ± uⱼvᵢᵀ with the eigenvalues
+/// (ψᵢ − ψⱼ)/(σᵢ − σⱼ) and (ψᵢ + ψⱼ)/(σᵢ + σⱼ), and the matrix ψᵢⱼ between the uᵢvᵢᵀ.
+///
+/// # Source
+/// Smith, de Goes, Kim, "Analytic eigensystems for isotropic distortion energies", ACM Trans. Graph. 38 (2019).
+#[derive(Clone, Copy, Debug)]
+pub struct Principal<S, const D: usize> {
+    /// ψᵢⱼ = ∂²ψ/∂σᵢ∂σⱼ.
+    pub second: Matrix<S, D>,
+    /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ), for i < j; its limit where the two are equal.
+    pub difference: Matrix<S, D>,
+    /// (ψᵢ + ψⱼ)/(σᵢ + σⱼ), for i < j.
+    pub sum: Matrix<S, D>,
+}
+
+impl<S: Lane, const D: usize> Principal<S, D> {
+    /// Zero in every entry.
+    #[inline(always)]
+    pub fn zeros() -> Self {
+        Principal { second: matrix::zeros(), difference: matrix::zeros(), sum: matrix::zeros() }
+    }
+
+    /// Adds a function of J = det F with these derivatives.
+    #[inline(always)]
+    pub fn add_volumetric(&mut self, sigma: &[S; D], first: S, second: S) {
+        for i in 0..D {
+            for j in 0..D {
+                let (without_i, without_j) = (others(sigma, i, i), others(sigma, j, j));
+                self.second[i][j] += second * without_i * without_j;
+                if i != j {
+                    self.second[i][j] += first * others(sigma, i, j);
+                }
+                if i < j {
+                    self.difference[i][j] += -(first * others(sigma, i, j));
+                    self.sum[i][j] += first * others(sigma, i, j);
+                }
+            }
+        }
+    }
+
+    /// Adds a function of I = tr FᵀF with these derivatives.
+    #[inline(always)]
+    pub fn add_stretch(&mut self, sigma: &[S; D], first: S, second: S) {
+        let two = first + first;
+        for i in 0..D {
+            for j in 0..D {
+                self.second[i][j] += S::splat(4.0) * second * sigma[i] * sigma[j];
+                if i == j {
+                    self.second[i][j] += two;
+                }
+                if i < j {
+                    self.difference[i][j] += two;
+                    self.sum[i][j] += two;
+                }
+            }
+        }
+    }
+
+    /// The tangent, with the negative eigenvalues or without them.
+    #[inline(always)]
+    pub fn tangent(&self, singular: &Singular<S, D>, keep: Definiteness) -> Tangent<S, D> {
+        let mut own = *self;
+        if keep == Definiteness::Clamped {
+            own.second = symmetric::positive_part(&self.second);
+            for i in 0..D {
+                for j in i + 1..D {
+                    own.difference[i][j] = self.difference[i][j].larger(S::zero());
+                    own.sum[i][j] = self.sum[i][j].larger(S::zero());
+                }
+            }
+        }
+        let half = S::splat(0.5);
+        let (u, v) = (&singular.u, &singular.v);
+        let mut out = [[[[S::zero(); D]; D]; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                // u_a v_bᵀ, and what the tangent makes of it.
+                let mut image = matrix::zeros::<S, D>();
+                if a == b {
+                    for c in 0..D {
+                        add_outer(&mut image, own.second[a][c], u, c, v, c);
+                    }
+                } else {
+                    let (low, high) = if a < b { (a, b) } else { (b, a) };
+                    let (difference, sum) = (own.difference[low][high], own.sum[low][high]);
+                    add_outer(&mut image, half * (difference + sum), u, a, v, b);
+                    add_outer(&mut image, half * (difference - sum), u, b, v, a);
+                }
+                for i in 0..D {
+                    for j in 0..D {
+                        let weight = u[i][a] * v[j][b];
+                        for k in 0..D {
+                            for l in 0..D {
+                                out[i][j][k][l] += weight * image[k][l];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Adds s u_a v_bᵀ of the columns a and b.
+#[inline(always)]
+fn add_outer<S: Lane, const D: usize>(
+    to: &mut Matrix<S, D>,
+    s: S,
+    u: &Matrix<S, D>,
+    a: usize,
+    v: &Matrix<S, D>,
+    b: usize,
+) {
+    for k in 0..D {
+        let weight = s * u[k][a];
+        for l in 0..D {
+            to[k][l] += weight * v[l][b];
+        }
+    }
+}
+
+/// The product of all stretches but two, or but one where both are the same.
+#[inline(always)]
+fn others<S: Lane, const D: usize>(sigma: &[S; D], i: usize, j: usize) -> S {
+    let mut out = S::one();
+    for k in 0..D {
+        if k != i && k != j {
+            out = out * sigma[k];
+        }
+    }
+    out
+}
+
+/// A tangent of zeros.
+#[inline(always)]
+pub(super) fn no_tangent<S: Lane, const D: usize>() -> Tangent<S, D> {
+    [[[[S::zero(); D]; D]; D]; D]
+}
+
+/// Adds s on ∂Fᵢⱼ/∂Fᵢⱼ: the tangent of s/2 tr FᵀF.
+#[inline(always)]
+pub(super) fn add_identity<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S) {
+    for i in 0..D {
+        for j in 0..D {
+            to[i][j][i][j] += s;
+        }
+    }
+}
+
+/// Adds s A ⊗ A.
+#[inline(always)]
+pub(super) fn add_square<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, a: &Matrix<S, D>) {
+    for i in 0..D {
+        for j in 0..D {
+            let weight = s * a[i][j];
+            for k in 0..D {
+                for l in 0..D {
+                    to[i][j][k][l] += weight * a[k][l];
+                }
+            }
+        }
+    }
+}
+
+/// Adds s ∂²(det F)/∂F∂F, the derivative of the cofactors.
+#[inline(always)]
+pub(super) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S, f: &Matrix<S, D>) {
+    if D == 2 {
+        for i in 0..D {
+            for j in 0..D {
+                let (k, l) = (1 - i, 1 - j);
+                to[i][j][k][l] += if i == j { s } else { -s };
+            }
+        }
+        return;
+    }
+    for i in 0..D {
+        for j in 0..D {
+            // εᵢₖₘ εⱼₗₙ Fₘₙ.
+            let (k, m) = ((i + 1) % D, (i + 2) % D);
+            let (l, n) = ((j + 1) % D, (j + 2) % D);
+            to[i][j][k][l] += s * f[m][n];
+            to[i][j][m][n] += s * f[k][l];
+            to[i][j][k][n] += -(s * f[m][l]);
+            to[i][j][m][l] += -(s * f[k][n]);
+        }
+    }
+}
+
+/// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1 but for the part of S itself:
+/// μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ Fₖₗ.
+#[inline(always)]
+pub(super) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
+    let left = matrix::product_transposed(f, f);
+    add_square(to, lambda, f);
+    for i in 0..D {
+        for j in 0..D {
+            for k in 0..D {
+                to[i][j][k][j] += mu * left[i][k];
+                for l in 0..D {
+                    to[i][j][k][l] += mu * f[i][l] * f[k][j];
+                }
+            }
+        }
+    }
+}
+
+/// Where the logarithm of the volume ratio goes over into a parabola: 1 % of the volume at rest.
+pub(super) const LEAST_VOLUME: f64 = 0.01;
+
+/// ln J with its first two derivatives; below [`LEAST_VOLUME`] its parabola there, so that a point that is flat or turned
+/// inside out has an energy and is pushed back.
+#[inline(always)]
+pub(super) fn logarithm_of_volume<S: Lane>(j: S) -> [S; 3] {
+    let least = S::splat(LEAST_VOLUME);
+    let flat = j.less(least);
+    let real = S::select(flat, least, j);
+    let inverse = S::one() / real;
+    // r = (J − J₀)/J₀: zero where the logarithm itself holds.
+    let r = S::select(flat, (j - least) * inverse, S::zero());
+    let value = real.ln() + r - S::splat(0.5) * r * r;
+    [value, inverse - inverse * r, -(inverse * inverse)]
+}

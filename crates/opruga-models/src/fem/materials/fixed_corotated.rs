@@ -1,0 +1,45 @@
+//! Fixed corotated elasticity: distance from the nearest rotation, and change of volume.
+
+use super::corotated::distance_from_rotation;
+use crate::fem::material::{Material, Parameters, Tangent};
+use opruga_core::potential::Definiteness;
+use opruga_math::Lane;
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::singular::{nearest_rotation, singular};
+
+/// ψ = μ |F − R|² + λ/2 (J − 1)² with the rotation R nearest to F and J = det F; P = 2μ(F − R) + λ(J − 1) cof F.
+///
+/// It resists a change of the true volume, where the corotated law sees the linear one, and has a stress for every F.
+///
+/// # Source
+/// Stomakhin, Howes, Schroeder, Teran, "Energetically consistent invertible elasticity" (2012).
+#[derive(Clone, Copy, Debug)]
+pub struct FixedCorotated;
+
+#[inline(always)]
+fn tangent<S: Lane, const D: usize>(p: &Parameters<S>, f: &Matrix<S, D>, keep: Definiteness) -> Tangent<S, D> {
+    let s = singular(f);
+    let mut principal = distance_from_rotation(p.mu, &s.sigma);
+    principal.add_volumetric(&s.sigma, p.lambda * (matrix::determinant(f) - S::one()), p.lambda);
+    principal.tangent(&s, keep)
+}
+
+impl<const D: usize> Material<D> for FixedCorotated {
+    const NAME: &'static str = "fixed_corotated";
+    #[inline(always)]
+    fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
+        let difference = matrix::plus(f, -S::one(), &nearest_rotation(f));
+        let cofactors = matrix::cofactor(f);
+        let change = matrix::determinant_by(f, &cofactors) - S::one();
+        let energy = p.mu * matrix::inner(&difference, &difference) + S::splat(0.5) * p.lambda * change * change;
+        (energy, matrix::plus(&matrix::scaled(&difference, p.mu + p.mu), p.lambda * change, &cofactors))
+    }
+    #[inline(always)]
+    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        tangent(p, f, Definiteness::Exact)
+    }
+    #[inline(always)]
+    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        tangent(p, f, Definiteness::Clamped)
+    }
+}

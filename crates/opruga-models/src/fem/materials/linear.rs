@@ -1,0 +1,47 @@
+//! Linear elasticity: small strain, small rotation.
+
+use crate::fem::material::{Material, Parameters, Tangent, add_identity, no_tangent};
+use opruga_math::Lane;
+use opruga_math::matrix::{self, Matrix};
+
+/// Hooke's law of the small strain ε = ½(F + Fᵀ) − 1: ψ = μ ε:ε + λ/2 tr² ε, P = 2με + λ tr ε 1.
+///
+/// A rotation counts as strain: a turned body grows. It is for small motion, and to compare with.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear;
+
+impl<const D: usize> Material<D> for Linear {
+    const NAME: &'static str = "linear";
+    #[inline(always)]
+    fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
+        let half = S::splat(0.5);
+        let mut strain = matrix::zeros::<S, D>();
+        for i in 0..D {
+            for j in 0..D {
+                strain[i][j] = half * (f[i][j] + f[j][i]);
+            }
+            strain[i][i] = strain[i][i] - S::one();
+        }
+        let trace = matrix::trace(&strain);
+        let energy = p.mu * matrix::inner(&strain, &strain) + half * p.lambda * trace * trace;
+        let stress = matrix::scaled(&strain, p.mu + p.mu);
+        (energy, matrix::plus(&stress, p.lambda * trace, &matrix::identity()))
+    }
+    #[inline(always)]
+    fn tangent<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>) -> Tangent<S, D> {
+        let mut out = no_tangent();
+        add_identity(&mut out, p.mu);
+        for i in 0..D {
+            for j in 0..D {
+                out[i][j][j][i] += p.mu;
+                out[i][i][j][j] += p.lambda;
+            }
+        }
+        out
+    }
+    /// It has no negative eigenvalue.
+    #[inline(always)]
+    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        Self::tangent(p, f)
+    }
+}

@@ -1,0 +1,61 @@
+//! The neo-Hookean solid in its logarithmic form.
+
+use crate::fem::material::{
+    Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, logarithm_of_volume,
+    no_tangent,
+};
+use opruga_core::potential::Definiteness;
+use opruga_math::Lane;
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::singular::singular;
+
+/// ψ = μ/2 (I₁ − D) − μ ln J + λ/2 ln² J with I₁ = tr FᵀF and J = det F; P = μF + (λ ln J − μ) J⁻¹ cof F.
+///
+/// Rubber at moderate stretch. Below J = 0.01 the logarithm goes on as its parabola, so that elements that are flat or
+/// turned inside out have a finite energy and are pushed back.
+///
+/// # Source
+/// Bonet, Wood, *Nonlinear continuum mechanics for finite element analysis*, eq. 6.27; in the plane J and I₁ of plane strain.
+#[derive(Clone, Copy, Debug)]
+pub struct NeoHookean;
+
+/// First and second derivative of −μ ln J + λ/2 ln² J.
+#[inline(always)]
+fn volumetric<S: Lane>(p: &Parameters<S>, j: S) -> (S, S) {
+    let [log, first, second] = logarithm_of_volume(j);
+    let factor = p.lambda * log - p.mu;
+    (factor * first, p.lambda * first * first + factor * second)
+}
+
+impl<const D: usize> Material<D> for NeoHookean {
+    const NAME: &'static str = "neo_hookean";
+    #[inline(always)]
+    fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
+        let half = S::splat(0.5);
+        let cofactors = matrix::cofactor(f);
+        let [log, first, _] = logarithm_of_volume(matrix::determinant_by(f, &cofactors));
+        let stretch = matrix::inner(f, f) - S::splat(D as f64);
+        let energy = p.mu * (half * stretch - log) + half * p.lambda * log * log;
+        let factor = (p.lambda * log - p.mu) * first;
+        (energy, matrix::plus(&matrix::scaled(f, p.mu), factor, &cofactors))
+    }
+    #[inline(always)]
+    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        let cofactors = matrix::cofactor(f);
+        let (first, second) = volumetric(p, matrix::determinant_by(f, &cofactors));
+        let mut out = no_tangent();
+        add_identity(&mut out, p.mu);
+        add_square(&mut out, second, &cofactors);
+        add_cofactor_derivative(&mut out, first, f);
+        out
+    }
+    #[inline(always)]
+    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        let s = singular(f);
+        let (first, second) = volumetric(p, matrix::determinant(f));
+        let mut principal = Principal::zeros();
+        principal.add_stretch(&s.sigma, S::splat(0.5) * p.mu, S::zero());
+        principal.add_volumetric(&s.sigma, first, second);
+        principal.tangent(&s, Definiteness::Clamped)
+    }
+}

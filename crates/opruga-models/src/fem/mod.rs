@@ -1,0 +1,423 @@
+//! # Finite elements
+//!
+//! A solid whose energy is that of its points (Bonet and Wood 2008; Zienkiewicz and Taylor 2005): with the shape functions
+//! Nₐ of a cell x = Σ Nₐ(ξ) xₐ, and at each integration point of the measure V
+//!
+//! F = ∂x/∂X = (Σ xₐ ⊗ ∂Nₐ/∂ξ)(∂X/∂ξ)⁻¹,  U = Σ V ψ(F),  fₐ = −Σ V P(F) ∂Nₐ/∂X,  Kₐᵦ = Σ V ∂Nₐ/∂X · ∂P/∂F · ∂Nᵦ/∂X.
+//!
+//! | cell | points | locks |
+//! |---|---|---|
+//! | triangle, tetrahedron | 1 | in bending; near incompressibility: refused above ν = 0.45 |
+//! | quadrilateral, hexahedron | 2ᴰ; the part with λ sees the mean of F | in bending where they are few across |
+//! | quadratic triangle, tetrahedron | 3, 4 | no |
+//!
+//! Energies are the sum of a part with μ and a part with λ. In quadrilaterals and hexahedra the latter sees the mean
+//! deformation gradient of the cell (selective reduced integration, Malkus and Hughes 1978; with the mean of Flanagan and
+//! Belytschko 1981 instead of the centre, so that patches of any hexahedra are exact), but in plane stress, where nothing
+//! locks.
+//!
+//! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
+//! [`materials::Corotated`], [`materials::FixedCorotated`], [`materials::NeoHookean`], [`materials::StableNeoHookean`],
+//! [`materials::MooneyRivlin`]; plane stress makes a law of the plane of the law of space: the stretch of the thickness is
+//! that without stress across, at every point, and is condensed out of the tangent.
+//! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
+//!
+//! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
+//!
+//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
+//! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
+
+mod elements;
+mod law;
+pub mod material;
+pub mod materials;
+mod plane_stress;
+mod section;
+mod spec;
+mod work;
+
+pub use spec::SPEC;
+
+use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Shape, Tetrahedron, Triangle};
+use law::Law;
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::spec::{Spec, Values};
+use opruga_core::state::{Layout, View};
+use opruga_core::tile::Tile;
+use opruga_math::{ROW, Simd, WIDTH};
+use opruga_mesh::Mesh;
+use section::{Cell, NUMBERS, Part, Plan, Section, Totals, rest_gradient, total};
+use work::Nodes;
+
+/// The kind `fem`.
+#[derive(Debug)]
+pub struct FemModel;
+
+/// Poisson's ratio above which linear triangles and tetrahedra are refused.
+const LOCKS_ABOVE: f64 = 0.45;
+
+/// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
+const NO_VOLUME: f64 = 1e-12;
+
+/// The solid of one body, or of eight alike ones.
+#[derive(Debug)]
+pub struct Solid<const D: usize> {
+    layout: Layout,
+    nodes: usize,
+    parts: Vec<Box<dyn Part<D>>>,
+    damped: bool,
+}
+
+fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
+    BuildError::new(SPEC.kind, code, message)
+}
+
+/// What is the same for all cells while a solid is built.
+struct Builder<'a, const D: usize> {
+    ingredients: &'a Ingredients<'a, D>,
+    /// Which cells are of this material.
+    chosen: Vec<bool>,
+    /// Young's modulus of each cell, where the mesh gives it.
+    moduli: Option<&'a [f64]>,
+    stress: bool,
+    damped: bool,
+}
+
+impl<'a, const D: usize> Builder<'a, D> {
+    fn new(ingredients: &'a Ingredients<'a, D>) -> Result<Self, BuildError> {
+        let (mesh, first) = (ingredients.mesh, ingredients.values[0]);
+        if mesh.cells.is_empty() {
+            let message = "the body has no cells: it is an outline, a surface or a chain. Filled shapes are `grid`, shapes from \
+                           files with a `filling`, and volume meshes";
+            return Err(refuse("model.no_cells", message));
+        }
+        let mut chosen = vec![true; mesh.cells.len()];
+        if let Some(name) = first.text("cells") {
+            let Some(group) = mesh.cell_groups.get(name) else {
+                return Err(refuse(
+                    "model.no_group",
+                    format!("the mesh has no group of cells `{name}`; {}", known(mesh)),
+                ));
+            };
+            chosen.fill(false);
+            group.iter().for_each(|cell| chosen[*cell as usize] = true);
+            if group.is_empty() {
+                return Err(refuse("model.no_cells", format!("the group of cells `{name}` is empty")));
+            }
+        }
+        let mut moduli = None;
+        for values in ingredients.values {
+            moduli = match (values.number("youngs_modulus"), values.text("youngs_modulus_of_cells")) {
+                (Some(_), None) => None,
+                (None, Some(name)) => match mesh.cell_values.get(name) {
+                    Some(numbers) => Some(numbers.as_slice()),
+                    None => {
+                        let names: Vec<_> = mesh.cell_values.keys().map(|n| format!("`{n}`")).collect();
+                        let names = if names.is_empty() { "there are none".into() } else { names.join(", ") };
+                        let message = format!("the cells of the mesh have no numbers `{name}`; known: {names}");
+                        return Err(refuse("model.no_values", message));
+                    }
+                },
+                _ => {
+                    let message = "exactly one of `youngs_modulus` and `youngs_modulus_of_cells` must be given";
+                    return Err(refuse("model.one_of", message));
+                }
+            };
+            let ratio = values.number("poissons_ratio").unwrap_or(0.0);
+            let share = values.number("mooney_share").unwrap_or(0.0);
+            let most = ratio / (1.0 - 2.0 * ratio);
+            if values.text("material") == Some("mooney_rivlin") && share > most {
+                return Err(refuse(
+                    "model.not_convex",
+                    format!(
+                        "`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"
+                    ),
+                ));
+            }
+        }
+        if let Some((cell, modulus)) = moduli
+            .iter()
+            .flat_map(|all| all.iter().enumerate())
+            .find(|(cell, modulus)| chosen[*cell] && !(**modulus > 0.0 && modulus.is_finite()))
+        {
+            let message = format!("Young's modulus of cell {cell} is {modulus} Pa; allowed: a number > 0");
+            return Err(refuse("model.modulus", message));
+        }
+        Ok(Builder {
+            ingredients,
+            chosen,
+            moduli,
+            stress: D == 2 && first.text("plane") == Some("stress"),
+            damped: ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0),
+        })
+    }
+
+    fn entry(&self) -> Result<&'static materials::Entry, BuildError> {
+        let name = self.ingredients.values[0].text("material").unwrap_or("");
+        let found = materials::ALL.iter().find(|entry| entry.name == name);
+        found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))
+    }
+
+    /// μ, λ, the material's own number and the retardation time of a cell of a body.
+    fn numbers(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
+        let values: &Values = self.ingredients.values[body.min(self.ingredients.values.len() - 1)];
+        let number = |name: &str| values.number(name).unwrap_or(0.0);
+        let modulus = self.moduli.map_or_else(|| number("youngs_modulus"), |all| all[cell as usize]);
+        let ratio = number("poissons_ratio");
+        let mu = modulus / (2.0 * (1.0 + ratio));
+        let lambda = modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio));
+        [mu, lambda, number("mooney_share"), number("damping")]
+    }
+
+    /// The section of one kind of cells, the first of which has the number `first` in the mesh.
+    fn add<E: Shape<D, N>, const N: usize>(
+        &self,
+        parts: &mut Vec<Box<dyn Part<D>>>,
+        list: &[[u32; N]],
+        first: usize,
+        law: fn() -> Box<dyn Law<D>>,
+        law_in_space: Option<fn() -> Box<dyn Law<3>>>,
+    ) -> Result<(), BuildError> {
+        let numbered = list.iter().enumerate().filter(|(k, _)| self.chosen[first + k]);
+        let cells: Vec<Cell<N>> =
+            numbered.map(|(k, nodes)| Cell { number: (first + k) as u32, nodes: *nodes }).collect();
+        if cells.is_empty() {
+            return Ok(());
+        }
+        let positions = &self.ingredients.mesh.positions;
+        for cell in &cells {
+            self.check::<E, N>(cell, positions)?;
+        }
+        if E::SIMPLEX && !self.stress {
+            for values in self.ingredients.values {
+                let ratio = values.number("poissons_ratio").unwrap_or(0.0);
+                if ratio > LOCKS_ABOVE && values.text("locking") != Some("accept") {
+                    return Err(refuse(
+                        "model.locking",
+                        format!(
+                            "`poissons_ratio` is {ratio}; allowed for linear {}: at most {LOCKS_ABOVE}, since they lock near \
+                             incompressibility. Give the body `order = 2`, or say `locking = \"accept\"`",
+                            if D == 2 { "triangles" } else { "tetrahedra" }
+                        ),
+                    ));
+                }
+            }
+        }
+        let plan = Plan {
+            layout: self.ingredients.layout,
+            law: law(),
+            law_in_space: law_in_space.map(|law| law()),
+            positions,
+            thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
+            selective: !self.stress,
+            damped: self.damped,
+        };
+        parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
+        Ok(())
+    }
+
+    /// Refuses a cell that is flat or turned inside out at rest.
+    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<(), BuildError> {
+        let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
+        let mut longest = 0.0;
+        for a in &rest {
+            for b in &rest {
+                let square: f64 = (0..D).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum();
+                longest = if square > longest { square } else { longest };
+            }
+        }
+        let size = longest.sqrt();
+        let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
+        for slopes in E::SLOPES {
+            let (_, determinant) = rest_gradient(&rest, slopes);
+            if !(determinant.is_finite() && determinant > least) {
+                let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
+                let message = format!(
+                    "cell {} with the nodes {:?} {what} at rest: det ∂X/∂ξ = {determinant:e}; allowed: more than {least:e}",
+                    cell.number, cell.nodes
+                );
+                return Err(refuse("model.inverted_cell", message));
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(self, parts: Vec<Box<dyn Part<D>>>) -> Box<Solid<D>> {
+        let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
+        Box::new(Solid { layout, nodes, parts, damped: self.damped })
+    }
+}
+
+/// The names of the groups of cells of a mesh.
+fn known<const D: usize>(mesh: &Mesh<D>) -> String {
+    let names: Vec<_> = mesh.cell_groups.keys().map(|n| format!("`{n}`")).collect();
+    if names.is_empty() { "it has none".into() } else { format!("known: {}", names.join(", ")) }
+}
+
+impl Model<2> for FemModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<2>) -> Result<Box<dyn Potential<2>>, BuildError> {
+        let builder = Builder::new(ingredients)?;
+        let entry = builder.entry()?;
+        let (law, space) =
+            if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
+        let cells = &ingredients.mesh.cells;
+        let mut parts = Vec::new();
+        builder.add::<Triangle, 3>(&mut parts, &cells.triangles, 0, law, space)?;
+        let mut first = cells.triangles.len();
+        builder.add::<Quadrilateral, 4>(&mut parts, &cells.quadrilaterals, first, law, space)?;
+        first += cells.quadrilaterals.len();
+        builder.add::<QuadraticTriangle, 6>(&mut parts, &cells.quadratic_triangles, first, law, space)?;
+        Ok(builder.finish(parts))
+    }
+}
+
+impl Model<3> for FemModel {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn build(&self, ingredients: &Ingredients<3>) -> Result<Box<dyn Potential<3>>, BuildError> {
+        let builder = Builder::new(ingredients)?;
+        let law = builder.entry()?.space;
+        let cells = &ingredients.mesh.cells;
+        let mut parts = Vec::new();
+        builder.add::<Tetrahedron, 4>(&mut parts, &cells.tetrahedra, 0, law, None)?;
+        let mut first = cells.tetrahedra.len();
+        builder.add::<Hexahedron, 8>(&mut parts, &cells.hexahedra, first, law, None)?;
+        first += cells.hexahedra.len();
+        builder.add::<QuadraticTetrahedron, 10>(&mut parts, &cells.quadratic_tetrahedra, first, law, None)?;
+        Ok(builder.finish(parts))
+    }
+}
+
+/// Where the forces begin in the scratch, behind energies and powers.
+const FORCES: usize = 2 * WIDTH;
+
+/// A vector of every node in rows, for one body.
+fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: usize, rows: &mut [f64]) {
+    for (node, row) in rows.chunks_exact_mut(ROW).take(nodes).enumerate() {
+        for d in 0..D {
+            row[d] = columns[d][node];
+        }
+    }
+}
+
+impl<const D: usize> Solid<D> {
+    /// Numbers of a vector of every node.
+    fn vectors(&self) -> usize {
+        match self.layout {
+            Layout::Single => self.nodes * ROW,
+            Layout::Batch => self.nodes * WIDTH * D,
+        }
+    }
+    /// Numbers of a copy in rows.
+    fn copy(&self) -> usize {
+        if self.layout == Layout::Single { self.nodes * ROW } else { 0 }
+    }
+    /// The positions that `prepare` has copied.
+    fn positions<'a>(&self, view: &View<'a, D>, scratch: &'a [f64]) -> Nodes<'a, D> {
+        let start = FORCES + self.vectors();
+        Nodes { rows: &scratch[start..start + self.copy()], columns: view.x }
+    }
+}
+
+impl<const D: usize> Potential<D> for Solid<D> {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: self.damped }
+    }
+    /// `prepare` has read all positions before any of them changes.
+    fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    /// Energies, powers, forces, and in rows positions and velocities.
+    fn scratch_len(&self) -> usize {
+        FORCES + self.vectors() + self.copy() * if self.damped { 2 } else { 1 }
+    }
+    /// Evaluates every element once: energies, powers and the forces of all nodes.
+    fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
+        let (sums, rest) = scratch.split_at_mut(FORCES);
+        let (forces, rest) = rest.split_at_mut(self.vectors());
+        let (x, v) = rest.split_at_mut(self.copy());
+        if self.layout == Layout::Single {
+            to_rows(&view.x, self.nodes, x);
+            to_rows(&view.v, self.nodes, v);
+        }
+        let nodes = [Nodes { rows: x, columns: view.x }, Nodes { rows: v, columns: view.v }];
+        forces.fill(0.0);
+        let (mut energy, mut power) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for part in &self.parts {
+            let mut totals = Totals::default();
+            part.evaluate(simd, view, nodes, &mut totals, forces)?;
+            let (own_energy, own_power) = (total(self.layout, &totals.energy), total(self.layout, &totals.power));
+            for l in 0..WIDTH {
+                energy[l] += own_energy[l];
+                power[l] += own_power[l];
+            }
+        }
+        sums[..WIDTH].copy_from_slice(&energy);
+        sums[WIDTH..].copy_from_slice(&power);
+        Ok(())
+    }
+    fn add_force(&self, _simd: Simd, _view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        let forces = &scratch[FORCES..FORCES + self.vectors()];
+        let start = tile.range.start;
+        match self.layout {
+            Layout::Single => {
+                let end = tile.range.end.min(self.nodes);
+                for (k, row) in forces[start * ROW..end.max(start) * ROW].chunks_exact(ROW).enumerate() {
+                    for d in 0..D {
+                        tile.force[d][k] += row[d];
+                    }
+                }
+            }
+            Layout::Batch => {
+                let end = tile.range.end.min(self.nodes * WIDTH);
+                for (k, node) in forces[start * D..end.max(start) * D].chunks_exact(D * WIDTH).enumerate() {
+                    for d in 0..D {
+                        let to = &mut tile.force[d][k * WIDTH..(k + 1) * WIDTH];
+                        for (to, force) in to.iter_mut().zip(&node[d * WIDTH..]) {
+                            *to += force;
+                        }
+                    }
+                }
+            }
+        }
+        // The first tile reports the power of the whole body.
+        if start == 0 {
+            for l in 0..WIDTH {
+                tile.power[l] += scratch[WIDTH + l];
+            }
+        }
+    }
+    fn energy(&self, _simd: Simd, _view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        core::array::from_fn(|l| scratch[l])
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        for part in &self.parts {
+            part.hessian(self.positions(view, scratch), keep, sink);
+        }
+    }
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
+        for part in &self.parts {
+            part.damping_matrix(self.positions(view, scratch), sink);
+        }
+    }
+    fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        let mut rows = vec![0.0; self.copy()];
+        if self.layout == Layout::Single {
+            to_rows(&view.x, self.nodes, &mut rows);
+        }
+        let mut out = Vec::new();
+        for part in &self.parts {
+            part.cell_states(Nodes { rows: &rows, columns: view.x }, body, &mut out);
+        }
+        out
+    }
+    fn heap_bytes(&self) -> usize {
+        self.parts.iter().map(|part| part.heap_bytes()).sum()
+    }
+}

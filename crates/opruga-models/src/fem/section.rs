@@ -1,0 +1,513 @@
+//! Elements of one kind and one material on a body, or on eight alike ones.
+//!
+//! ```text
+//! positions ─gather→ F at the points of some packs of elements ─law→ P ─→ forces of the elements ─scatter→ forces of the nodes
+//!            └────────────── a few kilobytes that stay in the first-level cache ──────────────┘
+//! ```
+//!
+//! Every element is evaluated once, and the nodes receive its forces in the order of the elements: the bits depend
+//! neither on tiles nor on the layout. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
+
+use super::elements::Shape;
+use super::law::{Law, PARAMETERS, Points};
+use super::work::{Contract, Forces, Gradients, Nodes, ViscousStress, ViscousTangents};
+use core::fmt::Debug;
+use core::marker::PhantomData;
+use opruga_core::error::StepError;
+use opruga_core::potential::{CellState, Definiteness, Sink};
+use opruga_core::state::{Layout, View};
+use opruga_math::{Column, Simd, WIDTH, sum_in_fixed_order};
+
+/// Packs of points that are looked at together, at most.
+pub(super) const MOST_PACKS: usize = 9;
+
+/// Numbers of an element: μ, λ, the material's own, retardation time.
+pub(super) const NUMBERS: usize = 4;
+
+/// Room for some packs of points.
+#[repr(align(64))]
+pub(super) struct Room<const SIZE: usize>(pub(super) [f64; SIZE]);
+
+/// What an element is made of, for [`Section::new`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<const N: usize> {
+    /// Its number in the mesh.
+    pub(super) number: u32,
+    /// Its nodes.
+    pub(super) nodes: [u32; N],
+}
+
+/// Elements of one kind and one material.
+#[derive(Debug)]
+pub(super) struct Section<E, const D: usize, const N: usize> {
+    shape: PhantomData<E>,
+    layout: Layout,
+    law: Box<dyn Law<D>>,
+    /// The law in space, for stresses across the plane; none in plane stress.
+    law_in_space: Option<Box<dyn Law<3>>>,
+    /// Elements by lowest node.
+    cells: Vec<Cell<N>>,
+    /// Points of an element, and one more for its mean deformation where the part with λ sees that.
+    points: usize,
+    /// Whether the part of the law with λ sees the mean deformation.
+    selective: bool,
+    /// Places of the nodes: N packs for every pack of elements of one body, N places for every element of eight.
+    places: Vec<u32>,
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. The mean deformation has the shares
+    /// of the points and the measure of the whole.
+    geometry: Column,
+    /// [`NUMBERS`] packs for every pack of elements, or for all.
+    parameters: Column,
+    /// Whether the parameters of the first pack hold for all.
+    uniform: bool,
+    damped: bool,
+}
+
+/// Sums over elements whose bits do not depend on the layout.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Totals {
+    /// Energy [J]: one body eight partial sums in the first row, eight bodies a column each.
+    pub(super) energy: [[f64; WIDTH]; WIDTH],
+    /// Power of damping [W].
+    pub(super) power: [[f64; WIDTH]; WIDTH],
+}
+
+/// One number for one body, or one for each of eight.
+pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
+    let mut out = [0.0; WIDTH];
+    match layout {
+        Layout::Single => out[0] = sum_in_fixed_order(&partial[0]),
+        Layout::Batch => {
+            for l in 0..WIDTH {
+                out[l] = sum_in_fixed_order(&core::array::from_fn(|k| partial[k][l]));
+            }
+        }
+    }
+    out
+}
+
+/// A section, whatever its elements.
+pub(super) trait Part<const D: usize>: Send + Sync + Debug {
+    /// Adds forces [N] (−∂U/∂x and damping) and totals. Forces lie in rows for one body, for eight node by node, axis by
+    /// axis, the bodies innermost.
+    fn evaluate(
+        &self,
+        simd: Simd,
+        view: &View<D>,
+        nodes: [Nodes<'_, D>; 2],
+        totals: &mut Totals,
+        force: &mut [f64],
+    ) -> Result<(), StepError>;
+    /// Delivers ∂²U/∂x∂x.
+    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>);
+    /// Delivers −∂F/∂v.
+    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>);
+    /// Stress and volume ratio of the cells of a body.
+    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>);
+    /// Bytes on the heap.
+    fn heap_bytes(&self) -> usize;
+}
+
+/// What every step of the work on some packs of elements needs to know.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Group<'a> {
+    pub(super) layout: Layout,
+    /// The first pack, and how many.
+    pub(super) first: usize,
+    pub(super) packs: usize,
+    /// Elements in all.
+    pub(super) count: usize,
+    /// Points of an element.
+    pub(super) points: usize,
+    pub(super) selective: bool,
+    pub(super) places: &'a [u32],
+    pub(super) geometry: &'a [f64],
+    pub(super) parameters: &'a [f64],
+    /// Distance of the parameters of two packs.
+    pub(super) step: usize,
+}
+
+impl Group<'_> {
+    /// How many elements of a pack of one body are there; the last pack is filled up.
+    #[inline(always)]
+    pub(super) fn present(&self, pack: usize) -> usize {
+        match self.layout {
+            Layout::Single => (self.count - pack * WIDTH).min(WIDTH),
+            Layout::Batch => WIDTH,
+        }
+    }
+}
+
+/// (∂X/∂ξ)⁻¹ and det ∂X/∂ξ of the rest shape at a point.
+pub(super) fn rest_gradient<const D: usize, const N: usize>(
+    rest: &[[f64; D]; N],
+    slopes: &[[f64; D]; N],
+) -> ([[f64; D]; D], f64) {
+    let mut jacobian = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for a in 0..N {
+                jacobian[i][j] += rest[a][i] * slopes[a][j];
+            }
+        }
+    }
+    let cofactors = opruga_math::matrix::cofactor(&jacobian);
+    let determinant = opruga_math::matrix::determinant_by(&jacobian, &cofactors);
+    let mut inverse = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            inverse[i][j] = cofactors[j][i] / determinant;
+        }
+    }
+    (inverse, determinant)
+}
+
+/// What a section is built from.
+pub(super) struct Plan<'a, const D: usize> {
+    pub(super) layout: Layout,
+    pub(super) law: Box<dyn Law<D>>,
+    pub(super) law_in_space: Option<Box<dyn Law<3>>>,
+    pub(super) positions: &'a [[f64; D]],
+    /// Depth out of the plane [m]; 1 in space.
+    pub(super) thickness: f64,
+    /// Whether the part with λ sees the mean deformation of elements that would lock.
+    pub(super) selective: bool,
+    pub(super) damped: bool,
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
+    /// Lays out elements; `numbers` gives those of a cell of a body.
+    pub(super) fn new(
+        plan: Plan<'_, D>,
+        mut cells: Vec<Cell<N>>,
+        numbers: &dyn Fn(u32, usize) -> [f64; NUMBERS],
+    ) -> Self {
+        let Plan { layout, law, law_in_space, positions, thickness, selective, damped } = plan;
+        let lowest = |cell: &Cell<N>| cell.nodes.iter().copied().min().unwrap_or(0);
+        cells.sort_by_key(|cell| (lowest(cell), cell.nodes, cell.number));
+        let selective = selective && E::SELECTIVE;
+        let points = E::POINTS + usize::from(selective);
+        let stored = D * D + 1;
+        assert!(!selective || E::POINTS <= D * D, "room for the shares of the points");
+        let lanes = if layout == Layout::Single { WIDTH } else { 1 };
+        let packs = cells.len().div_ceil(lanes);
+        let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
+
+        let mut places = vec![0; packs * N * lanes];
+        let mut geometry = Column::zeros(packs * points * stored * lanes);
+        let mut parameters = Column::zeros(packs * NUMBERS * WIDTH);
+        for pack in 0..packs {
+            for lane in 0..lanes {
+                let this = cell(pack, lane);
+                for a in 0..N {
+                    places[(pack * N + a) * lanes + lane] = layout.place(this.nodes[a] as usize, 0) as u32;
+                }
+                // What fills a pack up has no measure.
+                let there = pack * lanes + lane < cells.len();
+                let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
+                let mut put = |q: usize, k: usize, value: f64| {
+                    geometry[((pack * points + q) * stored + k) * lanes + lane] = value;
+                };
+                let mut measures = vec![0.0; E::POINTS];
+                for q in 0..E::POINTS {
+                    let (inverse, determinant) = rest_gradient(&rest, &E::SLOPES[q]);
+                    measures[q] = E::WEIGHTS[q] * determinant * thickness;
+                    for j in 0..D {
+                        for k in 0..D {
+                            put(q, j * D + k, inverse[j][k]);
+                        }
+                    }
+                    put(q, D * D, if there { measures[q] } else { 0.0 });
+                }
+                if selective {
+                    let whole: f64 = measures.iter().sum();
+                    for (q, measure) in measures.iter().enumerate() {
+                        put(E::POINTS, q, measure / whole);
+                    }
+                    put(E::POINTS, D * D, if there { whole } else { 0.0 });
+                }
+            }
+            for l in 0..WIDTH {
+                let (this, body) = if layout == Layout::Single { (cell(pack, l), 0) } else { (cell(pack, 0), l) };
+                for (k, number) in numbers(this.number, body).into_iter().enumerate() {
+                    parameters[(pack * NUMBERS + k) * WIDTH + l] = number;
+                }
+            }
+        }
+        let uniform = parameters.chunks(NUMBERS * WIDTH).all(|pack| pack == &parameters[..NUMBERS * WIDTH]);
+        if uniform {
+            parameters = Column::from(&parameters[..NUMBERS * WIDTH]);
+        }
+        Section {
+            shape: PhantomData,
+            layout,
+            law,
+            law_in_space,
+            cells,
+            points,
+            selective,
+            places,
+            geometry,
+            parameters,
+            uniform,
+            damped,
+        }
+    }
+
+    fn packs(&self) -> usize {
+        match self.layout {
+            Layout::Single => self.cells.len().div_ceil(WIDTH),
+            Layout::Batch => self.cells.len(),
+        }
+    }
+
+    fn group(&self, first: usize, packs: usize) -> Group<'_> {
+        Group {
+            layout: self.layout,
+            first,
+            packs,
+            count: self.cells.len(),
+            points: self.points,
+            selective: self.selective,
+            places: &self.places,
+            geometry: &self.geometry,
+            parameters: &self.parameters,
+            step: if self.uniform { 0 } else { NUMBERS * WIDTH },
+        }
+    }
+
+    /// The element and body of a lane of a pack.
+    fn item(&self, pack: usize, lane: usize) -> (usize, usize) {
+        match self.layout {
+            Layout::Single => (pack * WIDTH + lane, 0),
+            Layout::Batch => (pack, lane),
+        }
+    }
+
+    /// The refusal of the first element of a pack whose nodes are somewhere but whose energy is not a number.
+    fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
+        (0..WIDTH).filter(|l| energy[*l].is_nan()).find_map(|l| {
+            let (element, body) = self.item(pack, l);
+            let cell = self.cells.get(element)?;
+            let at = cell.nodes.map(|n| view.position(self.layout.place(n as usize, body)));
+            at.iter().flatten().all(|x| x.is_finite()).then(|| StepError::Model {
+                model: super::SPEC.kind,
+                message: format!(
+                    "cell {} has no positive thickness without stress across the plane at t = {} s: it is stretched or \
+                     turned inside out beyond what its material can follow in plane stress",
+                    cell.number, view.time
+                ),
+            })
+        })
+    }
+
+    /// Delivers blocks K_ab of every element, made from tangents at its points.
+    fn assemble(
+        &self,
+        positions: Nodes<'_, D>,
+        sink: &mut dyn Sink<D>,
+        tangents: &dyn Fn(Simd, Points<'_>, &[f64], &mut [f64]),
+    ) {
+        let simd = Simd::best();
+        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
+        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
+        let mut blocks = vec![0.0; N * N * D * D * WIDTH];
+        for pack in 0..self.packs() {
+            let group = self.group(pack, 1);
+            simd.run(Gradients::<E, D, N> {
+                shape: PhantomData,
+                group,
+                nodes: positions,
+                gradient: &mut gradient.0,
+                parameters: Some((&mut numbers.0, &mut times.0)),
+            });
+            let points = Points { count: self.points, gradient: &gradient.0, parameters: &numbers.0 };
+            tangents(simd, points, &times.0, &mut tangent.0);
+            simd.run(Contract::<E, D, N> { shape: PhantomData, group, tangent: &tangent.0, blocks: &mut blocks });
+            for l in 0..group.present(pack) {
+                let (element, body) = self.item(pack, l);
+                let places = self.cells[element].nodes.map(|n| self.layout.place(n as usize, body));
+                for a in 0..N {
+                    for b in 0..N {
+                        // The upper half is stored.
+                        let (low, high) = if a <= b { (a, b) } else { (b, a) };
+                        let stored = &blocks[(low * N + high) * D * D * WIDTH..(low * N + high + 1) * D * D * WIDTH];
+                        let mut block = [[0.0; D]; D];
+                        for (entry, pack) in stored.chunks_exact(WIDTH).enumerate() {
+                            let (i, j) = (entry / D, entry % D);
+                            let (i, j) = if a <= b { (i, j) } else { (j, i) };
+                            block[i][j] = pack[l % WIDTH];
+                        }
+                        sink.block(places[a], places[b], block);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
+    fn evaluate(
+        &self,
+        simd: Simd,
+        view: &View<D>,
+        [positions, velocities]: [Nodes<'_, D>; 2],
+        totals: &mut Totals,
+        force: &mut [f64],
+    ) -> Result<(), StepError> {
+        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
+        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut power = Room([0.0; MOST_PACKS * WIDTH]);
+        let together = (MOST_PACKS / self.points).max(1);
+        for first in (0..self.packs()).step_by(together) {
+            let group = self.group(first, together.min(self.packs() - first));
+            let count = group.packs * self.points;
+            simd.run(Gradients::<E, D, N> {
+                shape: PhantomData,
+                group,
+                nodes: positions,
+                gradient: &mut gradient.0,
+                parameters: Some((&mut numbers.0, &mut times.0)),
+            });
+            let points = Points { count, gradient: &gradient.0, parameters: &numbers.0 };
+            self.law.stress(simd, points, &mut density.0, &mut stress.0);
+            if self.damped {
+                simd.run(Gradients::<E, D, N> {
+                    shape: PhantomData,
+                    group,
+                    nodes: velocities,
+                    gradient: &mut rate.0,
+                    parameters: None,
+                });
+                simd.run(ViscousStress::<D> {
+                    points,
+                    rate: &rate.0,
+                    times: &times.0,
+                    stress: &mut stress.0,
+                    power: &mut power.0,
+                });
+            }
+            simd.run(Forces::<E, D, N> {
+                shape: PhantomData,
+                group,
+                stress: &stress.0,
+                density: &mut density.0,
+                power: self.damped.then_some(&mut power.0),
+                force,
+            });
+            for k in 0..group.packs {
+                let row = match self.layout {
+                    Layout::Single => 0,
+                    Layout::Batch => (first + k) % WIDTH,
+                };
+                let energy = &density.0[k * WIDTH..(k + 1) * WIDTH];
+                for l in 0..WIDTH {
+                    totals.energy[row][l] += energy[l];
+                    totals.power[row][l] += power.0[k * WIDTH + l];
+                }
+                if energy.iter().any(|e| e.is_nan())
+                    && let Some(refusal) = self.refusal(view, first + k, energy)
+                {
+                    return Err(refusal);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.assemble(positions, sink, &|simd, points, _, out| self.law.tangent(simd, points, keep, out));
+    }
+
+    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
+        if self.damped {
+            self.assemble(positions, sink, &|simd, points, times, tangent| {
+                simd.run(ViscousTangents::<D> { points, times, tangent });
+            });
+        }
+    }
+
+    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
+        let simd = Simd::best();
+        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
+        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        for pack in 0..self.packs() {
+            let group = self.group(pack, 1);
+            simd.run(Gradients::<E, D, N> {
+                shape: PhantomData,
+                group,
+                nodes: positions,
+                gradient: &mut gradient.0,
+                parameters: Some((&mut numbers.0, &mut times.0)),
+            });
+            let points = Points { count: self.points, gradient: &gradient.0, parameters: &numbers.0 };
+            // Rows of stresses as they are stored: of three axes where the law in space is asked.
+            let axes = if let Some(law) = &self.law_in_space {
+                in_space.0.fill(0.0);
+                for q in 0..self.points {
+                    for l in 0..WIDTH {
+                        let mut put = |i: usize, j: usize, value: f64| {
+                            in_space.0[(q * 9 + i * 3 + j) * WIDTH + l] = value;
+                        };
+                        put(2, 2, 1.0);
+                        for i in 0..D {
+                            for j in 0..D {
+                                put(i, j, gradient.0[(q * D * D + i * D + j) * WIDTH + l]);
+                            }
+                        }
+                    }
+                }
+                law.stress(simd, Points { gradient: &in_space.0, ..points }, &mut density.0, &mut stress.0);
+                3
+            } else {
+                self.law.stress(simd, points, &mut density.0, &mut stress.0);
+                D
+            };
+            for l in 0..WIDTH {
+                let (element, of) = self.item(pack, l);
+                let Some(cell) = self.cells.get(element).filter(|_| of == body) else { continue };
+                let lane = if self.layout == Layout::Single { l } else { 0 };
+                let lanes = if self.layout == Layout::Single { WIDTH } else { 1 };
+                let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
+                for q in 0..self.points {
+                    let weight = self.geometry[((pack * self.points + q) * (D * D + 1) + D * D) * lanes + lane];
+                    let f = |i: usize, j: usize| match (i < D, j < D) {
+                        (true, true) => gradient.0[(q * D * D + i * D + j) * WIDTH + l],
+                        _ => f64::from(i32::from(i == j)),
+                    };
+                    let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
+                    let ratio = opruga_math::matrix::determinant(&matrix);
+                    if q < E::POINTS {
+                        measure += weight;
+                        now += weight * ratio;
+                    }
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; the mean stress meets the mean deformation.
+                    for i in 0..axes {
+                        for j in 0..3 {
+                            for k in 0..axes {
+                                sum[i][j] += weight * stress.0[(q * axes * axes + i * axes + k) * WIDTH + l] * f(j, k);
+                            }
+                        }
+                    }
+                }
+                let stress = sum.map(|row| row.map(|s| s / now));
+                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure });
+            }
+        }
+    }
+
+    fn heap_bytes(&self) -> usize {
+        let places = 4 * self.places.capacity() + size_of::<Cell<N>>() * self.cells.capacity();
+        places + self.geometry.heap_bytes() + self.parameters.heap_bytes()
+    }
+}

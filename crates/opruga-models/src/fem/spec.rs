@@ -1,0 +1,82 @@
+//! Parameters of finite elements.
+
+use super::materials::NAMES;
+use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+
+/// The parameters of `fem`.
+pub const SPEC: Spec = Spec {
+    kind: "fem",
+    summary: "an elastic solid by finite elements, of a choice of materials",
+    documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, quadrilaterals and \
+hexahedra. E and ν mean what they say at small strain in every material; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 − 2ν)). \
+Quadratic cells (`order = 2` of the body) neither lock in bending nor near incompressibility and are the ones to take where numbers count. In quadrilaterals and hexahedra the \
+part with λ sees the mean deformation, which keeps them from locking up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise. \
+In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
+Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Equations, sources and measurements: docs/finite-elements.md.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new(
+            "material",
+            Allowed::Choice(NAMES),
+            "",
+            Default::Text("stable_neo_hookean"),
+            "The law: small strain (`linear`), large rotation (`corotated`), or rubber.",
+        ),
+        Field::new(
+            "youngs_modulus",
+            Allowed::POSITIVE,
+            "Pa",
+            Default::Absent,
+            "Young's modulus E; exactly one of `youngs_modulus` and `youngs_modulus_of_cells`.",
+        ),
+        Field::new(
+            "youngs_modulus_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are Young's modulus [Pa].",
+        ),
+        Field::new(
+            "poissons_ratio",
+            Allowed::Number { least: Bound::Open(-1.0), greatest: Bound::Open(0.5) },
+            "",
+            Default::Number(0.3),
+            "Poisson's ratio ν; rubber has nearly 0.5.",
+        ),
+        Field::new(
+            "damping",
+            Allowed::NOT_NEGATIVE,
+            "s",
+            Default::Number(0.0),
+            "Retardation time τ of the Kelvin–Voigt solid; a mode of angular frequency ω loses its energy at the rate τω².",
+        ),
+        Field::new(
+            "plane",
+            Allowed::Choice(&["strain", "stress"]),
+            "",
+            Default::Text("strain"),
+            "In 2D: whether nothing moves across the plane, or no stress acts across it.",
+        ),
+        Field::new(
+            "mooney_share",
+            Allowed::FRACTION,
+            "",
+            Default::Number(0.2),
+            "For `mooney_rivlin` C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
+        ),
+        Field::new(
+            "cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The group of cells of the mesh that are of this material; all cells where the scene is silent.",
+        ),
+        Field::new(
+            "locking",
+            Allowed::Choice(&["refuse", "accept"]),
+            "",
+            Default::Text("refuse"),
+            "What holds for linear triangles and tetrahedra above ν = 0.45.",
+        ),
+    ],
+};

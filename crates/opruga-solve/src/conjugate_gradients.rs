@@ -1,0 +1,83 @@
+//! The method of conjugate gradients.
+
+use crate::{Indefinite, Preconditioner, dot};
+
+/// Room for the vectors of the method.
+#[derive(Clone, Debug, Default)]
+pub struct Directions {
+    residual: Vec<f64>,
+    improved: Vec<f64>,
+    direction: Vec<f64>,
+    product: Vec<f64>,
+}
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended {
+    /// Products with the matrix.
+    pub iterations: u32,
+    /// |b − A x| relative to |b|, in the norm of the preconditioner.
+    pub residual: f64,
+}
+
+/// Solves A x = b for a symmetric positive definite A, of which only the product is known, from x = 0.
+///
+/// It ends where the residual in the norm of the preconditioner is `tolerance` times that of b, after `most` products, or
+/// where rounding lets it fall no further. Sums have one order, so the bits are the same everywhere.
+///
+/// # Errors
+/// [`Indefinite`] where a direction of no or of negative curvature is met; x is then what was found until there.
+///
+/// # Source
+/// Hestenes and Stiefel 1952; Shewchuk, *An introduction to the conjugate gradient method without the agonizing pain*,
+/// 1994, B3.
+pub fn conjugate_gradients(
+    multiply: impl Fn(&[f64], &mut [f64]),
+    preconditioner: &dyn Preconditioner,
+    b: &[f64],
+    x: &mut [f64],
+    tolerance: f64,
+    most: u32,
+    room: &mut Directions,
+) -> Result<Ended, Indefinite> {
+    let Directions { residual, improved, direction, product } = room;
+    for vector in [&mut *residual, improved, direction, product] {
+        vector.resize(b.len(), 0.0);
+    }
+    x.fill(0.0);
+    residual.copy_from_slice(b);
+    preconditioner.apply(residual, improved);
+    direction.copy_from_slice(improved);
+    let mut rho = dot(residual, improved);
+    let first = rho;
+    if !rho.is_finite() || rho < 0.0 {
+        return Err(Indefinite);
+    }
+    let goal = tolerance * tolerance * first;
+    let mut iterations = 0;
+    while rho > goal && iterations < most {
+        multiply(direction, product);
+        iterations += 1;
+        let curvature = dot(direction, product);
+        if !(curvature > 0.0 && curvature.is_finite()) {
+            return Err(Indefinite);
+        }
+        let step = rho / curvature;
+        for k in 0..x.len() {
+            x[k] += step * direction[k];
+            residual[k] -= step * product[k];
+        }
+        preconditioner.apply(residual, improved);
+        let next = dot(residual, improved);
+        if !next.is_finite() || next < 0.0 {
+            return Err(Indefinite);
+        }
+        let turn = next / rho;
+        rho = next;
+        for k in 0..x.len() {
+            direction[k] = improved[k] + turn * direction[k];
+        }
+    }
+    let residual = if first > 0.0 { (rho / first).sqrt() } else { 0.0 };
+    Ok(Ended { iterations, residual })
+}

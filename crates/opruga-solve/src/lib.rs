@@ -1,0 +1,44 @@
+//! Sparse linear systems and eigenvalues of Opruga: what implicit rules, equilibria and natural frequencies need.
+//!
+//! A [`BlockMatrix`] collects the second derivatives that models deliver. It is solved by [`conjugate_gradients`], whose
+//! sums have one order, so that it gives the same bits on every processor, or by [`Cholesky`] and [`Factors`] (the library
+//! faer), which choose their instructions by the class of the processor. [`eigen`] finds the lowest natural frequencies.
+
+pub mod blocks;
+mod cholesky;
+mod conjugate_gradients;
+pub mod dense;
+pub mod eigen;
+mod lu;
+mod matrix;
+mod preconditioner;
+mod scalars;
+mod woodbury;
+
+pub use cholesky::Cholesky;
+pub use conjugate_gradients::{Directions, Ended, conjugate_gradients};
+pub use lu::Factors;
+pub use matrix::BlockMatrix;
+pub use preconditioner::{BlockJacobi, IncompleteCholesky, Preconditioner};
+
+use opruga_math::{WIDTH, sum_in_fixed_order};
+
+/// The matrix is not positive definite, or not regular: what was asked for does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Indefinite;
+
+/// The scalar product, in eight partial sums: the same bits everywhere.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; WIDTH];
+    let (packs, rest) = a.as_chunks::<WIDTH>();
+    let (others, other_rest) = b.as_chunks::<WIDTH>();
+    for (a, b) in packs.iter().zip(others) {
+        for l in 0..WIDTH {
+            sums[l] += a[l] * b[l];
+        }
+    }
+    for (l, (a, b)) in rest.iter().zip(other_rest).enumerate() {
+        sums[l] += a * b;
+    }
+    sum_in_fixed_order(&sums)
+}

@@ -1,0 +1,61 @@
+//! The sparse factors of a matrix that need not be definite, by faer.
+
+use crate::Indefinite;
+use crate::matrix::BlockMatrix;
+use crate::scalars::Scalars;
+use crate::woodbury::Woodbury;
+use faer::MatMut;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+
+/// A factored matrix S + Σ c u uᵀ that may be indefinite: partial pivoting.
+#[derive(Default)]
+pub struct Factors {
+    scalars: Scalars,
+    symbolic: Option<SymbolicLu<usize>>,
+    factors: Option<Lu<usize, f64>>,
+    parts: Woodbury,
+}
+
+impl core::fmt::Debug for Factors {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Factors").field("size", &self.scalars.size()).finish_non_exhaustive()
+    }
+}
+
+fn solve(factors: &Lu<usize, f64>, x: &mut [f64]) {
+    let rows = x.len();
+    factors.solve_in_place(MatMut::from_column_major_slice_mut(x, rows, 1));
+}
+
+impl Factors {
+    /// Factors a matrix.
+    ///
+    /// # Errors
+    /// [`Indefinite`] where it is singular.
+    pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
+        self.factors = None;
+        let anew = self.scalars.take(matrix, false);
+        let size = self.scalars.size();
+        let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
+        let symbolic = match &self.symbolic {
+            Some(symbolic) if !anew => symbolic.clone(),
+            _ => SymbolicLu::try_new(pattern).map_err(|_| Indefinite)?,
+        };
+        self.symbolic = Some(symbolic.clone());
+        let values = SparseColMatRef::new(pattern, &self.scalars.values);
+        let factors = Lu::try_new_with_symbolic(symbolic, values).map_err(|_| Indefinite)?;
+        self.parts.update(matrix, false, |x| solve(&factors, x))?;
+        self.factors = Some(factors);
+        Ok(())
+    }
+
+    /// Solves A x = b in place; says whether every number that comes out is finite.
+    pub fn solve(&self, x: &mut [f64]) -> bool {
+        let Some(factors) = &self.factors else { return false };
+        solve(factors, x);
+        self.parts.correct(x);
+        x.iter().all(|x| x.is_finite())
+    }
+}

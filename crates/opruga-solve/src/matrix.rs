@@ -1,0 +1,300 @@
+//! A sparse symmetric matrix of blocks, one row and column of blocks for each node, and parts of rank one.
+
+use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
+use crate::dot;
+use opruga_core::potential::Sink;
+
+/// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
+///
+/// The pattern is found once. From then on the k-th call of a model lands where it landed before, without a search; a call
+/// for another block is looked up, and a block that is not there yet makes the pattern grow.
+#[derive(Clone, Debug, Default)]
+pub struct BlockMatrix<const D: usize> {
+    /// Where the blocks of each row begin, and where the last ends.
+    pub(crate) start: Vec<u32>,
+    /// The column of each block, rising within a row.
+    pub(crate) column: Vec<u32>,
+    /// The place of the diagonal block of each row.
+    pub(crate) diagonal: Vec<u32>,
+    pub(crate) values: Vec<Block<D>>,
+    /// How often the pattern has changed.
+    pub(crate) generation: u64,
+    scripts: [Script; SCRIPTS],
+    script: usize,
+    cursor: usize,
+    recording: bool,
+    missing: Vec<(u32, u32)>,
+    factor: f64,
+    rank_one: Vec<RankOne<D>>,
+    ranks: usize,
+}
+
+/// How many orders of calls are remembered.
+pub const SCRIPTS: usize = 2;
+
+/// An order of calls, and where each lands.
+#[derive(Clone, Debug, Default)]
+struct Script {
+    calls: Vec<(u32, u32)>,
+    slots: Vec<u32>,
+}
+
+/// c·u uᵀ.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RankOne<const D: usize> {
+    pub(crate) factor: f64,
+    pub(crate) entries: Vec<(u32, [f64; D])>,
+}
+
+/// How far ahead a call is looked for that comes out of turn.
+const LOOK_AHEAD: usize = 64;
+
+impl<const D: usize> BlockMatrix<D> {
+    /// The number of rows of blocks.
+    pub fn rows(&self) -> usize {
+        self.diagonal.len()
+    }
+    /// The number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.column.len()
+    }
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let scripts: usize = self.scripts.iter().map(|s| s.calls.capacity() * 8 + s.slots.capacity() * 4).sum();
+        self.values.capacity() * size_of::<Block<D>>() + (self.column.capacity() + self.start.capacity()) * 4 + scripts
+    }
+
+    /// Fills the matrix anew: `deliver` is called once, or more often while the pattern is being found. `script` numbers
+    /// the order of calls, for those who deliver in one order or in another.
+    pub fn assemble(&mut self, nodes: usize, script: usize, mut deliver: impl FnMut(&mut BlockMatrix<D>)) {
+        if self.rows() != nodes {
+            *self = BlockMatrix { generation: self.generation + 1, ..BlockMatrix::default() };
+            self.start = (0..=nodes as u32).collect();
+            self.column = (0..nodes as u32).collect();
+            self.diagonal = (0..nodes as u32).collect();
+            self.values = vec![[[0.0; D]; D]; nodes];
+        }
+        self.script = script.min(SCRIPTS - 1);
+        self.recording = self.scripts[self.script].calls.is_empty();
+        loop {
+            self.values.fill([[0.0; D]; D]);
+            (self.cursor, self.ranks, self.factor) = (0, 0, 1.0);
+            if self.recording {
+                self.scripts[self.script].calls.clear();
+                self.scripts[self.script].slots.clear();
+            }
+            deliver(self);
+            if self.missing.is_empty() {
+                break;
+            }
+            self.grow();
+            self.recording = true;
+        }
+        self.recording = false;
+        self.rank_one.truncate(self.ranks);
+    }
+    /// What is delivered from now on is multiplied by this.
+    pub fn scale(&mut self, factor: f64) {
+        self.factor = factor;
+    }
+    /// Adds a multiple of the unit matrix to the block of a node; the scale does not matter.
+    pub fn add_diagonal(&mut self, node: usize, value: f64) {
+        let block = &mut self.values[self.diagonal[node] as usize];
+        for d in 0..D {
+            block[d][d] += value;
+        }
+    }
+
+    /// Adds the missing blocks to the pattern.
+    fn grow(&mut self) {
+        let mut keys: Vec<(u32, u32)> = std::mem::take(&mut self.missing);
+        for row in 0..self.rows() {
+            keys.extend(self.row(row).map(|at| (row as u32, self.column[at])));
+        }
+        keys.sort_unstable();
+        keys.dedup();
+        let rows = self.rows();
+        self.start = vec![0; rows + 1];
+        self.column.clear();
+        for (at, (row, column)) in keys.iter().enumerate() {
+            self.start[*row as usize + 1] += 1;
+            self.column.push(*column);
+            if row == column {
+                self.diagonal[*row as usize] = at as u32;
+            }
+        }
+        for row in 0..rows {
+            self.start[row + 1] += self.start[row];
+        }
+        self.values = vec![[[0.0; D]; D]; keys.len()];
+        self.scripts = Default::default();
+        self.generation += 1;
+    }
+
+    pub(crate) fn row(&self, row: usize) -> core::ops::Range<usize> {
+        self.start[row] as usize..self.start[row + 1] as usize
+    }
+
+    fn find(&mut self, key: (u32, u32)) -> Option<usize> {
+        if !self.recording {
+            let script = &self.scripts[self.script];
+            let ahead = script.calls[self.cursor.min(script.calls.len())..].iter().take(LOOK_AHEAD);
+            if let Some(skipped) = ahead.clone().position(|call| *call == key) {
+                self.cursor += skipped + 1;
+                return Some(script.slots[self.cursor - 1] as usize);
+            }
+        }
+        let row = self.row(key.0 as usize);
+        let at = self.column[row.clone()].binary_search(&key.1).ok().map(|at| row.start + at)?;
+        if self.recording {
+            self.scripts[self.script].calls.push(key);
+            self.scripts[self.script].slots.push(at as u32);
+        }
+        Some(at)
+    }
+
+    /// y = A x, over all rows in the order of columns: the same bits everywhere.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        let x = nodes::<D>(x);
+        for (row, out) in nodes_mut::<D>(y).iter_mut().enumerate() {
+            *out = self.row_times(row, x);
+        }
+        for part in &self.rank_one {
+            let along = part.factor * part.along(x);
+            let y = nodes_mut::<D>(y);
+            for (node, u) in &part.entries {
+                for d in 0..D {
+                    y[*node as usize][d] += along * u[d];
+                }
+            }
+        }
+    }
+    #[inline(always)]
+    fn row_times(&self, row: usize, x: &[[f64; D]]) -> [f64; D] {
+        let mut out = [0.0; D];
+        let range = self.row(row);
+        for (column, block) in self.column[range.clone()].iter().zip(&self.values[range]) {
+            let part = times(block, &x[*column as usize]);
+            for d in 0..D {
+                out[d] += part[d];
+            }
+        }
+        out
+    }
+
+    /// Takes directions out of the matrix: A ← P A P + (1 − P) s, where P of every node that is not `free` is its
+    /// projector, and s the size of its diagonal.
+    pub fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) {
+        for row in 0..self.rows() {
+            for at in self.start[row] as usize..self.start[row + 1] as usize {
+                let column = self.column[at] as usize;
+                if free[row] && free[column] {
+                    continue;
+                }
+                let inner = if free[column] { self.values[at] } else { product(&self.values[at], &projectors[column]) };
+                let mut block = if free[row] { inner } else { product(&projectors[row], &inner) };
+                if row == column {
+                    let mut size = 0.0;
+                    for d in 0..D {
+                        size += self.values[at][d][d].abs() / D as f64;
+                    }
+                    let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+                    let unit = isotropic::<D>(size);
+                    for i in 0..D {
+                        for j in 0..D {
+                            block[i][j] += unit[i][j] - size * projectors[row][i][j];
+                        }
+                    }
+                }
+                self.values[at] = block;
+            }
+        }
+        for part in &mut self.rank_one {
+            for (node, u) in &mut part.entries {
+                if !free[*node as usize] {
+                    *u = times(&projectors[*node as usize], u);
+                }
+            }
+        }
+    }
+
+    /// Becomes a copy of another matrix, in memory that is there already; orders of calls are not copied.
+    pub fn copy_from(&mut self, other: &BlockMatrix<D>) {
+        if self.generation != other.generation || self.rows() != other.rows() {
+            self.start.clone_from(&other.start);
+            self.column.clone_from(&other.column);
+            self.diagonal.clone_from(&other.diagonal);
+            self.generation = other.generation;
+        }
+        self.values.clone_from(&other.values);
+        self.rank_one.resize(other.rank_one.len(), RankOne::default());
+        for (own, part) in self.rank_one.iter_mut().zip(&other.rank_one) {
+            own.factor = part.factor;
+            own.entries.clone_from(&part.entries);
+        }
+        self.ranks = other.ranks;
+    }
+    /// The block of a node with itself.
+    pub fn diagonal_block(&self, node: usize) -> &Block<D> {
+        &self.values[self.diagonal[node] as usize]
+    }
+
+    pub(crate) fn rank_one(&self) -> &[RankOne<D>] {
+        &self.rank_one
+    }
+}
+
+impl<const D: usize> RankOne<D> {
+    pub(crate) fn along(&self, x: &[[f64; D]]) -> f64 {
+        let mut sums = [0.0; opruga_math::WIDTH];
+        for (k, (node, u)) in self.entries.iter().enumerate() {
+            for d in 0..D {
+                sums[k % opruga_math::WIDTH] += u[d] * x[*node as usize][d];
+            }
+        }
+        opruga_math::sum_in_fixed_order(&sums)
+    }
+    /// u as a long vector.
+    pub(crate) fn write(&self, out: &mut [f64]) {
+        out.fill(0.0);
+        for (node, u) in &self.entries {
+            nodes_mut::<D>(out)[*node as usize] = *u;
+        }
+    }
+}
+
+impl<const D: usize> Sink<D> for BlockMatrix<D> {
+    fn block(&mut self, a: usize, b: usize, value: Block<D>) {
+        let key = (a as u32, b as u32);
+        let script = &self.scripts[self.script];
+        let at = if !self.recording && script.calls.get(self.cursor) == Some(&key) {
+            self.cursor += 1;
+            script.slots[self.cursor - 1] as usize
+        } else {
+            match self.find(key) {
+                Some(at) => at,
+                None => return self.missing.push(key),
+            }
+        };
+        let block = &mut self.values[at];
+        for i in 0..D {
+            for j in 0..D {
+                block[i][j] += self.factor * value[i][j];
+            }
+        }
+    }
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
+        if self.rank_one.len() == self.ranks {
+            self.rank_one.push(RankOne::default());
+        }
+        let part = &mut self.rank_one[self.ranks];
+        part.factor = self.factor * c;
+        part.entries.clear();
+        part.entries.extend(u.iter().map(|(place, entry)| (*place as u32, *entry)));
+        self.ranks += 1;
+    }
+}
+
+#[cfg(test)]
+#[path = "matrix_tests.rs"]
+mod tests;

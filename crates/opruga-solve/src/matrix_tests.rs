@@ -1,0 +1,211 @@
+//! Assembly against a dense matrix, and all solvers against one another.
+
+use super::*;
+use crate::{BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Preconditioner, conjugate_gradients};
+
+/// A chain of springs in the plane with a gas that couples all of its nodes; `order` reverses the calls.
+fn deliver(nodes: usize, order: bool, sink: &mut BlockMatrix<2>) {
+    let spring = |k: usize| {
+        let (c, s) = (libm::cos(k as f64), libm::sin(k as f64));
+        let k = 3.0 + k as f64;
+        [[k * c * c + 0.5, k * c * s], [k * c * s, k * s * s + 0.5]]
+    };
+    let numbers: Vec<usize> = if order { (0..nodes - 1).rev().collect() } else { (0..nodes - 1).collect() };
+    for k in numbers {
+        let block = spring(k);
+        let minus = block.map(|row| row.map(|x| -x));
+        sink.block(k, k, block);
+        sink.block(k + 1, k + 1, block);
+        sink.block(k, k + 1, minus);
+        sink.block(k + 1, k, minus);
+    }
+    let u: Vec<(usize, [f64; 2])> = (0..nodes).map(|k| (k, [0.1 * k as f64, 1.0 - 0.2 * k as f64])).collect();
+    sink.low_rank(0.7, &u);
+    sink.scale(2.0);
+    sink.low_rank(0.1, &u[1..3]);
+    sink.scale(1.0);
+    for k in 0..nodes {
+        sink.add_diagonal(k, 0.3);
+    }
+}
+
+fn matrix(nodes: usize) -> BlockMatrix<2> {
+    let mut matrix = BlockMatrix::default();
+    matrix.assemble(nodes, 0, |sink| deliver(nodes, false, sink));
+    matrix
+}
+
+/// The matrix as a dense one, by its products.
+fn dense(matrix: &BlockMatrix<2>) -> Vec<Vec<f64>> {
+    let size = 2 * matrix.rows();
+    (0..size)
+        .map(|k| {
+            let (mut x, mut y) = (vec![0.0; size], vec![0.0; size]);
+            x[k] = 1.0;
+            matrix.multiply(&x, &mut y);
+            y
+        })
+        .collect()
+}
+
+#[test]
+fn assembly_is_the_same_first_replayed_reversed_and_out_of_turn() {
+    let first = matrix(9);
+    let expected = dense(&first);
+    for row in 0..18 {
+        for column in 0..18 {
+            assert!((expected[row][column] - expected[column][row]).abs() < 1e-13);
+        }
+    }
+    let mut again = first.clone();
+    again.assemble(9, 0, |sink| deliver(9, false, sink));
+    assert_eq!(dense(&again), expected);
+    again.assemble(9, 1, |sink| deliver(9, true, sink));
+    again.assemble(9, 1, |sink| deliver(9, true, sink));
+    // The order of additions is another one: rounding.
+    let close =
+        |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13);
+    assert!(close(&dense(&again), &expected));
+    // A script that is not kept to.
+    again.assemble(9, 0, |sink| deliver(9, true, sink));
+    assert!(close(&dense(&again), &expected));
+    // New blocks.
+    let mut more = first;
+    more.assemble(9, 0, |sink| {
+        deliver(9, false, sink);
+        sink.block(0, 8, [[1.0, 0.0], [0.0, 0.0]]);
+        sink.block(8, 0, [[1.0, 0.0], [0.0, 0.0]]);
+    });
+    assert!((dense(&more)[0][16] - expected[0][16] - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn every_solver_finds_the_same_solution() {
+    for nodes in [3, 9, 60] {
+        let matrix = matrix(nodes);
+        let wanted: Vec<f64> = (0..2 * nodes).map(|k| libm::sin(k as f64 * 1.7)).collect();
+        let mut b = vec![0.0; 2 * nodes];
+        matrix.multiply(&wanted, &mut b);
+        let check = |x: &[f64], name: &str| {
+            let error = x.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-9, "{name}, {nodes} nodes: {error}");
+        };
+        let mut cholesky = Cholesky::default();
+        cholesky.update(&matrix).unwrap();
+        let mut x = b.clone();
+        cholesky.solve(&mut x);
+        check(&x, "cholesky");
+        let mut factors = Factors::default();
+        factors.update(&matrix).unwrap();
+        let mut x = b.clone();
+        assert!(factors.solve(&mut x));
+        check(&x, "lu");
+        let (mut jacobi, mut incomplete) = (BlockJacobi::default(), IncompleteCholesky::default());
+        jacobi.update((0..nodes).map(|node| matrix.diagonal_block(node))).unwrap();
+        incomplete.update(&matrix).unwrap();
+        let mut counts = Vec::new();
+        let preconditioners: [&dyn Preconditioner; 2] = [&jacobi, &incomplete];
+        for preconditioner in preconditioners {
+            let mut x = vec![0.0; 2 * nodes];
+            let multiply = |x: &[f64], y: &mut [f64]| matrix.multiply(x, y);
+            let mut room = Directions::default();
+            let ended = conjugate_gradients(multiply, preconditioner, &b, &mut x, 1e-13, 1000, &mut room).unwrap();
+            check(&x, "conjugate gradients");
+            counts.push(ended.iterations);
+        }
+        // A chain is factored exactly: only the two parts of rank one are left.
+        assert!(counts[1] <= 4, "{counts:?}");
+    }
+}
+
+#[test]
+fn an_indefinite_matrix_is_told() {
+    let mut matrix = BlockMatrix::<2>::default();
+    matrix.assemble(2, 0, |sink| {
+        sink.block(0, 0, [[1.0, 0.0], [0.0, -1.0]]);
+        sink.block(1, 1, [[1.0, 0.0], [0.0, 1.0]]);
+    });
+    assert!(Cholesky::default().update(&matrix).is_err());
+    assert!(BlockJacobi::default().update((0..2).map(|node| matrix.diagonal_block(node))).is_err());
+    assert!(IncompleteCholesky::default().update(&matrix).is_err());
+    assert!(Factors::default().update(&matrix).is_ok());
+    // Positive but for a part of rank one that softens: 1 − 2.
+    matrix.assemble(2, 0, |sink| {
+        sink.block(0, 0, [[1.0, 0.0], [0.0, 1.0]]);
+        sink.block(1, 1, [[1.0, 0.0], [0.0, 1.0]]);
+        sink.low_rank(-2.0, &[(0, [1.0, 0.0])]);
+    });
+    assert!(Cholesky::default().update(&matrix).is_err());
+    matrix.assemble(2, 0, |sink| {
+        sink.block(0, 0, [[1.0, 0.0], [0.0, 1.0]]);
+        sink.block(1, 1, [[1.0, 0.0], [0.0, 1.0]]);
+        sink.low_rank(-0.5, &[(0, [1.0, 0.0])]);
+    });
+    let mut cholesky = Cholesky::default();
+    cholesky.update(&matrix).unwrap();
+    let mut x = vec![1.0, 1.0, 0.0, 0.0];
+    cholesky.solve(&mut x);
+    assert!((x[0] - 2.0).abs() < 1e-14 && (x[1] - 1.0).abs() < 1e-14, "{x:?}");
+}
+
+#[test]
+fn directions_that_are_taken_out_stay_out() {
+    let mut matrix = matrix(9);
+    let full = dense(&matrix);
+    let s = core::f64::consts::FRAC_1_SQRT_2;
+    let mut free = [true; 9];
+    let mut projectors = [isotropic(1.0); 9];
+    (free[0], projectors[0]) = (false, isotropic(0.0));
+    // Node 4 slides along the diagonal only.
+    (free[4], projectors[4]) = (false, [[0.5, 0.5], [0.5, 0.5]]);
+    matrix.constrain(&free, &projectors);
+    let mut cholesky = Cholesky::default();
+    cholesky.update(&matrix).unwrap();
+    let mut x: Vec<f64> = (0..18).map(|k| libm::cos(k as f64)).collect();
+    (x[0], x[1]) = (0.0, 0.0);
+    let along = 0.5 * (x[8] + x[9]);
+    (x[8], x[9]) = (along, along);
+    let b = x.clone();
+    cholesky.solve(&mut x);
+    assert!(x[0].abs() < 1e-14 && x[1].abs() < 1e-14 && ((x[8] - x[9]) * s).abs() < 1e-13);
+    // The free rows are satisfied by the matrix as it was.
+    for row in (0..18).filter(|row| ![0, 1, 8, 9].contains(row)) {
+        let product: f64 = (0..18).map(|column| full[row][column] * x[column]).sum();
+        assert!((product - b[row]).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn modes_of_a_free_ring_come_in_pairs() {
+    // A ring of masses on springs, one coordinate each: ω² = 4 sin²(πk/N), k = 0, 1, 1, 2, 2, …
+    let nodes = 40;
+    let mut matrix = BlockMatrix::<1>::default();
+    let mut fill = |matrix: &mut BlockMatrix<1>, shift: f64| {
+        matrix.assemble(nodes, 0, |sink| {
+            for a in 0..nodes {
+                let b = (a + 1) % nodes;
+                sink.block(a, a, [[1.0]]);
+                sink.block(b, b, [[1.0]]);
+                sink.block(a, b, [[-1.0]]);
+                sink.block(b, a, [[-1.0]]);
+                sink.add_diagonal(a, shift);
+            }
+        });
+    };
+    let mut shifted = BlockMatrix::<1>::default();
+    fill(&mut shifted, 0.01);
+    fill(&mut matrix, 0.0);
+    let mut cholesky = Cholesky::default();
+    cholesky.update(&shifted).unwrap();
+    let mass = vec![1.0; nodes];
+    let modes = crate::eigen::lowest_modes(9, &mass, 0.01, &[], |x| cholesky.solve(x), |x, y| matrix.multiply(x, y));
+    assert_eq!(modes.len(), 9);
+    for (number, mode) in modes.iter().enumerate() {
+        let k = number.div_ceil(2) as f64;
+        let sine = libm::sin(core::f64::consts::PI * k / nodes as f64);
+        assert!((mode.square - 4.0 * sine * sine).abs() < 1e-12, "{number}: {}", mode.square);
+        for other in &modes[..number] {
+            assert!(crate::dot(&mode.shape, &other.shape).abs() < 1e-10);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Parts of rank one beside a factored matrix.
+
+use crate::matrix::BlockMatrix;
+use crate::{Indefinite, dense, dot};
+
+/// (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).
+#[derive(Debug, Default)]
+pub(crate) struct Woodbury {
+    /// The u of each part, and S⁻¹ u.
+    directions: Vec<Vec<f64>>,
+    solved: Vec<Vec<f64>>,
+    /// The inverse of C⁻¹ + Uᵀ S⁻¹ U, row by row.
+    core: Vec<f64>,
+}
+
+impl Woodbury {
+    /// Takes the parts of rank one of a matrix whose S is factored.
+    pub(crate) fn update<const D: usize>(
+        &mut self,
+        matrix: &BlockMatrix<D>,
+        positive: bool,
+        solve: impl Fn(&mut [f64]),
+    ) -> Result<(), Indefinite> {
+        let parts: Vec<_> = matrix.rank_one().iter().filter(|part| part.factor != 0.0).collect();
+        let n = parts.len();
+        self.directions.resize(n, Vec::new());
+        self.solved.resize(n, Vec::new());
+        for (k, part) in parts.iter().enumerate() {
+            self.directions[k].resize(matrix.rows() * D, 0.0);
+            part.write(&mut self.directions[k]);
+            self.solved[k].clone_from(&self.directions[k]);
+            solve(&mut self.solved[k]);
+        }
+        let mut core = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..n {
+                let own = if i == j { 1.0 / parts[i].factor } else { 0.0 };
+                core[i * n + j] = own + dot(&self.directions[i], &self.solved[j]);
+            }
+        }
+        // Where S and all C are positive, the sum is; else the signs of this small matrix tell.
+        if positive && !dense::has_positive(&core, n, parts.iter().filter(|part| part.factor > 0.0).count()) {
+            return Err(Indefinite);
+        }
+        self.core = dense::inverse(&core, n).ok_or(Indefinite)?;
+        Ok(())
+    }
+    /// From S⁻¹ b to the solution.
+    pub(crate) fn correct(&self, x: &mut [f64]) {
+        let n = self.directions.len();
+        let along: Vec<f64> = self.directions.iter().map(|u| dot(u, x)).collect();
+        for i in 0..n {
+            let weight: f64 = (0..n).map(|j| self.core[i * n + j] * along[j]).sum();
+            for (x, s) in x.iter_mut().zip(&self.solved[i]) {
+                *x -= weight * s;
+            }
+        }
+    }
+}

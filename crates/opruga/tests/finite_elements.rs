@@ -1,0 +1,111 @@
+//! Finite elements from the text of a scene: weight, bending, stable steps, refusals.
+//!
+//! Expected values are literals from closed forms or from other programs; the comment says which.
+
+mod common;
+use common::*;
+use opruga::{Options, World, WorldError};
+
+/// The mean of a coordinate over the nodes of body 0 that lie at a coordinate of the rest shape.
+fn mean_at<const D: usize>(world: &World<D>, axis: usize, place: f64, of: usize) -> f64 {
+    let rest = &world.blueprint().bodies[0].mesh.positions;
+    let nodes: Vec<u32> = (0..rest.len() as u32).filter(|n| (rest[*n as usize][axis] - place).abs() < 1e-9).collect();
+    nodes.iter().map(|n| world.position(0, *n)[of] - rest[*n as usize][of]).sum::<f64>() / nodes.len() as f64
+}
+
+/// A bar that hangs by its upper end grows by ρgL²/2E = 0.03924 m, exactly at the nodes.
+#[test]
+fn a_hanging_bar_grows_by_its_weight() {
+    for cells in ["", "simplices = true\n", "simplices = true\norder = 2\n"] {
+        let mut world = built(plane(&format!(
+            "{}[[body]]\nname = \"bar\"\nshape = {{ kind = \"grid\", size = [0.25, 1.0], cells = [2, 8] }}\n{cells}density = 1000\n\
+             models = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 125000.0, poissons_ratio = 0.0, plane = \"stress\" }}]\n\
+             pin = [{{ select = {{ side = \"top\" }}, axes = \"xy\" }}]\n",
+            head(10.0, 1, -9.81, "backward_euler")
+        )));
+        frames(&mut world, 5);
+        let growth = -mean_at(&world, 1, 0.0, 1);
+        // Masses at the nodes of quadratic cells are not quite the weight of their shape functions.
+        let tolerance = if cells.contains("order") { 2e-3 } else { 1e-6 };
+        assert!((growth / 0.03924 - 1.0).abs() < tolerance, "{cells}: {growth}");
+    }
+}
+
+/// A beam of 1 × 0.1 × 0.1 m, ρ = 1000, ν = 0.3, E = 1e8, clamped at one end: 0.014686 m by quadratic elements of another
+/// program (Euler–Bernoulli 0.014715, Timoshenko 0.014865).
+#[test]
+fn a_beam_of_quadratic_tetrahedra_bends_by_its_weight() {
+    let mut world = built(space(
+        "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 10.0\nsubsteps = 1\n[world]\n\
+         gravity = [0, -9.81, 0]\n[integrator]\nkind = \"backward_euler\"\n\
+         [[body]]\nname = \"beam\"\nshape = { kind = \"grid\", size = [1.0, 0.1, 0.1], cells = [10, 1, 1] }\nsimplices = true\n\
+         order = 2\ndensity = 1000\n\
+         models = [{ kind = \"fem\", material = \"neo_hookean\", youngs_modulus = 1e8, poissons_ratio = 0.3 }]\n\
+         pin = [{ select = { side = \"left\" }, axes = \"xyz\" }]\n",
+    ));
+    frames(&mut world, 4);
+    let sag = -mean_at(&world, 0, 1.0, 1);
+    assert!((sag / 0.014686 - 1.0).abs() < 0.01, "{sag}");
+}
+
+/// The estimate of the stable step sees finite elements: above it the scene is refused, with it the energy is kept.
+#[test]
+fn explicit_integrators_know_their_step() {
+    let scene = |substeps: u32| {
+        format!(
+            "{}[[body]]\nname = \"beam\"\nshape = {{ kind = \"grid\", size = [1.0, 0.2], cells = [10, 2] }}\nsimplices = true\norder = 2\n\
+             density = 1000\nmodels = [{{ kind = \"fem\", youngs_modulus = 1e5, poissons_ratio = 0.4 }}]\n\
+             pin = [{{ select = {{ side = \"left\" }}, axes = \"xy\" }}]\n",
+            head(0.02, substeps, -9.81, "verlet")
+        )
+    };
+    let WorldError::UnstableStep { substeps, .. } = refused(&scene(1)) else { panic!("another refusal") };
+    assert!((10..1000).contains(&substeps), "{substeps}");
+    assert!(World::new(plane(&scene(substeps * 3 / 4)), Options::default()).is_err());
+    let mut world = built(plane(&scene(substeps)));
+    frames(&mut world, 50);
+    let energy = world.energy();
+    assert!(energy.elastic > 1.0, "{energy:?}");
+    assert!(energy.closure.abs() < 0.02, "{energy:?}");
+}
+
+/// A square of St. Venant–Kirchhoff in plane stress, pulled apart along both axes, has no thickness.
+#[test]
+fn a_plate_without_thickness_ends_the_run_at_the_last_good_frame() {
+    let mut world = built(plane(&format!(
+        "{}[[body]]\nname = \"plate\"\nshape = {{ kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }}\ndensity = 1\n\
+         models = [{{ kind = \"fem\", material = \"st_venant_kirchhoff\", youngs_modulus = 100.0, poissons_ratio = 0.4, plane = \"stress\" }}]\n",
+        head(0.01, 40, 0.0, "verlet")
+    )));
+    // Every node away from the middle.
+    for node in 0..world.node_count(0) as u32 {
+        let x = world.position(0, node);
+        world.place_node(0, node, x.map(|c| 0.5 + 1.4 * (c - 0.5)), [0.0; 2]).unwrap_or_else(|e| panic!("{e}"));
+    }
+    let before = world.time();
+    let error = world.frame().expect_err("no thickness").to_string();
+    assert!(error.contains("plate") && error.contains("no positive thickness") && error.contains("cell"), "{error}");
+    assert_eq!(world.time(), before);
+}
+
+#[test]
+fn cells_that_cannot_be_had_are_refused_where_they_are_asked_for() {
+    let errors = |body: &str| {
+        let scene = format!("{}[[body]]\nname = \"b\"\nmass = 1\n{body}\n", head(0.01, 10, 0.0, "verlet"));
+        read(&scene).expect_err("errors").iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    let grid = "shape = { kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }";
+    let of_boxes = errors(&format!("{grid}\norder = 2"));
+    assert!(of_boxes.contains("body[0].order") && of_boxes.contains("simplices = true"), "{of_boxes}");
+    let of_ring = errors("shape = { kind = \"ring\", radius = 1.0, vertices = 9 }\nsimplices = true");
+    assert!(of_ring.contains("body[0].simplices") && of_ring.contains("has none"), "{of_ring}");
+    let third = errors(&format!("{grid}\norder = 3"));
+    assert!(third.contains("from 1 to 2"), "{third}");
+    let corners =
+        "shape = { kind = \"quadrilateral\", corners = [[0, 0], [1, 0], [0.2, 0.2], [0, 1]], cells = [2, 2] }";
+    assert!(errors(corners).contains("convex"), "{}", errors(corners));
+    let locking = errors(&format!(
+        "{grid}\nsimplices = true\nmodels = [{{ kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49 }}]"
+    ));
+    assert!(locking.contains("order = 2"), "{locking}");
+}
