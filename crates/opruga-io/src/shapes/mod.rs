@@ -111,11 +111,16 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
             let source = text()?;
             triangles::loaded(stl::read_text(&source)?, name, Some(&source), shape)
         }
-        "ply" => triangles::loaded(ply::read(name, bytes)?, name, None, shape),
+        "ply" => {
+            let found = ply::read(name, bytes)?;
+            // Only those of texts have lines.
+            let source = core::str::from_utf8(bytes).ok().map(|text| Source { file: name, text });
+            triangles::loaded(found, name, source.as_ref(), shape)
+        }
         "gltf" | "glb" => {
             let (json, binary) = gltf::chunks(name, bytes)?;
             let source = text_of(name, json)?;
-            triangles::loaded(gltf::read(&source, binary, open)?, name, None, shape)
+            triangles::loaded(gltf::read(&source, binary, open)?, name, Some(&source), shape)
         }
         _ => {
             let error =

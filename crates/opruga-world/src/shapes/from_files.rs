@@ -172,6 +172,13 @@ static SURFACE: Spec = Spec {
             "What becomes of a surface with free boundaries: an error, closed by fans of triangles, or cloth.",
         ),
         Field::new(
+            "overlap",
+            Allowed::Choice(&["refuse", "keep"]),
+            "",
+            Default::Text("refuse"),
+            "What holds where triangles of a closed surface cross, touch or overlap that share no vertex there: an error that names two of them, or nothing, but they are counted.",
+        ),
+        Field::new(
             "filling",
             Allowed::Choice(&["none", "lattice"]),
             "",
