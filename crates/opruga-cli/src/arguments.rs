@@ -107,7 +107,7 @@ pub(crate) struct Check {
     /// Shapes may be read from files outside of the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
-    /// Check again whenever the scene file changes, until Ctrl-C
+    /// Check again whenever the scene or a file that it names changes, until Ctrl-C
     #[arg(long)]
     pub(crate) watch: bool,
 }
@@ -168,6 +168,9 @@ pub(crate) struct Sweep {
     /// Run even where the step is above the stable limit
     #[arg(long, conflicts_with = "resume")]
     pub(crate) allow_unstable: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) allow_outside: bool,
     /// Unknown fields of the scene are overlooked
     #[arg(long, conflicts_with = "resume")]
     pub(crate) lenient: bool,
@@ -247,7 +250,7 @@ pub(crate) struct Run {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) arrows: bool,
-    /// Run again whenever the scene file changes, until Ctrl-C; later runs replace the output of earlier ones
+    /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
 }

@@ -255,7 +255,8 @@ impl PairTable {
     }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let pull = self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity() + p.widths.capacity()));
+        let pull =
+            self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity() + p.widths.capacity()));
         pull + self.runs.capacity() * size_of::<Run>()
             + 4 * (self.tile_runs.capacity() + self.tile_start.capacity())
             + self.pairs.capacity() * 8

@@ -210,7 +210,8 @@ pub(super) fn read<'a>(
         (None, Some(first)) => Some(first.nodes.clone()),
         (None, None) => None,
     };
-    let mut reader = Reader { source, root, buffers, binary, open, found: Triangles::default(), starts: Vec::new(), others: 0 };
+    let mut reader =
+        Reader { source, root, buffers, binary, open, found: Triangles::default(), starts: Vec::new(), others: 0 };
     match start {
         Some(start) => {
             for node in start {

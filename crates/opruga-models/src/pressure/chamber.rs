@@ -243,7 +243,9 @@ impl Boundary {
         match self {
             Boundary::Plane(edges) => edges.heap_bytes(),
             Boundary::Space(rings) => {
-                (rings.neighbour.capacity() + rings.widths.capacity()) * 4 + rings.together.capacity() + rings.facets.capacity() * 12
+                (rings.neighbour.capacity() + rings.widths.capacity()) * 4
+                    + rings.together.capacity()
+                    + rings.facets.capacity() * 12
             }
         }
     }
