@@ -153,7 +153,11 @@ impl Question {
             files: source.files.clone().allow_outside(call.allow_outside),
             ..opruga::io::scene::Options::default()
         };
-        let named = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options).files;
+        let reading = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+        if !reading.unread.is_empty() {
+            return Err(Failure::Scene(reading.errors));
+        }
+        let named = reading.files;
         let mut set = call.set.clone();
         set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
         Ok(Question {

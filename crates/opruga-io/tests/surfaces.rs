@@ -557,3 +557,23 @@ fn late_errors_have_a_place_in_every_format() {
 fn header_lines(header: &str) -> usize {
     header.lines().count()
 }
+
+/// A surface is made anew of triangles of a wanted size; a cloth is not.
+#[test]
+fn surfaces_are_remeshed_to_a_length() {
+    let text = obj();
+    let files: &[(&str, &[u8])] = &[("a.obj", text.as_bytes())];
+    let shape = "kind = \"surface\", file = \"a.obj\"";
+    let (mesh, notices) = space(&format!("{shape}, remesh = 0.2"), files).expect("a cube");
+    assert!((600..1200).contains(&mesh.nodes()) && notices.is_empty(), "{}", mesh.nodes());
+    assert!((mesh.enclosed_volume() - 8.0).abs() < 1e-9 && mesh.check().is_empty());
+    let (filled, _) =
+        space(&format!("{shape}, remesh = 0.2, filling = \"lattice\", spacing = 0.5"), files).expect("filled");
+    assert_eq!(filled.skin.as_ref().expect("a skin").carriers.len(), mesh.nodes());
+    let open = text.rsplit_once("f ").expect("a face").0;
+    let files: &[(&str, &[u8])] = &[("a.obj", open.as_bytes())];
+    let error = &space(&format!("{shape}, open = \"sheet\", remesh = 0.2"), files).expect_err("it is open")[0];
+    assert!(error.code == "mesh.open" && error.to_string().contains("remesh"), "{error}");
+    let error = &space(&format!("{shape}, remesh = 1e-5, open = \"cap\""), files).expect_err("too many nodes")[0];
+    assert!(error.code.starts_with("limit.") || error.code.starts_with("scene."), "{error}");
+}

@@ -4,10 +4,8 @@
 //! decided by the signs of determinants, exact for the coordinates as they are.
 
 use crate::Mesh;
+use crate::boxes::{Tree, overlap};
 use robust::{Coord, Coord3D, orient2d, orient3d};
-
-/// Facets below a node of the lowest level of the tree.
-const LEAF: usize = 4;
 
 /// Pairs that are listed at most.
 const MOST_LISTED: usize = 1000;
@@ -38,7 +36,13 @@ impl Mesh<3> {
         if self.facets.len() < 2 {
             return found;
         }
-        let tree = Tree::of(self);
+        // Scaled by a power of two to a size of about one: products of three lengths neither overflow nor vanish.
+        let (low, high) = self.bounds();
+        let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
+        let factor = inverse_power(extent);
+        let place = |node: u32| self.positions[node as usize].map(|x| x * factor);
+        let corners: Vec<[[f64; 3]; 3]> = self.facets.iter().map(|facet| facet.map(place)).collect();
+        let tree = Tree::of(&corners);
         let mut budget = MOST_COMPARED * self.facets.len() as u64;
         let mut waiting = Vec::new();
         for leaf in 0..tree.leaves {
@@ -58,7 +62,7 @@ impl Mesh<3> {
                 if node < tree.leaves {
                     waiting.extend([2 * node, 2 * node + 1]);
                 } else {
-                    self.compare(&tree, leaf, node - tree.leaves, &mut found.pairs);
+                    self.compare(&tree, &corners, [leaf, node - tree.leaves], &mut found.pairs);
                 }
             }
         }
@@ -67,11 +71,11 @@ impl Mesh<3> {
     }
 
     /// Compares the facets of two leaves, or of one with one another.
-    fn compare(&self, tree: &Tree, leaf: usize, other: usize, pairs: &mut Vec<[u32; 2]>) {
+    fn compare(&self, tree: &Tree, corners: &[[[f64; 3]; 3]], [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
         for (place, &a) in tree.facets_of(leaf).iter().enumerate() {
             let others = tree.facets_of(other);
             for &b in if leaf == other { &others[place + 1..] } else { others } {
-                if overlap(&tree.facet_boxes[a as usize], &tree.facet_boxes[b as usize]) && self.meet(tree, a, b) {
+                if overlap(&tree.facet_boxes[a as usize], &tree.facet_boxes[b as usize]) && self.meet(corners, a, b) {
                     pairs.push(if a < b { [a, b] } else { [b, a] });
                 }
             }
@@ -79,18 +83,20 @@ impl Mesh<3> {
     }
 
     /// Whether two facets meet anywhere but at what they share.
-    fn meet(&self, tree: &Tree, a: u32, b: u32) -> bool {
+    fn meet(&self, corners: &[[[f64; 3]; 3]], a: u32, b: u32) -> bool {
         let (mut first, mut second) = (self.facets[a as usize], self.facets[b as usize]);
+        let (mut p, mut q) = (corners[a as usize], corners[b as usize]);
         let mut shared = 0;
         // What is shared comes first, in the same order.
         for k in 0..3 {
             if let Some(place) = second[shared..].iter().position(|node| *node == first[k]) {
                 first.swap(shared, k);
+                p.swap(shared, k);
                 second.swap(shared, shared + place);
+                q.swap(shared, shared + place);
                 shared += 1;
             }
         }
-        let [p, q] = [first, second].map(|facet| facet.map(|node| tree.positions[node as usize]));
         match shared {
             0 => sides(&p).iter().any(|side| reaches(side, &q)) || sides(&q).iter().any(|side| reaches(side, &p)),
             // The sides across from the shared node: whatever is common reaches them.
@@ -168,111 +174,8 @@ fn folded(triangle: &[[f64; 3]; 3], other: &[f64; 3]) -> bool {
     one > 0.0 && two > 0.0 || one < 0.0 && two < 0.0
 }
 
-/// Lowest and highest corner.
-type Bounds = [[f64; 3]; 2];
-
-const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    (0..3).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
-}
-
-fn join(a: &mut Bounds, b: &Bounds) {
-    for d in 0..3 {
-        if b[0][d] < a[0][d] {
-            a[0][d] = b[0][d];
-        }
-        if b[1][d] > a[1][d] {
-            a[1][d] = b[1][d];
-        }
-    }
-}
-
-/// A complete binary tree of boxes: node 1 is the root, nodes 2n and 2n + 1 are below node n.
-struct Tree {
-    /// Nodes of the lowest level: a power of two.
-    leaves: usize,
-    /// The nodes, scaled by a power of two to a size of about one: products of three lengths neither overflow nor vanish.
-    positions: Vec<[f64; 3]>,
-    boxes: Vec<Bounds>,
-    facet_boxes: Vec<Bounds>,
-    /// Facets in the order of the curve.
-    order: Vec<u32>,
-}
-
-impl Tree {
-    fn of(mesh: &Mesh<3>) -> Tree {
-        let (low, high) = mesh.bounds();
-        let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
-        let factor = inverse_power(extent);
-        let positions: Vec<[f64; 3]> = mesh.positions.iter().map(|p| p.map(|x| x * factor)).collect();
-        let mut whole = NOTHING;
-        let facet_boxes: Vec<Bounds> = mesh
-            .facets
-            .iter()
-            .map(|facet| {
-                let mut bounds = NOTHING;
-                for node in facet {
-                    let p = positions[*node as usize];
-                    join(&mut bounds, &[p, p]);
-                }
-                join(&mut whole, &bounds);
-                bounds
-            })
-            .collect();
-        let scale: [f64; 3] = core::array::from_fn(|d| {
-            let extent = whole[1][d] - whole[0][d];
-            if extent > 0.0 { 1_048_575.0 / extent } else { 0.0 }
-        });
-        let mut keys: Vec<(u64, u32)> = facet_boxes
-            .iter()
-            .enumerate()
-            .map(|(number, [low, high])| {
-                let cell = |d: usize| ((0.5 * low[d] + 0.5 * high[d] - whole[0][d]) * scale[d]) as u64;
-                (spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2, number as u32)
-            })
-            .collect();
-        keys.sort_unstable();
-        let order: Vec<u32> = keys.into_iter().map(|(_, number)| number).collect();
-        let leaves = order.len().div_ceil(LEAF).next_power_of_two();
-        let mut tree = Tree { leaves, positions, boxes: vec![NOTHING; 2 * leaves], facet_boxes, order };
-        for leaf in 0..leaves {
-            let mut bounds = NOTHING;
-            tree.facets_of(leaf).iter().for_each(|facet| join(&mut bounds, &tree.facet_boxes[*facet as usize]));
-            tree.boxes[leaves + leaf] = bounds;
-        }
-        for node in (1..leaves).rev() {
-            let mut bounds = tree.boxes[2 * node];
-            join(&mut bounds, &tree.boxes[2 * node + 1]);
-            tree.boxes[node] = bounds;
-        }
-        tree
-    }
-
-    fn facets_of(&self, leaf: usize) -> &[u32] {
-        let end = self.order.len();
-        &self.order[(leaf * LEAF).min(end)..((leaf + 1) * LEAF).min(end)]
-    }
-
-    /// The last leaf below a node.
-    fn last_leaf(&self, node: usize) -> usize {
-        let below = self.leaves.ilog2() - node.ilog2();
-        ((node + 1) << below) - 1 - self.leaves
-    }
-}
-
 /// One over the power of two that is next below a positive number.
 fn inverse_power(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52;
     if (1..2046).contains(&exponent) { f64::from_bits((2046 - exponent) << 52) } else { 1.0 }
-}
-
-/// The lower 20 bits of a number, each followed by two zeros.
-fn spread(x: u64) -> u64 {
-    let mut x = x & 0xf_ffff;
-    x = (x | x << 32) & 0x1f_0000_0000_ffff;
-    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
 }

@@ -280,6 +280,8 @@ impl<const D: usize> World<D> {
         self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
         self.flows = rest.flows;
         self.refresh_ledger();
+        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        self.flows.largest = rest.flows.largest;
         Ok(true)
     }
 
@@ -305,6 +307,8 @@ impl<const D: usize> World<D> {
         self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
         self.flows = rest.flows;
         self.refresh_ledger();
+        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        self.flows.largest = rest.flows.largest;
         Ok(())
     }
 }

@@ -44,8 +44,8 @@ pub(crate) struct Loaded {
 enum Content {
     /// Rings at their final size, and the spacing of a filling.
     Outline { rings: Vec<Ring>, filling: Option<f64> },
-    /// A surface at its final size, and the spacing of a filling.
-    Surface { mesh: Box<Mesh<3>>, filling: Option<f64> },
+    /// A surface at its final size, the length of edges that it is remeshed to, and the spacing of a filling.
+    Surface { mesh: Box<Mesh<3>>, remesh: Option<f64>, filling: Option<f64> },
 }
 
 /// Why a shape's file is refused.
@@ -152,8 +152,9 @@ impl Loaded {
         match &self.content {
             Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
             Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
-            Content::Surface { mesh, filling: Some(spacing) } => mesh.lattice_estimate(*spacing),
-            Content::Surface { mesh, filling: None } => mesh.nodes() as u64,
+            Content::Surface { mesh, filling: Some(spacing), .. } => mesh.lattice_estimate(*spacing),
+            Content::Surface { mesh, remesh: Some(length), .. } => mesh.remesh_estimate(*length),
+            Content::Surface { mesh, .. } => mesh.nodes() as u64,
         }
     }
 
@@ -168,10 +169,16 @@ impl Loaded {
                 None => outline::skin(rings).map_err(refuse)?,
                 Some(spacing) => outline::filled(rings, *spacing).map_err(|e| drawing::refused(&e))?.0,
             }),
-            Content::Surface { mesh, filling } => Box::new(match filling {
-                None => (**mesh).clone(),
-                Some(spacing) => mesh.lattice_filling(*spacing).map_err(refuse)?,
-            }),
+            Content::Surface { mesh, remesh, filling } => {
+                let surface = match remesh {
+                    None => (**mesh).clone(),
+                    Some(length) => triangles::remeshed(mesh, *length)?,
+                };
+                Box::new(match filling {
+                    None => surface,
+                    Some(spacing) => surface.lattice_filling(*spacing).map_err(refuse)?,
+                })
+            }
         };
         let Ok(mut mesh) = made.downcast::<Mesh<D>>() else {
             return Err(SceneError::new("scene.dimension", format!("this shape does not exist in {D}D")));

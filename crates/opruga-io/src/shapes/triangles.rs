@@ -167,7 +167,29 @@ pub(super) fn loaded(
         },
         _ => None,
     };
-    Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), filling } })
+    let remesh = shape.number("remesh");
+    if remesh.is_some() && mesh.facets.is_empty() {
+        let error = SceneError::new("mesh.open", "an open surface cannot be remeshed").allowed("a closed surface");
+        return Err(Problem::new("remesh", error.hint("close it with `open = \"cap\"`")));
+    }
+    Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
+}
+
+/// The surface with edges of a wanted length.
+///
+/// # Errors
+/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself.
+pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
+    let refuse = |message: String| SceneError::new("scene.shape", message).value(length.to_string());
+    let made = mesh.remeshed(length).map_err(|e| refuse(e.to_string()))?;
+    // One that was taken as it is may go on crossing itself.
+    if !made.crossing_facets().pairs.is_empty() && mesh.crossing_facets().pairs.is_empty() {
+        let message = format!("with edges of {length} m the surface would cross itself");
+        return Err(refuse(message)
+            .allowed("a length below the finest parts of the surface")
+            .hint("take a smaller `remesh`"));
+    }
+    Ok(made)
 }
 
 /// Joins vertices where the scene or the format asks for it.

@@ -179,6 +179,13 @@ static SURFACE: Spec = Spec {
             "What holds where triangles of a closed surface cross, touch or overlap that share no vertex there: an error that names two of them, or nothing, but they are counted.",
         ),
         Field::new(
+            "remesh",
+            Allowed::POSITIVE,
+            "m",
+            Default::Absent,
+            "A closed surface is made anew of nearly equilateral triangles with edges of about this length, before `scale`; edges sharper than 40° stay. Nodes are numbered anew.",
+        ),
+        Field::new(
             "filling",
             Allowed::Choice(&["none", "lattice"]),
             "",
