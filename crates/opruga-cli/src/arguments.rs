@@ -142,7 +142,7 @@ pub(crate) struct Check {
     /// Shapes may be read from files outside of the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
-    /// Check again whenever the scene file changes, until Ctrl-C
+    /// Check again whenever the scene or a file that it names changes, until Ctrl-C
     #[arg(long)]
     pub(crate) watch: bool,
 }
@@ -203,6 +203,9 @@ pub(crate) struct Sweep {
     /// Run even where the step is above the stable limit
     #[arg(long, conflicts_with = "resume")]
     pub(crate) allow_unstable: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) allow_outside: bool,
     /// Unknown fields of the scene are overlooked
     #[arg(long, conflicts_with = "resume")]
     pub(crate) lenient: bool,
@@ -285,7 +288,7 @@ pub(crate) struct Run {
     /// Draw every spring and node, also on surfaces, in crowds and under skins
     #[arg(long, conflicts_with = "no_pictures")]
     pub(crate) springs: bool,
-    /// Run again whenever the scene file changes, until Ctrl-C; later runs replace the output of earlier ones
+    /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
 }

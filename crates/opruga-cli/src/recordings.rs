@@ -4,58 +4,36 @@ use crate::checkpoints::Calling;
 use crate::failure::Failure;
 use crate::source::Source;
 use opruga::World;
-use opruga::io::recording::{Asset, Header, Recording, RecordingError, RecordingFile};
+use opruga::io::recording::{Asset, Header, Recording, RecordingError};
 use opruga::io::safe_write::WriteError;
 use opruga::io::{Files, SceneError};
+use opruga::recordings::Tape;
 use std::fs::File;
 use std::path::Path;
 
 /// This program, as a recording names it.
 pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
 
-/// The recording of a run, if one is wanted.
-pub(crate) struct Tape(Option<RecordingFile>);
-
-impl Tape {
-    /// Begins a recording: the file is there with its header before the run begins.
-    pub(crate) fn begin(
-        path: Option<&Path>,
-        force: bool,
-        source: &Source,
-        calling: &Calling,
-        frame: f64,
-    ) -> Result<Tape, WriteError> {
-        let Some(path) = path else { return Ok(Tape(None)) };
-        let header = Header {
-            program: PROGRAM.into(),
-            name: source.name.clone(),
-            file: source.file.clone(),
-            scene: source.bytes.clone(),
-            frame,
-            overrides: calling.overrides.clone(),
-            lenient: calling.lenient,
-            allow_unstable: calling.allow_unstable,
-            assets: calling
-                .files
-                .iter()
-                .map(|(name, bytes)| Asset { name: name.clone(), bytes: bytes.to_vec() })
-                .collect(),
-        };
-        Ok(Tape(Some(RecordingFile::create(path, force, &header)?)))
-    }
-
-    /// Adds the present frame.
-    pub(crate) fn push<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {
-        match &mut self.0 {
-            Some(file) => file.push(world.frames(), |out| world.snapshot_into(out)),
-            None => Ok(()),
-        }
-    }
-
-    /// Writes the end.
-    pub(crate) fn finish(self) -> Result<(), WriteError> {
-        self.0.map_or(Ok(()), |file| file.finish().map(|_| ()))
-    }
+/// Begins the recording of a run: the file is there with its header before the run begins, and with its first frame.
+pub(crate) fn begin<const D: usize>(
+    path: &Path,
+    force: bool,
+    source: &Source,
+    calling: &Calling,
+    world: &mut World<D>,
+) -> Result<Tape, WriteError> {
+    let header = Header {
+        program: PROGRAM.into(),
+        name: source.name.clone(),
+        file: source.file.clone(),
+        scene: source.bytes.clone(),
+        frame: world.blueprint().time.frame,
+        overrides: calling.overrides.clone(),
+        lenient: calling.lenient,
+        allow_unstable: calling.allow_unstable,
+        assets: calling.files.iter().map(|(name, bytes)| Asset { name: name.clone(), bytes: bytes.to_vec() }).collect(),
+    };
+    Tape::begin(path, force, &header, world)
 }
 
 /// Opens a recording for reading; its scene is inside.

@@ -16,6 +16,7 @@ use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::series::{Format, write_pvd, write_vtk_series};
 use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
+use opruga::recordings::{Playback, TapeError};
 use opruga::{Options, World};
 use serde_json::json;
 use std::fs::File;
@@ -48,10 +49,11 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
     };
     let options = Options { threads: call.threads.into(), simd, allow_unstable: header.allow_unstable, batches: true };
     let blueprint = source.read(&reading, &options)?.blueprint;
-    let job = Job { call, source: &source, reading, options, recording, frames, told };
+    let length = header.frame;
+    let job = Job { call, source: &source, reading, options, length, frames, told };
     match blueprint {
-        AnyBlueprint::Plane(blueprint) => job.run(blueprint),
-        AnyBlueprint::Space(blueprint) => job.run(blueprint),
+        AnyBlueprint::Plane(blueprint) => job.run(recording, blueprint),
+        AnyBlueprint::Space(blueprint) => job.run(recording, blueprint),
     }
 }
 
@@ -130,37 +132,49 @@ struct Job<'a> {
     source: &'a Source,
     reading: scene::Options,
     options: Options,
-    recording: Recording<File>,
+    /// The length of a frame [s].
+    length: f64,
     frames: RangeInclusive<u64>,
     told: Vec<WarningSummary>,
 }
 
 impl Job<'_> {
-    fn run<const D: usize>(self, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
+    fn run<const D: usize>(self, recording: Recording<File>, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
         blueprint.name.clone_from(&self.source.name);
         let mut world = self.source.build(blueprint, &self.reading, &self.options)?;
         let stop = interrupt::asked_to_stop();
-        if self.call.verify { self.verify(&mut world, stop) } else { self.show(&mut world, stop) }
+        let last = *self.frames.end();
+        let mut playback = Playback::of(recording, last).map_err(|error| self.failure(&error, last))?;
+        if self.call.verify {
+            self.verify(&mut world, &mut playback, stop)
+        } else {
+            self.show(&mut world, &mut playback, stop)
+        }
     }
 
-    /// The bytes of a frame.
-    fn state(&mut self, frame: u64) -> Result<&[u8], Failure> {
-        let call = self.call;
-        self.recording.read(frame).map_err(|e| refused(call, SceneError::from(&e)))
+    /// What went wrong at a frame.
+    fn failure(&self, error: &TapeError, frame: u64) -> Failure {
+        match error {
+            TapeError::World(error) => self.source.run_error(error, self.time(frame)),
+            TapeError::Read(error) => refused(self.call, SceneError::from(error)),
+            TapeError::Write(error) => Failure::Write(error.clone()),
+        }
     }
 
-    /// Brings a world to a frame, without stepping.
-    fn go_to<const D: usize>(&mut self, world: &mut World<D>, frame: u64) -> Result<(), Failure> {
-        let source = self.source;
-        let restored = world.restore(self.state(frame)?);
-        restored.map_err(|error| source.run_error(&error, frame as f64 * self.recording.header().frame))
+    fn time(&self, frame: u64) -> f64 {
+        frame as f64 * self.length
     }
 
     /// Computes every frame again, from the beginning of the scene or from the first frame that is wanted, and compares.
-    fn verify<const D: usize>(mut self, world: &mut World<D>, stop: &AtomicBool) -> Result<u8, Failure> {
+    fn verify<const D: usize>(
+        self,
+        world: &mut World<D>,
+        playback: &mut Playback<File, D>,
+        stop: &AtomicBool,
+    ) -> Result<u8, Failure> {
         let (first, last) = (*self.frames.start(), *self.frames.end());
         if first > 0 {
-            self.go_to(world, first)?;
+            playback.show(world, first).map_err(|error| self.failure(&error, first))?;
         }
         let mut different = None;
         for frame in first..=last {
@@ -168,16 +182,17 @@ impl Job<'_> {
                 return Err(Failure::Interrupted);
             }
             if frame > first {
-                world.frame().map_err(|error| self.source.run_error(&error, world.time()))?;
+                playback.step(world, frame).map_err(|error| self.source.run_error(&error, world.time()))?;
             }
             let computed = world.snapshot();
-            if self.state(frame)? != computed {
+            let recorded = playback.state(frame).map_err(|error| self.failure(&TapeError::Read(error), frame))?;
+            if recorded != computed {
                 different = Some((frame, world.state_hash()));
                 break;
             }
         }
         let hash = |hash: u64| format!("{hash:016x}");
-        let time = |frame: u64| frame as f64 * self.recording.header().frame;
+        let time = |frame: u64| self.time(frame);
         let span = json!({"first": first, "last": last, "from": time(first), "to": time(last)});
         let Some((frame, computed)) = different else {
             let same = hash(world.state_hash());
@@ -192,7 +207,7 @@ impl Job<'_> {
             return Ok(0);
         };
         let time = time(frame);
-        self.go_to(world, frame)?;
+        playback.show(world, frame).map_err(|error| self.failure(&error, frame))?;
         let recorded = world.state_hash();
         if self.call.json {
             let row = json!({"schema": 1, "scene": self.source.name, "frames": span, "pass": false,
@@ -210,10 +225,15 @@ impl Job<'_> {
     }
 
     /// Tables, pictures and exported frames, from recorded states alone.
-    fn show<const D: usize>(mut self, world: &mut World<D>, stop: &AtomicBool) -> Result<u8, Failure> {
+    fn show<const D: usize>(
+        self,
+        world: &mut World<D>,
+        playback: &mut Playback<File, D>,
+        stop: &AtomicBool,
+    ) -> Result<u8, Failure> {
         let call = self.call;
         let (first, last) = (*self.frames.start(), *self.frames.end());
-        self.go_to(world, first)?;
+        playback.show(world, first).map_err(|error| self.failure(&error, first))?;
         let mut recorder = Recorder::new(world, call.wanted(), last - first)?;
         let folder = self.folder()?;
         let all = [Format::Vtk, Format::Vtu, Format::Obj, Format::Ply];
@@ -229,7 +249,7 @@ impl Job<'_> {
             if stop.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted);
             }
-            self.go_to(world, frame)?;
+            playback.show(world, frame).map_err(|error| self.failure(&error, frame))?;
             recorder.record(world);
             if !frame.is_multiple_of(recorder.every) {
                 continue;
@@ -273,8 +293,7 @@ impl Job<'_> {
             outputs.pictures(scenery, &recorder, &mut files)?;
         }
         if call.json {
-            let length = self.recording.header().frame;
-            let (from, to) = (first as f64 * length, last as f64 * length);
+            let (from, to) = (self.time(first), self.time(last));
             let row = json!({"schema": 1, "scene": self.source.name, "warnings": self.told, "files": files,
                              "frames": {"first": first, "last": last, "from": from, "to": to},
                              "state_hash": format!("{:016x}", world.state_hash())});

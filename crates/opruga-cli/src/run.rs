@@ -6,7 +6,7 @@ use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::outputs::{Outputs, counted};
 use crate::recorder::Recorder;
-use crate::recordings::Tape;
+use crate::recordings;
 use crate::source::{Source, Whole, overrides};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
@@ -145,13 +145,15 @@ impl Job<'_> {
             allow_unstable: self.world.allow_unstable,
             files: self.files,
         };
-        let mut tape = Tape::begin(call.record.as_deref(), call.force, source, &calling, frame)?;
+        let recorded = call.record.as_deref();
+        let tape = recorded.map(|path| recordings::begin(path, call.force, source, &calling, &mut world));
+        let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = interrupt::asked_to_stop();
         let bar = progress_bar(frames);
         let start = Instant::now();
         let first = world.frames();
-        let mut failure = tape.push(&world).err().map(unrecorded);
+        let mut failure = None;
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut world);
         while failure.is_none() && world.frames() < frames {
@@ -163,7 +165,7 @@ impl Job<'_> {
                 failure = Some(source.run_error(&error, world.time()));
                 break;
             }
-            failure = tape.push(&world).err().map(unrecorded);
+            failure = tape.as_mut().and_then(|tape| tape.push(&mut world).err()).map(unrecorded);
             looking += recorder.record(&mut world);
             if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
                 bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", world.time()));
@@ -175,7 +177,7 @@ impl Job<'_> {
                 bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
             }
         }
-        let taped = tape.finish().err().map(unrecorded);
+        let taped = tape.and_then(|tape| tape.finish(&mut world).err()).map(unrecorded);
         failure = failure.or(taped);
         let wall = (start.elapsed() - looking).as_secs_f64();
         bar.finish_and_clear();

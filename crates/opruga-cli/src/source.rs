@@ -64,7 +64,7 @@ impl Source {
     /// refuse.
     pub(crate) fn read(&self, options: &scene::Options, world: &Options) -> Result<Whole, Failure> {
         match scene::survey(&self.bytes, &self.file, &opruga::catalogue(), options) {
-            scene::Reading { blueprint: Some(blueprint), errors, notices, files } if errors.is_empty() => {
+            scene::Reading { blueprint: Some(blueprint), errors, notices, files, .. } if errors.is_empty() => {
                 Ok(Whole { blueprint, notices, files })
             }
             reading => Err(self.refused(reading, options, world)),

@@ -150,10 +150,14 @@ impl Question {
         // They belong to the question: a sweep goes on with the files that it began with.
         let options = opruga::io::scene::Options {
             lenient: true,
-            files: source.files.clone(),
+            files: source.files.clone().allow_outside(call.allow_outside),
             ..opruga::io::scene::Options::default()
         };
-        let named = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options).files;
+        let reading = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+        if !reading.unread.is_empty() {
+            return Err(Failure::Scene(reading.errors));
+        }
+        let named = reading.files;
         let mut set = call.set.clone();
         set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
         Ok(Question {

@@ -1,16 +1,18 @@
-//! `--watch`: doing again what was asked for whenever the scene file changes, until Ctrl-C.
+//! `--watch`: doing again what was asked for whenever the scene or a file that it names changes, until Ctrl-C.
 
 use crate::arguments::{Check, Run};
 use crate::failure::Failure;
+use crate::outputs::counted;
 use crate::source::Source;
 use crate::{interrupt, reports};
 use opruga::io::problem::visible;
-use std::path::Path;
+use opruga::io::scene;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// How often the file is looked at.
+/// How often the files are looked at.
 const EVERY: Duration = Duration::from_millis(100);
-/// How many looks in a row must show the same file: editors write in several steps.
+/// How many looks in a row must show the same files: editors write in several steps.
 const SETTLED: u32 = 2;
 
 /// Runs a scene, and again whenever it changes if that is asked for.
@@ -20,7 +22,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     }
     let mut call = call.clone();
     let scene = call.scene.clone().unwrap_or_else(|| "ball".into());
-    again_and_again(&scene, call.json, || {
+    again_and_again(&scene, call.allow_outside, call.json, || {
         let outcome = crate::run::run(&call);
         // What stands in the folder from now on is ours, and may be replaced. A refusal leaves it somebody else's.
         if matches!(outcome, Ok(_) | Err(Failure::Run(_) | Failure::Interrupted)) {
@@ -35,12 +37,17 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
     if !call.watch {
         return reports::check(call);
     }
-    again_and_again(&call.scene, call.json, || reports::check(call))
+    again_and_again(&call.scene, call.allow_outside, call.json, || reports::check(call))
 }
 
-/// Works now and after every change of the scene file; work that the change overtakes is stopped. Errors are told, and the
-/// next change is waited for.
-fn again_and_again(scene: &str, json: bool, mut work: impl FnMut() -> Result<u8, Failure>) -> Result<u8, Failure> {
+/// Works now and after every change of the scene or of a file that it names; work that the change overtakes is stopped.
+/// Errors are told, and the next change is waited for.
+fn again_and_again(
+    scene: &str,
+    outside: bool,
+    json: bool,
+    mut work: impl FnMut() -> Result<u8, Failure>,
+) -> Result<u8, Failure> {
     let path = Path::new(scene);
     if !path.is_file() {
         // A file that is missing is told as ever.
@@ -52,9 +59,12 @@ fn again_and_again(scene: &str, json: bool, mut work: impl FnMut() -> Result<u8,
     }
     interrupt::asked_to_stop();
     loop {
+        // What changes while the files are looked up is a change.
         let stamp = Stamp::of(path);
-        let outcome = std::thread::scope(|scope| {
-            let watcher = scope.spawn(|| wait_for_change(path, stamp));
+        let (files, mut stamps) = named_files(scene, outside);
+        stamps[0] = stamp;
+        let (outcome, changed) = std::thread::scope(|scope| {
+            let watcher = scope.spawn(|| wait_for_change(&files, &stamps));
             let outcome = work();
             match &outcome {
                 Err(Failure::ClosedPipe) => interrupt::stop_work(),
@@ -64,39 +74,58 @@ fn again_and_again(scene: &str, json: bool, mut work: impl FnMut() -> Result<u8,
                 Ok(_) => {}
             }
             if !json && !interrupt::asked_to_end() && !watcher.is_finished() {
-                eprintln!("waiting for changes of {}; Ctrl-C ends", visible(scene));
+                let more = match files.len() {
+                    1 => String::new(),
+                    n => format!(" and of {}", counted(n as u64 - 1, "file that it names", "files that it names")),
+                };
+                eprintln!("waiting for changes of {}{more}; Ctrl-C ends", visible(scene));
             }
-            let changed = watcher.join().unwrap_or(false);
-            if changed { Ok(()) } else { Err(outcome.err().unwrap_or(Failure::Interrupted)) }
+            (outcome, watcher.join().ok().flatten())
         });
-        match outcome {
-            Ok(()) => interrupt::begin_work(),
-            Err(Failure::ClosedPipe) => return Err(Failure::ClosedPipe),
-            Err(_) => return Err(Failure::Interrupted),
-        }
+        let Some(changed) = changed else {
+            return Err(match outcome {
+                Err(Failure::ClosedPipe) => Failure::ClosedPipe,
+                _ => Failure::Interrupted,
+            });
+        };
+        interrupt::begin_work();
         if !json {
-            eprintln!("{} has changed", visible(scene));
+            eprintln!("{} has changed", visible(&files[changed].display().to_string()));
         }
     }
 }
 
-/// Returns true once the file is another one than it was and stays so for a while; the work at hand is stopped then.
-/// Returns false when that work was stopped by somebody else.
-fn wait_for_change(path: &Path, before: Option<Stamp>) -> bool {
+/// The scene file and the files that it names, whether they are there or not, with their states.
+fn named_files(scene: &str, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>) {
+    let mut files = vec![PathBuf::from(scene)];
+    if let Ok(source) = Source::find(scene) {
+        let places = source.files.clone().allow_outside(outside);
+        let options = scene::Options { lenient: true, files: places.clone(), ..scene::Options::default() };
+        let reading = scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+        files.extend(reading.files.keys().chain(&reading.unread).filter_map(|name| places.path_of(name)));
+    }
+    let stamps = files.iter().map(|file| Stamp::of(file)).collect();
+    (files, stamps)
+}
+
+/// Returns the number of a file once it is another one than it was and all of them stay so for a while; the work at hand is
+/// stopped then. Returns none when that work was stopped by somebody else.
+fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>]) -> Option<usize> {
     let stop = interrupt::asked_to_stop();
-    let (mut last, mut same) = (None, 0);
+    let (mut last, mut same) = (Vec::new(), 0);
     while !stop.load(std::sync::atomic::Ordering::Relaxed) {
         std::thread::sleep(EVERY);
-        let now = Stamp::of(path);
+        let now: Vec<Option<Stamp>> = files.iter().map(|file| Stamp::of(file)).collect();
         same = if now == last { same + 1 } else { 0 };
-        last = now;
         // A file that is not there is being replaced.
-        if now.is_some() && now != before && same >= SETTLED {
+        let changed = (0..files.len()).find(|k| now[*k].is_some() && now[*k] != before[*k]);
+        if let Some(changed) = changed.filter(|_| now[0].is_some() && same >= SETTLED) {
             interrupt::stop_work();
-            return !interrupt::asked_to_end();
+            return (!interrupt::asked_to_end()).then_some(changed);
         }
+        last = now;
     }
-    false
+    None
 }
 
 /// What tells one state of a file from another.

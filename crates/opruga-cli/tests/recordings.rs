@@ -88,6 +88,18 @@ fn commands_and_resumed_runs_are_verified_too() {
     summary(folder, &["run", "--resume", "o/checkpoint", "--seconds", "0.5", "--out", "p", "--record", "r"]);
     let row = verified(folder, &[]);
     assert!(row["frames"]["first"].as_u64() > Some(0), "{row}");
+    // A scene with a file needs it no more, nor the scene itself.
+    let heart = opruga::scenes::find("heart").expect("a scene");
+    std::fs::create_dir(folder.join("shapes")).expect("a folder");
+    let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/heart.svg");
+    std::fs::copy(drawing, folder.join("shapes/heart.svg")).expect("a drawing");
+    std::fs::write(folder.join("mine.toml"), heart).expect("a scene");
+    let run = summary(folder, &["run", "mine.toml", "--seconds", "0.4", "--out", "h", "--record", "r", "--force"]);
+    std::fs::remove_dir_all(folder.join("shapes")).expect("it goes");
+    std::fs::remove_file(folder.join("mine.toml")).expect("it goes");
+    assert_eq!(verified(folder, &[])["state_hash"], run["state_hash"]);
+    let shown = opruga(folder, &["replay", "r", "--no-pictures", "--json", "--out", "i"]);
+    assert_eq!((code(&shown), &json(&shown)["state_hash"]), (0, &run["state_hash"]), "{}", said(&shown));
     // `ball` is pulled by a pointer.
     summary(folder, &["run", "ball", "--seconds", "4", "--out", "q", "--record", "r", "--force"]);
     verified(folder, &[]);
@@ -99,14 +111,15 @@ fn a_run_that_is_killed_leaves_its_frames() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let mut most = 0;
-    for round in 0..12u64 {
+    let rounds = 20u64;
+    for round in 0..rounds {
         let arguments =
             ["run", "pressures", "--seconds", "1e5", "--no-pictures", "--out", "o", "--force", "--record", "r"];
         let _ = std::fs::remove_file(folder.join("r"));
         let mut child = program(folder, &arguments).spawn().expect("the program runs");
         until("no recording begins", || folder.join("r").exists());
-        std::thread::sleep(Duration::from_micros(60_000 + round * 7_919_777 % 90_000));
-        signal(&child, if round < 10 { "KILL" } else { "INT" });
+        std::thread::sleep(Duration::from_micros(60_000 + round * 7_919_777 % 140_000));
+        signal(&child, if round < rounds - 2 { "KILL" } else { "INT" });
         child.wait().expect("it ends");
         let output = opruga(folder, &["replay", "r", "--verify", "--json", "--to", "0.5"]);
         if code(&output) != 0 {
@@ -115,7 +128,7 @@ fn a_run_that_is_killed_leaves_its_frames() {
         }
         let row = json(&output);
         let killed = row["warnings"].as_array().is_some_and(|w| w.iter().any(|w| w["code"] == "recording.open"));
-        assert!(row["pass"] == true && killed == (round < 10), "{round}: {row}");
+        assert!(row["pass"] == true && killed == (round < rounds - 2), "{round}: {row}");
         most = most.max(row["frames"]["last"].as_u64().expect("a number"));
     }
     assert!(most >= 5, "frames reach the file on the way: {most}");
@@ -142,6 +155,15 @@ fn faults_of_recordings_are_told() {
         bad[place] ^= 4;
         std::fs::write(folder.join("bad"), bad).expect("a file");
         refused(&["replay", "bad", "--verify"], 2, "bad: error[recording.damaged]");
+    }
+    // A device that is full takes no recording, and no device is replaced by one.
+    if Path::new("/dev/full").exists() {
+        refused(
+            &["run", "pressures", "--no-pictures", "--out", "q", "--record", "/dev/full", "--force"],
+            4,
+            "error[write.",
+        );
+        assert!(!Path::new("/dev/full").is_file());
     }
     // The end is damaged, the beginning can be seen.
     assert_eq!(code(&opruga(folder, &["replay", "bad", "--verify", "--to", "0.1"])), 0);

@@ -167,3 +167,37 @@ fn the_sweep_of_the_thesis_runs_as_its_scene_says() {
     assert_eq!(summary["parameters"].as_array().map(Vec::len), Some(4));
     assert_eq!(summary["done"], summary["points"], "{summary}");
 }
+
+/// A scene in a folder of its own, whose drawing lies above: the sweep carries the file, and goes on without it.
+#[test]
+fn a_scene_with_a_file_is_swept_and_goes_on_where_the_file_is_gone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    std::fs::create_dir(folder.join("scenes")).expect("a folder");
+    let heart = opruga::scenes::find("heart").expect("a scene").replace("shapes/heart.svg", "../heart.svg");
+    std::fs::write(folder.join("scenes/mine.toml"), heart).expect("a file");
+    let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/heart.svg");
+    std::fs::copy(drawing, folder.join("heart.svg")).expect("a drawing");
+    let call = [
+        "sweep",
+        "scenes/mine.toml",
+        "--set=body.jelly.models.mass_spring.stiffness=1000,1500",
+        "--metric=settling_time",
+        "--metric=equilibrium_radius.balloon",
+        "--seconds=0.2",
+        "--out=s",
+    ];
+    let output = opruga(folder, &call);
+    assert!(code(&output) == 2 && said(&output).contains("shape.outside"), "{}", said(&output));
+    let output = opruga(folder, &[&call[..], &["--allow-outside"]].concat());
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let whole = table(&folder.join("s"));
+    assert_eq!(whole.lines().count(), 3, "{whole}");
+    // A part of the table is lost, and the drawing too.
+    let kept: String = whole.lines().take(2).map(|line| format!("{line}\n")).collect();
+    std::fs::write(folder.join("s/results.csv"), kept).expect("a file");
+    std::fs::remove_file(folder.join("heart.svg")).expect("it goes");
+    let output = opruga(folder, &["sweep", "--resume", "s"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert_eq!(table(&folder.join("s")), whole);
+}

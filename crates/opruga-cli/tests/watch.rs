@@ -68,6 +68,24 @@ fn check_goes_on_after_errors_and_tells_when_they_are_gone() {
     watched.until("did you mean");
 }
 
+#[test]
+fn a_file_that_the_scene_names_is_watched_even_where_it_is_missing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"verlet\"\n[[body]]\n\
+                 name = \"it\"\nmass = 1\nshape = { kind = \"svg\", file = \"s.svg\", spacing = 0.1, size = 1.0 }\n";
+    std::fs::write(folder.path().join("mine.toml"), scene).expect("a file");
+    let drawing = folder.path().join("s.svg");
+    let watched = Watched::start(folder.path(), &["check", "mine.toml", "--watch"]);
+    watched.until("read.failed");
+    watched.until("waiting for changes of mine.toml and of 1 file that it names");
+    std::fs::write(&drawing, "<svg xmlns='http://www.w3.org/2000/svg'><circle r='3'/></svg>").expect("a file");
+    watched.until("s.svg has changed");
+    watched.until("waiting for changes");
+    std::fs::write(&drawing, "<svg xmlns='http://www.w3.org/2000/svg'><circle r='x'/></svg>").expect("a file");
+    watched.until("s.svg has changed");
+    watched.until("error[");
+}
+
 #[cfg(unix)]
 #[test]
 fn run_replaces_its_own_output_stops_what_a_change_overtakes_and_ends_with_ctrl_c() {

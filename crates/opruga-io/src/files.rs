@@ -41,6 +41,12 @@ impl Files {
         self
     }
 
+    /// Where a file lies that a scene names; none where it is held in memory or may not be read.
+    pub fn path_of(&self, name: &str) -> Option<PathBuf> {
+        let path = self.folder.as_ref().filter(|_| !self.held.contains_key(name))?.join(name);
+        self.check_place(self.folder.as_ref()?, &path, name).is_ok().then_some(path)
+    }
+
     /// The bytes of a file that a scene names.
     ///
     /// # Errors

@@ -59,11 +59,23 @@ fn state(frame: u64) -> Vec<u8> {
     out
 }
 
+/// What a program did before a frame: nothing, mostly.
+fn inputs(frame: u64) -> Vec<Vec<u8>> {
+    match frame {
+        66 => vec![b"drag".to_vec(), Vec::new()],
+        71 => vec![b"set the gravity".to_vec()],
+        _ => Vec::new(),
+    }
+}
+
 /// The bytes of a recording of some frames, with its end or without.
 fn recorded(frames: core::ops::Range<u64>, closed: bool) -> Vec<u8> {
     let mut memory = Memory::default();
     let mut writer = Writer::new(&mut memory, &header()).expect("memory does not fail");
     for frame in frames {
+        for input in inputs(frame) {
+            writer.input(frame, &input).expect("before its frame");
+        }
         writer.push(frame, &state(frame)).expect("frames in order");
     }
     writer.flush().expect("memory does not fail");
@@ -95,6 +107,13 @@ fn every_frame_comes_back_in_any_order() {
             for frame in frames.clone().chain(scattered) {
                 assert_eq!(recording.read(frame), Ok(&state(frame)[..]), "frame {frame}");
             }
+            let wanted: Vec<(u64, Vec<u8>)> =
+                frames.clone().flat_map(|frame| inputs(frame).into_iter().map(move |input| (frame, input))).collect();
+            assert_eq!(recording.inputs().collect::<Vec<_>>(), wanted.iter().map(|w| w.0).collect::<Vec<_>>());
+            for (number, (_, bytes)) in wanted.iter().enumerate() {
+                assert_eq!(recording.input(number), Ok(bytes.clone()), "input {number}");
+            }
+            assert!(recording.input(wanted.len()).is_err());
             let error = recording.read(frames.end).expect_err("no such frame");
             assert_eq!(error, RecordingError::NoFrame { frame: frames.end, frames: frames.clone() });
         }
@@ -108,6 +127,7 @@ fn frames_out_of_order_are_refused_and_left_out() {
     writer.push(3, &state(3)).expect("the first may have any number");
     for wrong in [0, 3, 5] {
         assert!(writer.push(wrong, &state(wrong)).is_err(), "frame {wrong}");
+        assert!(writer.input(wrong, b"late").is_err(), "before frame {wrong}");
     }
     writer.push(4, &state(4)).expect("the next one");
     writer.finish().expect("memory does not fail");
@@ -172,6 +192,13 @@ fn a_flipped_bit_anywhere_is_found() {
                     }
                 }
             }
+            for (number, frame) in recording.inputs().collect::<Vec<_>>().into_iter().enumerate() {
+                let wanted = inputs(frame).into_iter().nth(usize::from(number == 1)).expect("an input");
+                match recording.input(number) {
+                    Ok(bytes) => assert_eq!(bytes, wanted, "byte {place}, input {number}"),
+                    Err(_) => errors += 1,
+                }
+            }
             assert!(errors > 0, "byte {place} was flipped unnoticed");
         }
     }
@@ -201,10 +228,10 @@ fn other_files_and_other_versions_are_refused() {
         assert_eq!(open(bytes).err(), Some(RecordingError::NotOne));
     }
     let mut newer = recorded(0..2, true);
-    newer[8] = 2;
+    newer[8] = 3;
     let sum = crc32fast::hash(&newer[..20]);
     newer[20..24].copy_from_slice(&sum.to_le_bytes());
-    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 2 }));
+    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 3 }));
 }
 
 /// Row 83: the disk fails at any byte, or only when the bytes shall last: an error with the number of bytes, and a file
@@ -219,6 +246,7 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
         let outcome = RecordingFile::create_through(&path, false, &header(), |file| Failing::after(k, file)).and_then(
             |mut file| {
                 for frame in 68..72 {
+                    inputs(frame).iter().for_each(|input| file.input(frame, input));
                     file.push(frame, |out| out.extend(state(frame)))?;
                 }
                 file.finish()
@@ -369,6 +397,7 @@ fn places_and_frames_beyond_32_bits_are_found() {
         let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], bytes].concat());
         [bytes, &sum.to_le_bytes()].concat()
     };
+    let pairs = [&(pairs.len() as u64 / 16).to_le_bytes()[..], &pairs].concat();
     let length = (pairs.len() as u64).to_le_bytes();
     let head = [b"INDX\x02\0\0\0", &(first + 130).to_le_bytes()[..], &length, &length];
     let head = [&head.concat()[..], &crc32fast::hash(&pairs).to_le_bytes()].concat();
@@ -410,6 +439,11 @@ proptest! {
             for frame in recording.frames() {
                 if let Ok(read) = recording.read(frame) {
                     prop_assert_eq!(read, &state(frame)[..]);
+                }
+            }
+            for (number, frame) in recording.inputs().collect::<Vec<_>>().into_iter().enumerate() {
+                if let Ok(read) = recording.input(number) {
+                    prop_assert!(inputs(frame).contains(&read));
                 }
             }
         }

@@ -480,3 +480,100 @@ fn a_million_triangles_are_read_within_two_seconds() {
     assert_eq!((mesh.nodes(), mesh.euler_characteristic(), notices.len()), (torus.nodes(), 0, 0));
     assert!(seconds < 2.0, "{seconds} s");
 }
+
+/// Row 35: a closed surface that crosses itself is refused with two triangles and a place, in every format; on request it
+/// is taken as it is, and counted.
+#[test]
+fn surfaces_that_meet_themselves_are_refused_with_their_place() {
+    // A second cube, moved by half of its side: it begins at vertex 9, face 7.
+    let mut twice = obj().replace("\r\n", "\n");
+    let first = twice.clone();
+    CORNERS.iter().for_each(|[x, y, z]| twice += &format!("v {} {} {}\n", x + 1.0, y + 0.9, z + 0.8));
+    SQUARES.iter().for_each(|[a, b, c, d]| twice += &format!("f {} {} {} {}\n", a + 9, b + 9, c + 9, d + 9));
+    surface("a.obj", first.as_bytes()).expect("one cube is sound");
+    let error = surface("a.obj", twice.as_bytes()).expect_err("two cubes cross");
+    let error = &error[0];
+    assert_eq!(error.code, "mesh.self_intersection", "{error}");
+    let line = twice.lines().nth(error.line.expect("a line") - 1).expect("a line");
+    assert!(line.starts_with("f "), "{line}");
+    assert!(error.message.contains("triangle ") && error.to_string().contains("overlap = \"keep\""), "{error}");
+    let kept = space("kind = \"surface\", file = \"a.obj\", overlap = \"keep\"", &[("a.obj", twice.as_bytes())]);
+    let (mesh, notices) = kept.expect("taken as it is");
+    assert_eq!((mesh.facets.len(), notices.len()), (24, 1));
+    assert_eq!(notices[0].about.code, "mesh.self_intersection");
+
+    // The same as bytes: each triangle of a binary STL, each face of a PLY, each primitive of a glTF has its place.
+    let mut stl = stl_bytes();
+    stl[80..84].copy_from_slice(&24u32.to_le_bytes());
+    let second: Vec<u8> = stl[84..].to_vec();
+    for triangle in second.chunks_exact(50) {
+        let mut moved = triangle.to_vec();
+        for corner in moved[12..48].chunks_exact_mut(12) {
+            for (axis, word) in corner.chunks_exact_mut(4).enumerate() {
+                let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+                word.copy_from_slice(&(x + [1.0, 0.9, 0.8][axis]).to_le_bytes());
+            }
+        }
+        stl.extend(moved);
+    }
+    let error = &surface("a.stl", &stl).expect_err("two cubes cross")[0];
+    assert_eq!(error.code, "mesh.self_intersection");
+    let byte: usize = error.message.rsplit_once("at byte ").expect("a byte").1.parse().expect("a number");
+    assert!(byte >= 84 + 12 * 50 && (byte - 84).is_multiple_of(50), "{error}");
+}
+
+/// What only the whole surface shows is told with the byte or line of a triangle, in formats without lines too.
+#[test]
+fn late_errors_have_a_place_in_every_format() {
+    // The last face once more.
+    for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        let text = String::from_utf8_lossy(&ply(format)).into_owned();
+        let good = ply(format);
+        let header = text.find("end_header\n").expect("a header") + "end_header\n".len();
+        let (face, tail) = if format == "ascii" { (10, 2) } else { (17, 2) };
+        let at = good.len() - tail - face;
+        let mut bad = good[..good.len() - tail].to_vec();
+        bad.extend_from_slice(&good[at..]);
+        let text = core::str::from_utf8(&bad[..header]).expect("ascii").replace("element face 6", "element face 7");
+        let bad = [text.as_bytes(), &bad[header..]].concat();
+        let error = &surface("a.ply", &bad).expect_err("a face twice")[0];
+        assert_eq!(error.code, "mesh.duplicate_element", "{format}: {error}");
+        match format {
+            "ascii" => assert_eq!(error.line, Some(header_lines(&text) + 8 + 7), "{error}"),
+            _ => assert!(error.message.ends_with(&format!("at byte {}", bad.len() - tail - face)), "{format}: {error}"),
+        }
+    }
+    let uri = format!("\"uri\":\"data:;base64,{}\",", base64(&buffer()));
+    let twice = gltf(&uri).replace(
+        r#""primitives":[{"attributes":{"POSITION":0},"indices":1}]"#,
+        "\"primitives\":[\n{\"attributes\":{\"POSITION\":0},\"indices\":1},\n{\"attributes\":{\"POSITION\":0},\"indices\":1}]",
+    );
+    let error = &surface("a.gltf", twice.as_bytes()).expect_err("two cubes at one place")[0];
+    assert_eq!(error.code, "mesh.self_intersection", "{error}");
+    let line = twice.lines().nth(error.line.expect("a line") - 1).expect("a line");
+    assert!(line.starts_with("{\"attributes\""), "{line}");
+}
+
+fn header_lines(header: &str) -> usize {
+    header.lines().count()
+}
+
+/// A surface is made anew of triangles of a wanted size; a cloth is not.
+#[test]
+fn surfaces_are_remeshed_to_a_length() {
+    let text = obj();
+    let files: &[(&str, &[u8])] = &[("a.obj", text.as_bytes())];
+    let shape = "kind = \"surface\", file = \"a.obj\"";
+    let (mesh, notices) = space(&format!("{shape}, remesh = 0.2"), files).expect("a cube");
+    assert!((600..1200).contains(&mesh.nodes()) && notices.is_empty(), "{}", mesh.nodes());
+    assert!((mesh.enclosed_volume() - 8.0).abs() < 1e-9 && mesh.check().is_empty());
+    let (filled, _) =
+        space(&format!("{shape}, remesh = 0.2, filling = \"lattice\", spacing = 0.5"), files).expect("filled");
+    assert_eq!(filled.skin.as_ref().expect("a skin").carriers.len(), mesh.nodes());
+    let open = text.rsplit_once("f ").expect("a face").0;
+    let files: &[(&str, &[u8])] = &[("a.obj", open.as_bytes())];
+    let error = &space(&format!("{shape}, open = \"sheet\", remesh = 0.2"), files).expect_err("it is open")[0];
+    assert!(error.code == "mesh.open" && error.to_string().contains("remesh"), "{error}");
+    let error = &space(&format!("{shape}, remesh = 1e-5, open = \"cap\""), files).expect_err("too many nodes")[0];
+    assert!(error.code.starts_with("limit.") || error.code.starts_with("scene."), "{error}");
+}

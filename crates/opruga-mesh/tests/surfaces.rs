@@ -186,3 +186,94 @@ fn a_needle_in_a_large_box_is_refused_before_its_box_is_walked_through() {
     needle.scale([1e12; 3], [0.0; 3]).expect("stretched");
     assert!(matches!(needle.lattice_filling(0.5), Err(MeshError::TooManyNodes { .. })));
 }
+
+/// Two surfaces in one mesh, the second moved.
+fn beside(first: &Mesh<3>, second: &Mesh<3>, by: [f64; 3]) -> Mesh<3> {
+    let mut both = first.clone();
+    let nodes = first.nodes() as u32;
+    both.positions.extend(second.positions.iter().map(|p| [0, 1, 2].map(|d| p[d] + by[d])));
+    both.facets.extend(second.facets.iter().map(|facet| facet.map(|node| node + nodes)));
+    both
+}
+
+#[test]
+fn sound_surfaces_do_not_meet_themselves() {
+    let cube = Mesh::box_surface([0.0; 3], [1.0; 3], [4, 3, 2]).expect("a box");
+    for mesh in [torus(), Mesh::icosphere(1.0, 3).expect("a ball"), cube] {
+        let found = mesh.crossing_facets();
+        assert!(found.complete && found.pairs.is_empty(), "{found:?}");
+        // Neither do two that lie apart, or one in the other.
+        assert_eq!(beside(&mesh, &mesh, [9.0, 0.0, 0.0]).crossing_facets().pairs, Vec::<[u32; 2]>::new());
+    }
+    let (outer, inner) = (Mesh::icosphere(1.0, 2).expect("a ball"), Mesh::icosphere(0.5, 1).expect("a ball"));
+    assert_eq!(beside(&outer, &inner, [0.0; 3]).crossing_facets().pairs, Vec::<[u32; 2]>::new());
+}
+
+#[test]
+fn surfaces_that_cross_touch_or_overlap_are_found_at_any_size() {
+    let cube = Mesh::box_surface([0.0; 3], [1.0; 3], [1, 1, 1]).expect("a box");
+    for (what, by) in [
+        ("crosses", [0.3, 0.4, 0.5]),
+        ("crosses symmetrically", [0.5, 0.5, 0.0]),
+        ("has a common side", [1.0, 0.0, 0.0]),
+        ("touches along an edge", [1.0, 1.0, 0.0]),
+        ("touches in a corner", [1.0, 1.0, 1.0]),
+        ("lies at the same place", [0.0; 3]),
+        ("is pierced in the middle of a side", [0.25, 0.25, 0.75]),
+    ] {
+        for size in [1.0, 1e-140, 1e140] {
+            let mut both = beside(&cube, &cube, by);
+            both.positions.iter_mut().flatten().for_each(|x| *x *= size);
+            let found = both.crossing_facets();
+            assert!(!found.pairs.is_empty(), "{what}, {size:e}");
+            assert!(found.pairs.iter().all(|[a, b]| *a < 12 && *b >= 12), "{what}: {found:?}");
+        }
+        let almost = beside(&cube, &cube, by.map(|x| x * (1.0 + 1e-12)));
+        let apart = by.contains(&1.0);
+        assert_eq!(almost.crossing_facets().pairs.is_empty(), apart, "{what}, a little farther away");
+    }
+    // A needle pulled through the other side of the ball; its neighbours share nodes with it.
+    let mut ball = Mesh::icosphere(1.0, 3).expect("a ball");
+    let pulled = ball.facets[0][0];
+    ball.positions[pulled as usize] = ball.positions[pulled as usize].map(|x| -1.5 * x);
+    let found = ball.crossing_facets();
+    assert!(!found.pairs.is_empty());
+    assert!(found.pairs.iter().all(|pair| pair.iter().any(|f| ball.facets[*f as usize].contains(&pulled))));
+}
+
+#[test]
+fn triangles_folded_onto_a_neighbour_are_found() {
+    // A tetrahedron without height: two pairs of triangles lie on one another.
+    let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let facets = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    let flat = Mesh::<3> { positions, facets, ..Mesh::default() };
+    assert!(!flat.crossing_facets().pairs.is_empty());
+    let mut open = flat.clone();
+    open.positions[3][2] = 1e-300;
+    assert_eq!(open.crossing_facets().pairs, Vec::<[u32; 2]>::new(), "not flat any more");
+}
+
+proptest::proptest! {
+    #[test]
+    fn two_balls_meet_where_their_distance_says_so(direction in proptest::array::uniform3(-1.0..1.0f64), distance in 0.0..2.5f64) {
+        let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+        proptest::prop_assume!(length > 0.1);
+        let (one, two) = (Mesh::icosphere(1.0, 3).expect("a ball"), Mesh::icosphere(0.5, 2).expect("a ball"));
+        let both = beside(&one, &two, direction.map(|x| x / length * distance));
+        // Triangles of these balls lie at most 2 % and 7 % inside of the spheres.
+        let sure = distance > 0.54 && distance < 1.45;
+        let never = distance < 0.47 || distance > 1.5;
+        let found = both.crossing_facets().pairs.len();
+        proptest::prop_assert!(!(sure && found == 0) && !(never && found > 0), "{distance}: {found}");
+    }
+}
+
+#[test]
+fn many_triangles_are_compared_in_little_time() {
+    let ball = Mesh::icosphere(1.0, 7).expect("a ball of 327680 triangles");
+    let start = std::time::Instant::now();
+    let found = ball.crossing_facets();
+    assert!(found.complete && found.pairs.is_empty());
+    // A second for a million on an idle processor; busy machines take a few times as long.
+    assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
+}

@@ -4,6 +4,7 @@
 use crate::blueprint::{BodyBlueprint, Surroundings, Time};
 use crate::build::build_colliders;
 use crate::error::WorldError;
+use crate::inputs::Input;
 use crate::rebuild::Touched;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
@@ -16,6 +17,16 @@ pub(crate) enum Change<const D: usize> {
     Set { path: String, value: Value, before: Before<D> },
     /// A body was added behind the others.
     Added(Source),
+}
+
+impl<const D: usize> Change<D> {
+    /// The change as a snapshot tells it.
+    pub(crate) fn told(&self) -> Told {
+        match self {
+            Change::Set { path, value, .. } => Told::Set(path.clone(), value.clone()),
+            Change::Added(source) => Told::Added(*source),
+        }
+    }
 }
 
 /// Where an added body came from.
@@ -51,6 +62,13 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError`] says what is wrong; the world stays as it was.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
+        self.set_now(path, value.clone())?;
+        self.write_down(|| Input::Set { path: path.to_string(), value });
+        Ok(())
+    }
+
+    /// Changes a parameter, for the program or for a command.
+    pub(crate) fn set_now(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         let (before, touched) = self.change(path, value.clone())?;
         if let Err(error) = self.follow(&touched) {
             self.undo(before);

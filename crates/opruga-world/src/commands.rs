@@ -3,6 +3,7 @@
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::changes::Source;
 use crate::error::WorldError;
+use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
 use crate::world::World;
 use opruga_core::state::View;
@@ -50,6 +51,7 @@ impl<const D: usize> World<D> {
         {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }
+        self.write_down(|| Input::Command(command.clone()));
         self.running.push(Running { command, progress: Progress::Waiting });
         Ok(())
     }
@@ -115,7 +117,7 @@ impl<const D: usize> World<D> {
             }
             Action::Set { path, value } => {
                 self.running[number].progress = Progress::Done;
-                self.set(path, value.clone())?;
+                self.set_now(path, value.clone())?;
                 return Ok(None);
             }
             Action::Add(body) => {
@@ -125,7 +127,7 @@ impl<const D: usize> World<D> {
             }
             Action::Remove { name } => {
                 self.running[number].progress = Progress::Done;
-                self.remove_body(name)?;
+                self.remove_now(name)?;
                 return Ok(None);
             }
         };

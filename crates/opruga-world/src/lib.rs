@@ -2,9 +2,11 @@
 
 pub mod blueprint;
 mod build;
+mod bytes;
 mod changes;
 mod commands;
 pub mod error;
+mod inputs;
 mod island;
 pub mod ledger;
 mod loads;
@@ -23,6 +25,7 @@ mod stability;
 mod world;
 
 pub use error::WorldError;
+pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
 pub use registry::Registry;

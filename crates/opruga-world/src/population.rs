@@ -4,6 +4,7 @@ use crate::blueprint::{Action, BodyBlueprint};
 use crate::changes::{Change, Source};
 use crate::commands::Progress;
 use crate::error::WorldError;
+use crate::inputs::Input;
 use crate::rebuild::Touched;
 use crate::world::{Warning, World};
 use opruga_math::Lane;
@@ -17,6 +18,7 @@ impl<const D: usize> World<D> {
     pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
         let kept = body.clone();
         let number = self.include(body, Source::Program(self.added.len()))?;
+        self.write_down(|| Input::Add { name: kept.name.clone() });
         self.added.push(kept);
         Ok(number)
     }
@@ -48,6 +50,13 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Path`] if there is no body of that name.
     pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
+        self.remove_now(name)?;
+        self.write_down(|| Input::Remove { name: name.to_string() });
+        Ok(())
+    }
+
+    /// Takes a body away, for the program or for a command.
+    pub(crate) fn remove_now(&mut self, name: &str) -> Result<(), WorldError> {
         let Some(body) = self.body(name) else {
             return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
         };

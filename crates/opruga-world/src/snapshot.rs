@@ -1,165 +1,18 @@
 //! The whole state of a world in bytes, and back.
 
+use crate::blueprint::CommandBlueprint;
 use crate::build::BodyState;
+use crate::bytes::{Reader, Writer};
 use crate::changes::{Change, Source, Told};
-use crate::commands::Progress;
+use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::rebuild::Touched;
 use crate::world::World;
-use opruga_core::spec::Value;
-use opruga_core::state::Columns;
-use opruga_core::system::System;
 use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-
-/// Little-endian numbers, one after the other.
-struct Writer<'a>(&'a mut Vec<u8>);
-
-impl Writer<'_> {
-    fn count(&mut self, n: u64) {
-        self.0.extend(n.to_le_bytes());
-    }
-    fn number(&mut self, x: f64) {
-        self.0.extend(x.to_le_bytes());
-    }
-    fn text(&mut self, text: &str) {
-        self.count(text.len() as u64);
-        self.0.extend(text.as_bytes());
-    }
-    fn numbers(&mut self, numbers: &[f64]) {
-        self.count(numbers.len() as u64);
-        numbers.iter().for_each(|x| self.number(*x));
-    }
-    fn value(&mut self, value: &Value) {
-        match value {
-            Value::Number(x) => {
-                self.count(0);
-                self.number(*x);
-            }
-            Value::Integer(n) => {
-                self.count(1);
-                self.count(*n as u64);
-            }
-            Value::Boolean(b) => {
-                self.count(2);
-                self.count(u64::from(*b));
-            }
-            Value::Text(text) => {
-                self.count(3);
-                self.text(text);
-            }
-            Value::Numbers(numbers) => {
-                self.count(4);
-                self.numbers(numbers);
-            }
-            Value::Integers(numbers) => {
-                self.count(5);
-                self.count(numbers.len() as u64);
-                numbers.iter().for_each(|n| self.count(u64::from(*n)));
-            }
-            Value::Rows(rows) => {
-                self.count(6);
-                self.count(rows.len() as u64);
-                rows.iter().for_each(|row| self.numbers(row));
-            }
-        }
-    }
-    fn vectors<const D: usize>(&mut self, vectors: &[[f64; D]]) {
-        self.count(vectors.len() as u64);
-        for x in vectors.iter().flatten() {
-            self.number(*x);
-        }
-    }
-    /// The vectors of the nodes of one body; room is made once, for this is most of a snapshot.
-    fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
-        self.count(system.nodes as u64);
-        let from = self.0.len();
-        self.0.resize(from + system.nodes * D * 8, 0);
-        let (bytes, _) = self.0[from..].as_chunks_mut::<8>();
-        let (nodes, _) = bytes.as_chunks_mut::<D>();
-        for (node, to) in nodes.iter_mut().enumerate() {
-            *to = columns.at(system.layout.place(node, lane)).map(f64::to_le_bytes);
-        }
-    }
-}
-
-struct Reader<'a>(&'a [u8]);
-
-impl Reader<'_> {
-    fn eight(&mut self) -> Result<[u8; 8], WorldError> {
-        let (head, tail) =
-            self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
-        self.0 = tail;
-        Ok(*head)
-    }
-    fn count(&mut self) -> Result<u64, WorldError> {
-        Ok(u64::from_le_bytes(self.eight()?))
-    }
-    /// A count of things that each take at least eight bytes: never more than there are bytes.
-    fn length(&mut self) -> Result<usize, WorldError> {
-        let n = self.count()?;
-        if n > self.0.len() as u64 / 8 {
-            return Err(WorldError::Snapshot(format!("it promises {n} numbers, more than it holds")));
-        }
-        Ok(n as usize)
-    }
-    fn number(&mut self) -> Result<f64, WorldError> {
-        Ok(f64::from_le_bytes(self.eight()?))
-    }
-    fn text(&mut self) -> Result<String, WorldError> {
-        let n = self.count()?;
-        let promised = || WorldError::Snapshot(format!("it promises a text of {n} bytes, more than it holds"));
-        let n = usize::try_from(n).map_err(|_| promised())?;
-        let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
-        self.0 = tail;
-        String::from_utf8(head.to_vec()).map_err(|_| WorldError::Snapshot("a text is no UTF-8".into()))
-    }
-    fn numbers(&mut self) -> Result<Vec<f64>, WorldError> {
-        let n = self.length()?;
-        (0..n).map(|_| self.number()).collect()
-    }
-    fn value(&mut self) -> Result<Value, WorldError> {
-        Ok(match self.count()? {
-            0 => Value::Number(self.number()?),
-            1 => Value::Integer(self.count()? as i64),
-            2 => Value::Boolean(self.count()? == 1),
-            3 => Value::Text(self.text()?),
-            4 => Value::Numbers(self.numbers()?),
-            5 => {
-                let n = self.length()?;
-                Value::Integers((0..n).map(|_| Ok(self.count()? as u32)).collect::<Result<_, WorldError>>()?)
-            }
-            6 => {
-                let n = self.length()?;
-                Value::Rows((0..n).map(|_| self.numbers()).collect::<Result<_, _>>()?)
-            }
-            _ => return Err(WorldError::Snapshot("a value is of an unknown kind".into())),
-        })
-    }
-    fn change(&mut self) -> Result<Told, WorldError> {
-        Ok(match self.count()? {
-            0 => Told::Set(self.text()?, self.value()?),
-            1 => Told::Added(Source::Command(self.count()? as usize)),
-            2 => Told::Added(Source::Program(self.count()? as usize)),
-            _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
-        })
-    }
-    fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
-        let n = self.length()?;
-        let mut out = Vec::with_capacity(n);
-        for _ in 0..n {
-            let mut vector = [0.0; D];
-            for x in &mut vector {
-                *x = self.number()?;
-            }
-            out.push(vector);
-        }
-        Ok(out)
-    }
-}
 
 const VERSION: u64 = 4;
 
@@ -240,16 +93,31 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Goes to the state of a snapshot of a world with the same blueprint.
+    /// Goes to the state of a snapshot of a world with the same blueprint. Commands that a program has given since then are
+    /// forgotten.
     ///
     /// # Errors
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let of_scene = self.blueprint.commands.len();
+        let given: Vec<_> = self.running[of_scene..].iter().map(|r| r.command.clone()).collect();
+        self.restore_with(bytes, &given)
+    }
+
+    /// Goes to the state of a snapshot of a world with the same blueprint to which a program had given these commands, or
+    /// the first of them.
+    ///
+    /// # Errors
+    /// As [`World::restore`].
+    pub fn restore_with(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
+        if self.go_to_alike(bytes, given)? {
+            return Ok(());
+        }
         let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
         let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
         let islands =
             (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
-        let outcome = self.go_to(bytes);
+        let outcome = self.go_to(bytes, given);
         if outcome.is_err() {
             (self.blueprint, self.changes, self.colliders, self.running) = kept;
             (self.alive, self.generation, self.frames, self.flows) = bodies;
@@ -259,9 +127,9 @@ impl<const D: usize> World<D> {
         outcome
     }
 
-    fn go_to(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    /// What a snapshot says before its bodies: frames, and what had changed in the scene.
+    fn read_head(reader: &mut Reader<'_>) -> Result<(u64, Vec<Told>), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
-        let mut reader = Reader(bytes);
         if reader.count()? != VERSION {
             return refuse("its version is not 3");
         }
@@ -270,17 +138,20 @@ impl<const D: usize> World<D> {
         }
         let frames = reader.count()?;
         let changes = reader.length()?;
-        let changes: Vec<Told> = (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?;
-        let changed = !changes.is_empty() || !self.changes.is_empty();
-        self.replay(changes)?;
+        Ok((frames, (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?))
+    }
+
+    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; `commands` is the least and the
+    /// largest number of commands.
+    fn read_rest(&self, reader: &mut Reader<'_>, commands: [usize; 2]) -> Result<Rest<D>, WorldError> {
+        let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
         }
-        let mut states = BTreeMap::new();
-        let mut alive = Vec::new();
+        let mut rest = Rest::default();
         for (number, body) in self.blueprint.bodies.iter().enumerate() {
-            alive.push(reader.count()? == 1);
-            if !alive[number] {
+            rest.alive.push(reader.count()? == 1);
+            if !rest.alive[number] {
                 continue;
             }
             let x = reader.vectors::<D>()?;
@@ -288,8 +159,7 @@ impl<const D: usize> World<D> {
             let models = reader.length()?;
             let mut memory = Vec::new();
             for _ in 0..models {
-                let n = reader.length()?;
-                memory.push((0..n).map(|_| reader.number()).collect::<Result<Vec<f64>, _>>()?);
+                memory.push(reader.numbers()?);
             }
             if x.len() != body.mesh.positions.len() || v.len() != x.len() || models != body.models.len() {
                 return refuse(&format!("body `{}` has another shape", body.name));
@@ -297,14 +167,14 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            states.insert(number, BodyState { x, v, memory });
+            rest.states.insert(number, BodyState { x, v, memory });
         }
-        if reader.count()? != self.running.len() as u64 {
+        let count = reader.length()?;
+        if !(commands[0]..=commands[1]).contains(&count) {
             return refuse("it has another number of commands");
         }
-        let mut progress = Vec::new();
-        for _ in 0..self.running.len() {
-            progress.push(match reader.count()? {
+        for _ in 0..count {
+            rest.progress.push(match reader.count()? {
                 0 => Progress::Waiting,
                 1 => Progress::Done,
                 2 => {
@@ -329,20 +199,9 @@ impl<const D: usize> World<D> {
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
-        self.alive = alive;
-        self.generation.resize(self.alive.len(), 0);
-        self.frames = frames;
-        for (running, progress) in self.running.iter_mut().zip(progress) {
-            running.progress = progress;
-        }
-        self.regroup(&Touched::All, &states)?;
-        if changed {
-            self.check_stability()?;
-        }
         let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
-        self.limited_pulls.store(limited_pulls, Ordering::Relaxed);
-        self.flows = Flows {
+        rest.flows = Flows {
             user,
             gas,
             damping,
@@ -357,7 +216,108 @@ impl<const D: usize> World<D> {
             lost_bodies,
             open_frames,
         };
+        Ok(rest)
+    }
+
+    /// The commands of the scene, then those that were given, with how far they had come.
+    fn commands_then(&self, given: &[CommandBlueprint<D>], progress: Vec<Progress<D>>) -> Vec<Running<D>> {
+        let commands = self.blueprint.commands.iter().chain(given).cloned();
+        commands.zip(progress).map(|(command, progress)| Running { command, progress }).collect()
+    }
+
+    /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
+    fn go_to_alike(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<bool, WorldError> {
+        let mut reader = Reader(bytes);
+        let (frames, changes) = Self::read_head(&mut reader)?;
+        if changes != self.changes.iter().map(Change::told).collect::<Vec<_>>() {
+            return Ok(false);
+        }
+        let of_scene = self.blueprint.commands.len();
+        let rest = self.read_rest(&mut reader, [of_scene, of_scene + given.len()])?;
+        let fits = |number: &usize| {
+            let (island, lane) = self.place[*number];
+            let members = &self.islands[island].system.members;
+            rest.states[number]
+                .memory
+                .iter()
+                .zip(members)
+                .all(|(kept, member)| kept.len() == member.memory.iter().skip(lane).step_by(WIDTH).len())
+        };
+        if rest.alive != self.alive || self.islands.is_empty() || !rest.states.keys().all(fits) {
+            return Ok(false);
+        }
+        let running = self.commands_then(given, rest.progress);
+        if running != self.running {
+            return Ok(false);
+        }
+        self.frames = frames;
+        self.looks.fresh = false;
+        let time = self.time();
+        for island in &mut self.islands {
+            let layout = island.system.layout;
+            let nodes = island.system.nodes;
+            for l in 0..layout.stride() {
+                // Unused lanes repeat the first body.
+                let body = island.bodies.get(l).unwrap_or(&island.bodies[0]);
+                let state = &rest.states[body];
+                for node in 0..nodes {
+                    let place = layout.place(node, l);
+                    island.system.state.x.set(place, state.x[node]);
+                    island.system.state.v.set(place, state.v[node]);
+                }
+                for (member, kept) in island.system.members.iter_mut().zip(&state.memory) {
+                    member.memory.iter_mut().skip(l).step_by(WIDTH).zip(kept).for_each(|(to, from)| *to = *from);
+                }
+            }
+            let first = &rest.states[&island.bodies[0]];
+            for place in nodes * layout.stride()..layout.places(nodes) {
+                island.system.state.x.set(place, first.x[nodes - 1]);
+            }
+            island.system.time = time;
+            island.outcome = Ok(());
+            island.refresh();
+        }
+        self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
+        self.flows = rest.flows;
         self.refresh_ledger();
+        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        self.flows.largest = rest.flows.largest;
+        Ok(true)
+    }
+
+    fn go_to(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
+        let mut reader = Reader(bytes);
+        let (frames, changes) = Self::read_head(&mut reader)?;
+        let changed = !changes.is_empty() || !self.changes.is_empty();
+        let of_scene = self.blueprint.commands.len();
+        // Bodies that commands add are found by the numbers of those.
+        let all = vec![Progress::Waiting; of_scene + given.len()];
+        self.running = self.commands_then(given, all);
+        self.replay(changes)?;
+        let rest = self.read_rest(&mut reader, [of_scene, of_scene + given.len()])?;
+        self.alive = rest.alive;
+        self.generation.resize(self.alive.len(), 0);
+        self.frames = frames;
+        self.looks.fresh = false;
+        self.running = self.commands_then(given, rest.progress);
+        self.regroup(&Touched::All, &rest.states)?;
+        if changed {
+            self.check_stability()?;
+        }
+        self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
+        self.flows = rest.flows;
+        self.refresh_ledger();
+        // What is in motion now is not measured again: the time of a frame and of its last substep differ by rounding.
+        self.flows.largest = rest.flows.largest;
         Ok(())
     }
+}
+
+/// What a snapshot says behind its head.
+#[derive(Debug, Default)]
+struct Rest<const D: usize> {
+    alive: Vec<bool>,
+    states: BTreeMap<usize, BodyState<D>>,
+    progress: Vec<Progress<D>>,
+    flows: Flows,
 }

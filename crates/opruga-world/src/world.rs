@@ -5,6 +5,7 @@ use crate::build::{build_colliders, build_integrator, initial_state};
 use crate::changes::Change;
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
+use crate::inputs::Input;
 use crate::island::{FramePlan, Island};
 use crate::ledger::{Energy, Flows, LARGEST_CLOSURE, Momentum};
 use crate::loads::ForceLaw;
@@ -95,6 +96,8 @@ pub struct World<const D: usize> {
     pub(crate) changes: Vec<Change<D>>,
     /// Bodies that the program has added, whatever became of them.
     pub(crate) added: Vec<BodyBlueprint<D>>,
+    /// What the program has done since it was last asked for; none: it is not written down.
+    pub(crate) inputs: Option<Vec<Input<D>>>,
     /// One for each thread.
     pub(crate) workspaces: Vec<Mutex<Workspace<D>>>,
     pool: Option<rayon::ThreadPool>,
@@ -170,6 +173,7 @@ impl<const D: usize> World<D> {
             warnings: Vec::new(),
             changes: Vec::new(),
             added: Vec::new(),
+            inputs: None,
             workspaces,
             pool,
         };
@@ -304,6 +308,7 @@ impl<const D: usize> World<D> {
         let before = self.energy.total();
         self.flows.start += self.stock_energy() - before;
         self.refresh_ledger();
+        self.write_down(|| Input::Place { body, node, position, velocity });
         Ok(())
     }
     /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).
@@ -327,8 +332,9 @@ impl<const D: usize> World<D> {
         }
         self.user_forces.push((body, law));
         let outcome = self.rebuild(&BTreeSet::from([body]));
-        if outcome.is_err() {
-            self.user_forces.pop();
+        match outcome {
+            Ok(()) => self.write_down(|| Input::Force { body }),
+            Err(_) => _ = self.user_forces.pop(),
         }
         outcome
     }

@@ -23,6 +23,7 @@
 //! ```
 
 pub mod pictures;
+pub mod recordings;
 pub mod scenes;
 pub mod sweep;
 
@@ -34,7 +35,7 @@ pub use opruga_math as math;
 pub use opruga_math::Simd;
 pub use opruga_mesh as mesh;
 pub use opruga_world::shapes;
-pub use opruga_world::{BodyHandle, Energy, Momentum, Options, Registry, Warning, World, WorldError, blueprint};
+pub use opruga_world::{BodyHandle, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint};
 
 /// What scenes can name: the models, integrators and colliders of this library.
 pub fn catalogue() -> io::Catalogue {

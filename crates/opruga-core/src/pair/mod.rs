@@ -202,8 +202,10 @@ impl PairTable {
             runs.retain(|r| r.count >= SHORTEST_RUN);
             let width = lists.iter().map(Vec::len).max().unwrap_or(0);
             let packs = nodes.div_ceil(WIDTH);
+            let most = |lists: &[Vec<(u32, u32)>]| lists.iter().map(Vec::len).max().unwrap_or(0) as u32;
             let mut table = Pull {
                 width,
+                widths: lists.chunks(WIDTH).map(most).collect(),
                 partner: vec![0; packs * width * WIDTH],
                 pair: vec![pairs.len() as u32; packs * width * WIDTH],
                 together: Vec::new(),
@@ -253,7 +255,8 @@ impl PairTable {
     }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let pull = self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity()));
+        let pull =
+            self.pull.as_ref().map_or(0, |p| 4 * (p.partner.capacity() + p.pair.capacity() + p.widths.capacity()));
         pull + self.runs.capacity() * size_of::<Run>()
             + 4 * (self.tile_runs.capacity() + self.tile_start.capacity())
             + self.pairs.capacity() * 8

@@ -28,6 +28,8 @@ impl<L: PairLaw<D>, const D: usize> Work for Gather<'_, '_, '_, L, D> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pull {
     pub(super) width: usize,
+    /// The most partners that a node of each pack of nodes has: the slots behind them are empty.
+    pub(super) widths: Vec<u32>,
     /// `[node / 8][slot][node % 8]`: the partner, or the node itself where there is none.
     pub(super) partner: Vec<u32>,
     /// The number of the pair, or that of a pair without effect.
@@ -43,6 +45,13 @@ pub(super) struct Pull {
 const AT_ONCE: usize = 6;
 
 impl Pull {
+    /// The slots that are not empty for eight places.
+    #[inline(always)]
+    fn used(&self, layout: Layout, place: usize) -> usize {
+        let pack = place / WIDTH;
+        self.widths[if layout == Layout::Single { pack } else { pack / WIDTH }] as usize
+    }
+
     /// The partners of eight places in a slot, and the pairs.
     #[inline(always)]
     fn slot(&self, layout: Layout, place: usize, slot: usize) -> (At<'_>, At<'_>) {
@@ -91,8 +100,9 @@ impl PairTable {
             let x: [P; D] = load(&view.x, place);
             let v: [P; D] = if L::DAMPED { load(&view.v, place) } else { [P::zero(); D] };
             let mut force: [P; D] = lanes!(P, i => P::load(&tile.force[i][place - tile.range.start..]));
-            for from in (0..pull.width).step_by(AT_ONCE) {
-                let slots = from..(from + AT_ONCE).min(pull.width);
+            let width = pull.used(self.layout, place);
+            for from in (0..width).step_by(AT_ONCE) {
+                let slots = from..(from + AT_ONCE).min(width);
                 // First what takes long, for all partners; meanwhile the rest of the first ones is worked out.
                 let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
                 for slot in slots.clone() {

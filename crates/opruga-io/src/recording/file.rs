@@ -18,11 +18,22 @@ const WAITING: usize = 4;
 /// What a loss of power may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// States of frames, one behind the other, each with its number and where it ends.
+/// States of frames and inputs, one behind the other.
 #[derive(Debug, Default)]
 struct Batch {
     bytes: Vec<u8>,
-    frames: Vec<(u64, usize)>,
+    parts: Vec<Part>,
+}
+
+/// A part of a batch.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Whether it is what a program did, and no state.
+    input: bool,
+    /// The frame; of an input, the one that comes after it.
+    frame: u64,
+    /// Where it ends.
+    end: usize,
 }
 
 /// A recording that is being written. A process that is killed leaves all frames but those of its last twentieth of a
@@ -104,11 +115,17 @@ impl RecordingFile {
     /// [`WriteError`] once the file could not be written, or if a frame is out of its order; the frames before are whole.
     pub fn push(&mut self, frame: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
         state(&mut self.batch.bytes);
-        self.batch.frames.push((frame, self.batch.bytes.len()));
+        self.batch.parts.push(Part { input: false, frame, end: self.batch.bytes.len() });
         if self.batch.bytes.len() < BATCH && self.handed_over.elapsed() < HANDED_OVER {
             return Ok(());
         }
         self.hand_over()
+    }
+
+    /// Adds something that a program did before the step that leads to a frame; it is written with that.
+    pub fn input(&mut self, frame: u64, bytes: &[u8]) {
+        self.batch.bytes.extend_from_slice(bytes);
+        self.batch.parts.push(Part { input: true, frame, end: self.batch.bytes.len() });
     }
 
     /// Gives what has come together to the thread.
@@ -127,7 +144,7 @@ impl RecordingFile {
     /// # Errors
     /// [`WriteError`] where the file could not be written; the frames before that are whole.
     pub fn finish(mut self) -> Result<u64, WriteError> {
-        if !self.batch.frames.is_empty() {
+        if !self.batch.parts.is_empty() {
             self.hand_over()?;
         }
         self.end()
@@ -164,13 +181,22 @@ fn write_all<W: Target>(
     let mut work = || {
         for mut batch in batches {
             let mut from = 0;
-            for (frame, to) in &batch.frames {
-                writer.push(*frame, &batch.bytes[from..*to])?;
-                from = *to;
+            if let [Part { input: false, frame, .. }] = batch.parts[..] {
+                writer.take(frame, &mut batch.bytes)?;
+            } else {
+                for part in &batch.parts {
+                    let bytes = &batch.bytes[from..part.end];
+                    if part.input {
+                        writer.input(part.frame, bytes)?
+                    } else {
+                        writer.push(part.frame, bytes)?
+                    };
+                    from = part.end;
+                }
             }
             writer.flush()?;
             batch.bytes.clear();
-            batch.frames.clear();
+            batch.parts.clear();
             // Nobody may be left to use it again.
             let _ = used.send(batch);
             if synced.elapsed() >= SYNCED {

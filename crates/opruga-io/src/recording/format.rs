@@ -3,7 +3,7 @@
 use super::error::RecordingError;
 
 /// The version that is written.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 pub(super) const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
 /// Bytes before the header.
@@ -156,7 +156,9 @@ pub(super) enum Kind {
     Whole,
     /// The difference of a state from the one of the chunk before.
     Difference,
-    /// The places of the chunks that are whole: pairs of frame and place.
+    /// What the program did before the step that led to a frame.
+    Input,
+    /// How many chunks are whole, their frames and places, then those of the inputs.
     Index,
 }
 
@@ -164,7 +166,7 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkHead {
     pub(super) kind: Kind,
-    /// The frame; of an index, one past the last.
+    /// The frame; of an input, the one that comes after it; of an index, one past the last.
     pub(super) frame: u64,
     /// Bytes of what the payload stands for.
     pub(super) state: u64,
@@ -179,6 +181,7 @@ impl ChunkHead {
             Kind::Whole => (b"FRAM", 0),
             Kind::Difference => (b"FRAM", 1),
             Kind::Index => (b"INDX", 2),
+            Kind::Input => (b"INPT", 3),
         };
         out[..4].copy_from_slice(word);
         out[4..8].copy_from_slice(&kind.to_le_bytes());
@@ -197,6 +200,7 @@ impl ChunkHead {
             (b"FRAM", 0) => Kind::Whole,
             (b"FRAM", 1) => Kind::Difference,
             (b"INDX", 2) => Kind::Index,
+            (b"INPT", 3) => Kind::Input,
             _ => return None,
         };
         (sum_of(identity, &bytes[..36]) == u32_at(bytes, 36)).then(|| ChunkHead {

@@ -9,16 +9,17 @@
 //! 24      the header: program, scene, how the run was called, files that the scene had named; then CRC-32 of it
 //!
 //! every frame is a chunk:
-//! 0    4  "FRAM"
-//! 4    4  0: the state itself, 1: its difference from the frame before
-//! 8    8  the number of the frame
+//! 0    4  "FRAM"                "INPT": something that a program did
+//! 4    4  0: the state itself, 1: its difference from the frame before, 3: an input
+//! 8    8  the number of the frame; of an input, the frame that follows
 //! 16   8  bytes of the state
 //! 24   8  bytes of the payload
 //! 32   4  CRC-32 of the payload
 //! 36   4  CRC-32 of the header's CRC-32 and of bytes 0 … 35: a chunk of another recording does not fit
 //! 40      the payload
 //!
-//! a run that ends adds a chunk "INDX" with the place of every 64th frame, and
+//! a run that ends adds a chunk "INDX": how many frames stand for themselves, the number and place of each, the frame and
+//! place of every input; and
 //! 0    8  the place of that chunk
 //! 8    4  CRC-32 of the header's CRC-32 and of bytes 0 … 7
 //! 12   8  "OPREND\x1a\n"

@@ -28,6 +28,8 @@ pub struct Recording<R> {
     identity: u32,
     /// Frame and place of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
+    /// Frame and place of what a program did.
+    inputs: Vec<[u64; 2]>,
     frames: Range<u64>,
     ending: Ending,
     /// Where the chunks of frames end.
@@ -56,6 +58,7 @@ impl<R: Read + Seek> Recording<R> {
             header,
             identity,
             index: Vec::new(),
+            inputs: Vec::new(),
             frames: 0..0,
             ending: Ending::Closed,
             end: length,
@@ -84,6 +87,37 @@ impl<R: Read + Seek> Recording<R> {
         &self.ending
     }
 
+    /// What a program did during the run: for each the frame that followed it, in order.
+    pub fn inputs(&self) -> impl Iterator<Item = u64> + '_ {
+        self.inputs.iter().map(|[frame, _]| *frame)
+    }
+
+    /// The bytes of what a program did, by its number.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if there is no such input, or if its chunk is damaged.
+    pub fn input(&mut self, number: usize) -> Result<Vec<u8>, RecordingError> {
+        let frames = self.frames();
+        let Some([frame, place]) = self.inputs.get(number).copied() else {
+            return Err(RecordingError::NoFrame { frame: number as u64, frames });
+        };
+        let damaged = |to: u64| RecordingError::Damaged { from: place, to };
+        let head = self.chunk_head(place)?.ok_or(damaged(place + CHUNK as u64))?;
+        let behind = (place + CHUNK as u64).saturating_add(head.payload);
+        if head.kind != Kind::Input || head.frame != frame || behind > self.end {
+            return Err(damaged(place + CHUNK as u64));
+        }
+        self.payload(&head)?.ok_or(damaged(behind))
+    }
+
+    /// The payload of the chunk whose head was just read; none where it is damaged.
+    fn payload(&mut self, head: &ChunkHead) -> Result<Option<Vec<u8>>, RecordingError> {
+        let mut payload = Vec::new();
+        self.source.by_ref().take(head.payload).read_to_end(&mut payload)?;
+        let fits = payload.len() as u64 == head.payload && crc32fast::hash(&payload) == head.payload_sum;
+        Ok(fits.then_some(payload))
+    }
+
     /// The state of a frame. Frames one after the other are read once each, others from the last that stands for itself.
     ///
     /// # Errors
@@ -110,10 +144,21 @@ impl<R: Read + Seek> Recording<R> {
     }
 
     /// Goes from a frame to the next by the chunk at a place; returns the place behind it.
-    fn apply(&mut self, frame: u64, place: u64, whole: bool) -> Result<u64, RecordingError> {
+    fn apply(&mut self, frame: u64, mut place: u64, whole: bool) -> Result<u64, RecordingError> {
+        let (head, behind) = loop {
+            let damaged = RecordingError::Damaged { from: place, to: place + CHUNK as u64 };
+            let head = self.chunk_head(place)?.ok_or_else(|| damaged.clone())?;
+            let behind = (place + CHUNK as u64).saturating_add(head.payload);
+            if head.kind != Kind::Input {
+                break (head, behind);
+            }
+            // What came before the frame is read by those who do it again.
+            if head.frame != frame || behind > self.end {
+                return Err(damaged);
+            }
+            place = behind;
+        };
         let damaged = |to: u64| RecordingError::Damaged { from: place, to };
-        let head = self.chunk_head(place)?.ok_or(damaged(place + CHUNK as u64))?;
-        let behind = (place + CHUNK as u64).saturating_add(head.payload);
         let kind = if whole { Kind::Whole } else { Kind::Difference };
         if head.kind != kind || head.frame != frame || behind > self.end {
             return Err(damaged(place + CHUNK as u64));
@@ -122,11 +167,9 @@ impl<R: Read + Seek> Recording<R> {
             self.state.clear();
         }
         let bytes = usize::try_from(head.state).map_err(|_| damaged(behind))?;
-        let mut payload = Vec::new();
-        self.source.by_ref().take(head.payload).read_to_end(&mut payload)?;
-        let fits = payload.len() as u64 == head.payload && crc32fast::hash(&payload) == head.payload_sum;
-        let fits = fits && (whole || self.state.len() == bytes);
-        self.state = fits.then(|| codec::decode(&payload, bytes, &self.state)).flatten().ok_or(damaged(behind))?;
+        let payload = self.payload(&head)?.filter(|_| whole || self.state.len() == bytes);
+        let state = payload.and_then(|payload| codec::decode(&payload, bytes, &self.state));
+        self.state = state.ok_or(damaged(behind))?;
         Ok(behind)
     }
 
@@ -154,20 +197,24 @@ impl<R: Read + Seek> Recording<R> {
         if place.saturating_add(CHUNK as u64).saturating_add(head.payload) != end {
             return Ok(false);
         }
-        let mut payload = Vec::new();
-        self.source.by_ref().take(head.payload).read_to_end(&mut payload)?;
-        if payload.len() as u64 != head.payload || crc32fast::hash(&payload) != head.payload_sum {
+        let Some(payload) = self.payload(&head)? else { return Ok(false) };
+        let Some((whole, pairs)) = payload.split_first_chunk::<8>() else { return Ok(false) };
+        let (pairs, rest) = pairs.as_chunks::<16>();
+        let mut index: Vec<[u64; 2]> = pairs.iter().map(|pair| [u64_at(pair, 0), u64_at(pair, 8)]).collect();
+        let Some(whole) = usize::try_from(u64::from_le_bytes(*whole)).ok().filter(|n| *n <= index.len()) else {
             return Ok(false);
-        }
-        let (pairs, rest) = payload.as_chunks::<16>();
-        let index: Vec<[u64; 2]> = pairs.iter().map(|pair| [u64_at(pair, 0), u64_at(pair, 8)]).collect();
+        };
+        let inputs = index.split_off(whole);
+        // An input may come after the last frame: the run has ended before its step.
         let ordered = index.is_sorted_by(|a, b| a[0] < b[0] && a[1] < b[1])
-            && index.iter().all(|[frame, at]| *frame < head.frame && (first..place).contains(at));
+            && inputs.is_sorted_by(|a, b| a[0] <= b[0] && a[1] < b[1])
+            && index.iter().all(|[frame, at]| *frame < head.frame && (first..place).contains(at))
+            && inputs.iter().all(|[_, at]| (first..place).contains(at));
         if !rest.is_empty() || !ordered {
             return Ok(false);
         }
         self.frames = index.first().map_or(0, |[frame, _]| *frame)..head.frame;
-        (self.index, self.end) = (index, place);
+        (self.index, self.inputs, self.end) = (index, inputs, place);
         Ok(true)
     }
 
@@ -190,6 +237,12 @@ impl<R: Read + Seek> Recording<R> {
                 // Its end is missing, or is not one, else there would have been no need to come here.
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
                 Kind::Index => break damaged(length),
+                Kind::Input if head.frame == self.frames.end || self.index.is_empty() => {
+                    self.inputs.push([head.frame, place]);
+                    place = behind;
+                    continue;
+                }
+                Kind::Input => break damaged(place + CHUNK as u64),
                 _ if !follows || head.frame == u64::MAX => break damaged(place + CHUNK as u64),
                 Kind::Difference if self.index.is_empty() => break damaged(place + CHUNK as u64),
                 Kind::Difference => {}

@@ -22,6 +22,8 @@ pub struct Writer<W> {
     next: Option<u64>,
     /// Frame and place of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
+    /// Frame and place of the inputs.
+    inputs: Vec<[u64; 2]>,
 }
 
 impl<W: Target> Writer<W> {
@@ -33,7 +35,8 @@ impl<W: Target> Writer<W> {
         let (pending, identity) = format::beginning(header);
         let place = pending.len() as u64;
         let out = Counted { inner: target, bytes: 0 };
-        let mut writer = Writer { out, identity, pending, place, previous: Vec::new(), next: None, index: Vec::new() };
+        let (previous, index, inputs) = (Vec::new(), Vec::new(), Vec::new());
+        let mut writer = Writer { out, identity, pending, place, previous, next: None, index, inputs };
         writer.flush()?;
         writer.sync()?;
         Ok(writer)
@@ -44,8 +47,41 @@ impl<W: Target> Writer<W> {
     /// # Errors
     /// A frame out of its order; it is left out. The file is not written to before [`Writer::flush`].
     pub fn push(&mut self, frame: u64, state: &[u8]) -> io::Result<()> {
+        self.code(frame, state)?;
+        self.previous.clear();
+        self.previous.extend_from_slice(state);
+        Ok(())
+    }
+
+    /// [`Writer::push`] of a state that nobody needs any more: it is exchanged for other bytes instead of copied.
+    ///
+    /// # Errors
+    /// As [`Writer::push`]; the state stays with its owner then.
+    pub fn take(&mut self, frame: u64, state: &mut Vec<u8>) -> io::Result<()> {
+        self.code(frame, state)?;
+        std::mem::swap(&mut self.previous, state);
+        Ok(())
+    }
+
+    /// Adds something that a program did; it belongs to the frame that is pushed next.
+    ///
+    /// # Errors
+    /// A frame out of its order; it is left out.
+    pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
         if self.next.is_some_and(|next| next != frame) || frame == u64::MAX {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("frame {frame} is out of order")));
+            return Err(out_of_order(frame));
+        }
+        self.inputs.push([frame, self.place]);
+        let from = self.begin();
+        self.pending.extend_from_slice(bytes);
+        self.end(from, Kind::Input, frame, bytes.len() as u64);
+        Ok(())
+    }
+
+    /// Adds the chunk of a state.
+    fn code(&mut self, frame: u64, state: &[u8]) -> io::Result<()> {
+        if self.next.is_some_and(|next| next != frame) || frame == u64::MAX {
+            return Err(out_of_order(frame));
         }
         let begun = self.index.last().is_some_and(|[first, _]| frame - first < GROUP);
         let kind = if begun && self.previous.len() == state.len() { Kind::Difference } else { Kind::Whole };
@@ -53,21 +89,27 @@ impl<W: Target> Writer<W> {
             self.index.push([frame, self.place]);
             self.previous.clear();
         }
-        let mut payload = Vec::new();
-        codec::encode(state, &self.previous, &mut payload);
-        self.chunk(kind, frame, state.len() as u64, &payload);
-        self.previous.clear();
-        self.previous.extend_from_slice(state);
+        let from = self.begin();
+        codec::encode(state, &self.previous, &mut self.pending);
+        self.end(from, kind, frame, state.len() as u64);
         self.next = Some(frame + 1);
         Ok(())
     }
 
-    fn chunk(&mut self, kind: Kind, frame: u64, state: u64, payload: &[u8]) {
-        let head =
-            ChunkHead { kind, frame, state, payload: payload.len() as u64, payload_sum: crc32fast::hash(payload) };
-        self.pending.extend(head.to_bytes(self.identity));
-        self.pending.extend(payload);
-        self.place += (format::CHUNK + payload.len()) as u64;
+    /// Leaves room for the head of a chunk, whose payload follows; returns where it begins.
+    fn begin(&mut self) -> usize {
+        let from = self.pending.len();
+        self.pending.resize(from + format::CHUNK, 0);
+        from
+    }
+
+    /// Writes the head of a chunk, once its payload is there.
+    fn end(&mut self, from: usize, kind: Kind, frame: u64, state: u64) {
+        let (head, payload) = self.pending[from..].split_at_mut(format::CHUNK);
+        let payload_sum = crc32fast::hash(payload);
+        let chunk = ChunkHead { kind, frame, state, payload: payload.len() as u64, payload_sum };
+        head.copy_from_slice(&chunk.to_bytes(self.identity));
+        self.place += (self.pending.len() - from) as u64;
     }
 
     /// Gives all frames so far to the system: from then on they outlive the process.
@@ -99,10 +141,18 @@ impl<W: Target> Writer<W> {
     /// Those of the target.
     pub fn finish(&mut self) -> io::Result<()> {
         let place = self.place;
-        let index: Vec<u8> = self.index.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
-        self.chunk(Kind::Index, self.next.unwrap_or(0), index.len() as u64, &index);
+        let from = self.begin();
+        let numbers = self.index.iter().chain(&self.inputs).flatten();
+        self.pending.extend((self.index.len() as u64).to_le_bytes());
+        self.pending.extend(numbers.flat_map(|n| n.to_le_bytes()));
+        let bytes = self.pending.len() - from - format::CHUNK;
+        self.end(from, Kind::Index, self.next.unwrap_or(0), bytes as u64);
         self.pending.extend(format::trailer(place, self.identity));
         self.flush()?;
         self.sync()
     }
+}
+
+fn out_of_order(frame: u64) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, format!("frame {frame} is out of order"))
 }

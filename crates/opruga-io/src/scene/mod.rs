@@ -91,6 +91,8 @@ pub struct Reading {
     pub notices: Vec<Notice>,
     /// The files that it names, by those names: what else is needed to read it again.
     pub files: BTreeMap<String, Arc<[u8]>>,
+    /// Files that it names and that could not be read, by those names.
+    pub unread: Vec<String>,
 }
 
 /// Reads a scene from bytes.
@@ -112,7 +114,10 @@ pub fn read(
 /// Reads as much of a scene as its errors leave, for those who want to go on looking for errors: [`read`] is for all
 /// others.
 pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Reading {
-    let nothing = |errors| Reading { blueprint: None, errors, notices: Vec::new(), files: BTreeMap::new() };
+    let nothing = |errors| {
+        let (notices, files, unread) = Default::default();
+        Reading { blueprint: None, errors, notices, files, unread }
+    };
     let source = match Source::new(file, bytes, &options.limits) {
         Ok(source) => source,
         Err(error) => return nothing(vec![error]),
@@ -128,9 +133,9 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
         Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
         None => None,
     };
-    let files = std::mem::take(&mut reader.files);
+    let (files, unread) = (std::mem::take(&mut reader.files), std::mem::take(&mut reader.unread));
     let (errors, notices) = reader.finish();
-    Reading { blueprint, errors, notices, files }
+    Reading { blueprint, errors, notices, files, unread }
 }
 
 /// Reads a scene from a file, and the files that it names from beside it, or from where `options` say. What is no

@@ -25,6 +25,8 @@ pub(crate) struct Reader<'a> {
     notices: Vec<Notice>,
     /// The files that shapes have named so far.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
+    /// Those that could not be read.
+    pub(crate) unread: Vec<String>,
 }
 
 /// `a.b`, or `b` at the top.
@@ -48,6 +50,7 @@ impl<'a> Reader<'a> {
             more: 0,
             notices: Vec::new(),
             files: BTreeMap::new(),
+            unread: Vec::new(),
         }
     }
 
@@ -66,9 +69,16 @@ impl<'a> Reader<'a> {
         if let Some(bytes) = self.files.get(name) {
             return Ok(Arc::clone(bytes));
         }
-        let bytes = self.options.files.read(name, self.options.limits.shape_bytes)?;
-        self.files.insert(name.to_string(), Arc::clone(&bytes));
-        Ok(bytes)
+        match self.options.files.read(name, self.options.limits.shape_bytes) {
+            Ok(bytes) => {
+                self.files.insert(name.to_string(), Arc::clone(&bytes));
+                Ok(bytes)
+            }
+            Err(error) => {
+                self.unread.push(name.to_string());
+                Err(error)
+            }
+        }
     }
 
     /// How many errors there are so far.

@@ -7,8 +7,8 @@
 //! The Khronos Group, glTF 2.0 Specification (2021).
 
 use super::Open;
-use super::json::{Raw, parse, refuse};
-use super::triangles::Triangles;
+use super::json::{Raw, parse, refuse, span};
+use super::triangles::{Places, Triangles};
 use crate::base64;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -177,6 +177,8 @@ struct Reader<'a, 's, 'o, 'f> {
     binary: Option<&'a [u8]>,
     open: &'o mut Open<'f>,
     found: Triangles,
+    /// For every triangle the byte of the text where its primitive begins.
+    starts: Vec<u32>,
     others: usize,
 }
 
@@ -209,7 +211,8 @@ pub(super) fn read<'a>(
         (None, Some(first)) => Some(first.nodes.clone()),
         (None, None) => None,
     };
-    let mut reader = Reader { source, root, buffers, binary, open, found: Triangles::default(), others: 0 };
+    let mut reader =
+        Reader { source, root, buffers, binary, open, found: Triangles::default(), starts: Vec::new(), others: 0 };
     match start {
         Some(start) => {
             for node in start {
@@ -234,6 +237,7 @@ pub(super) fn read<'a>(
         let message = format!("{} lines and points are left out", reader.others);
         reader.found.notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
     }
+    reader.found.places = Places::Lines(reader.starts);
     Ok(reader.found)
 }
 
@@ -341,6 +345,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
                 error.value(indices.len().to_string()).allowed("three for every triangle, at most 2^26 triangles");
             return Err(refuse(self.source, raw.get(), error));
         }
+        let start = span(self.source, raw.get()).0 as u32;
         // A map that mirrors turns triangles inside out.
         let det = map[0][0] * (map[1][1] * map[2][2] - map[1][2] * map[2][1])
             - map[0][1] * (map[1][0] * map[2][2] - map[1][2] * map[2][0])
@@ -361,6 +366,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
                 ));
             }
             self.found.triangles.push(if det < 0.0 { [a, c, b] } else { [a, b, c] });
+            self.starts.push(start);
         }
         Ok(())
     }

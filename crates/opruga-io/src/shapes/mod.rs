@@ -47,8 +47,8 @@ pub(crate) struct Loaded {
 enum Content {
     /// Rings at their final size, and the spacing of a filling.
     Outline { rings: Vec<Ring>, filling: Option<f64> },
-    /// A surface at its final size, and what fills it.
-    Surface { mesh: Box<Mesh<3>>, filling: Option<Filling> },
+    /// A surface at its final size, the length of edges that it is remeshed to, and what fills it.
+    Surface { mesh: Box<Mesh<3>>, remesh: Option<f64>, filling: Option<Filling> },
     /// Cells of the plane.
     Plane(Box<Mesh<2>>),
     /// Cells of space.
@@ -119,11 +119,16 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
             let source = text()?;
             triangles::loaded(stl::read_text(&source)?, name, Some(&source), shape)
         }
-        "ply" => triangles::loaded(ply::read(name, bytes)?, name, None, shape),
+        "ply" => {
+            let found = ply::read(name, bytes)?;
+            // Only those of texts have lines.
+            let source = core::str::from_utf8(bytes).ok().map(|text| Source { file: name, text });
+            triangles::loaded(found, name, source.as_ref(), shape)
+        }
         "gltf" | "glb" => {
             let (json, binary) = gltf::chunks(name, bytes)?;
             let source = text_of(name, json)?;
-            triangles::loaded(gltf::read(&source, binary, open)?, name, None, shape)
+            triangles::loaded(gltf::read(&source, binary, open)?, name, Some(&source), shape)
         }
         _ if meshes::is_mesh(name) => triangles::loaded(volume::surface(name, bytes, open)?, name, None, shape),
         _ => {
@@ -159,8 +164,9 @@ impl Loaded {
         match &self.content {
             Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
             Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
-            Content::Surface { mesh, filling: Some(filling) } => mesh.lattice_estimate(filling.spacing()),
-            Content::Surface { mesh, filling: None } | Content::Space(mesh) => mesh.nodes() as u64,
+            Content::Surface { mesh, filling: Some(filling), .. } => mesh.lattice_estimate(filling.spacing()),
+            Content::Surface { mesh, remesh: Some(length), .. } => mesh.remesh_estimate(*length),
+            Content::Surface { mesh, .. } | Content::Space(mesh) => mesh.nodes() as u64,
             Content::Plane(mesh) => mesh.nodes() as u64,
         }
     }
@@ -176,10 +182,16 @@ impl Loaded {
                 None => outline::skin(rings).map_err(refuse)?,
                 Some(spacing) => outline::filled(rings, *spacing).map_err(|e| drawing::refused(&e))?.0,
             }),
-            Content::Surface { mesh, filling } => Box::new(match filling {
-                None => (**mesh).clone(),
-                Some(filling) => filling.of(mesh).map_err(refuse)?,
-            }),
+            Content::Surface { mesh, remesh, filling } => {
+                let surface = match remesh {
+                    None => (**mesh).clone(),
+                    Some(length) => triangles::remeshed(mesh, *length)?,
+                };
+                Box::new(match filling {
+                    None => surface,
+                    Some(filling) => filling.of(&surface).map_err(refuse)?,
+                })
+            }
             Content::Plane(mesh) => mesh.clone(),
             Content::Space(mesh) => mesh.clone(),
         };

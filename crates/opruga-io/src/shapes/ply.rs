@@ -6,7 +6,7 @@
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).
 
-use super::triangles::Triangles;
+use super::triangles::{Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
@@ -75,6 +75,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     let (format, elements, body) = header(file, bytes)?;
     let mut values = Reader { file, bytes, at: body, format };
     let mut found = Triangles::default();
+    let mut starts: Vec<u64> = Vec::new();
     let (mut seen_vertices, mut seen_faces) = (false, false);
     for element in &elements {
         let least: usize = element
@@ -134,6 +135,8 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                     return Err(SceneError { file: file.into(), ..error });
                 };
                 for face in 0..element.count {
+                    values.skip_space();
+                    let start = values.at as u64;
                     for (k, property) in element.properties.iter().enumerate() {
                         let row = values.property(property)?;
                         if k != wanted {
@@ -150,9 +153,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                             }
                             corners.push(index as u32);
                         }
-                        if let Err(why) = found.polygon(&corners) {
-                            let error = values.error("mesh.degenerate_face", format!("{why}: face {face}"));
-                            return Err(error.value(format!("{corners:?}")));
+                        match found.polygon(&corners) {
+                            Ok(triangles) => starts.extend(std::iter::repeat_n(start, triangles)),
+                            Err(why) => {
+                                let error = values.error("mesh.degenerate_face", format!("{why}: face {face}"));
+                                return Err(error.value(format!("{corners:?}")));
+                            }
                         }
                     }
                 }
@@ -177,6 +183,10 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
         let error = values.error("ply.size", format!("{} bytes follow the last element", rest.len()));
         return Err(error.value(rest.len().to_string()).allowed("0 bytes"));
     }
+    found.places = match format {
+        Format::Text => Places::Lines(starts.into_iter().map(|start| start as u32).collect()),
+        Format::Little | Format::Big => Places::Starts(starts),
+    };
     Ok(found)
 }
 
@@ -270,6 +280,13 @@ impl Reader<'_> {
         }
         let error = SceneError::new(code, format!("{message}, before byte {}", self.at));
         SceneError { file: self.file.to_string(), ..error }
+    }
+
+    /// Goes to the next word of a text.
+    fn skip_space(&mut self) {
+        if self.format == Format::Text {
+            self.at += self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
+        }
     }
 
     /// The values of one property: one, or those of a list.

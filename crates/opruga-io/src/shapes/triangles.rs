@@ -36,6 +36,8 @@ pub(super) enum Places {
     Lines(Vec<u32>),
     /// The byte of the first one, and how many bytes each takes.
     Bytes { first: usize, each: usize },
+    /// The byte where each begins.
+    Starts(Vec<u64>),
 }
 
 impl Triangles {
@@ -81,14 +83,19 @@ impl Triangles {
                 }
                 None => error,
             },
-            (Places::Bytes { first, each }, _) => {
-                let byte = first + each * triangle as usize;
-                let message = format!("{}, at byte {byte}", error.message);
-                SceneError { message, ..error }
-            }
+            (Places::Bytes { first, each }, _) => at_byte(error, (first + each * triangle as usize) as u64),
+            (Places::Starts(starts), _) => match starts.get(triangle as usize) {
+                Some(byte) => at_byte(error, *byte),
+                None => error,
+            },
             _ => error,
         }
     }
+}
+
+fn at_byte(error: SceneError, byte: u64) -> SceneError {
+    let message = format!("{}, at byte {byte}", error.message);
+    SceneError { message, ..error }
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -117,6 +124,7 @@ pub(super) fn loaded(
     }
     let mut notices = std::mem::take(&mut found.notices);
     weld(&mut found, source, shape, &mut notices).map_err(named)?;
+    let given = found.triangles.len();
     let mut mesh = Mesh::<3> {
         positions: std::mem::take(&mut found.positions),
         facets: std::mem::take(&mut found.triangles),
@@ -141,6 +149,10 @@ pub(super) fn loaded(
         notices.push(SceneError::new("mesh.unreferenced", message).value(unused.to_string()));
     }
     orient(&mut mesh, &found, source, shape, &mut notices).map_err(named)?;
+    if !mesh.facets.is_empty() {
+        let of_file = |facet: &u32| (*facet as usize) < given;
+        compare(&mesh, &found, of_file, source, shape, &mut notices).map_err(named)?;
+    }
     place(&mut mesh, shape).map_err(named)?;
     let filling = match shapes::filling(shape) {
         Ok(Some(_)) if mesh.facets.is_empty() => {
@@ -151,7 +163,29 @@ pub(super) fn loaded(
         Ok(filling) => filling,
         Err(refusal) => return Err(Problem::new("filling", SceneError::new("scene.missing", refusal.to_string()))),
     };
-    Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), filling } })
+    let remesh = shape.number("remesh");
+    if remesh.is_some() && mesh.facets.is_empty() {
+        let error = SceneError::new("mesh.open", "an open surface cannot be remeshed").allowed("a closed surface");
+        return Err(Problem::new("remesh", error.hint("close it with `open = \"cap\"`")));
+    }
+    Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
+}
+
+/// The surface with edges of a wanted length.
+///
+/// # Errors
+/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself.
+pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
+    let refuse = |message: String| SceneError::new("scene.shape", message).value(length.to_string());
+    let made = mesh.remeshed(length).map_err(|e| refuse(e.to_string()))?;
+    // One that was taken as it is may go on crossing itself.
+    if !made.crossing_facets().pairs.is_empty() && mesh.crossing_facets().pairs.is_empty() {
+        let message = format!("with edges of {length} m the surface would cross itself");
+        return Err(refuse(message)
+            .allowed("a length below the finest parts of the surface")
+            .hint("take a smaller `remesh`"));
+    }
+    Ok(made)
 }
 
 /// Joins vertices where the scene or the format asks for it.
@@ -232,6 +266,50 @@ fn orient(
         return Err(found.at(source, facet, error));
     }
     Ok(())
+}
+
+/// Refuses, or counts, triangles of a closed surface that meet one another where they are not neighbours.
+fn compare(
+    mesh: &Mesh<3>,
+    found: &Triangles,
+    of_file: impl Fn(&u32) -> bool,
+    source: Option<&Source<'_>>,
+    shape: &Values,
+    notices: &mut Vec<SceneError>,
+) -> Result<(), SceneError> {
+    let crossings = mesh.crossing_facets();
+    let count = crossings.pairs.len();
+    let Some([first, second]) = crossings.pairs.first().copied() else {
+        if !crossings.complete {
+            let message = "too many triangles lie over one another: not all were compared, and some may cross";
+            notices.push(SceneError::new("mesh.not_compared", message));
+        }
+        return Ok(());
+    };
+    let among = if crossings.complete { count.to_string() } else { format!("{count} and more") };
+    if shape.text("overlap") == Some("keep") {
+        let message = format!("{among} pairs of triangles cross, touch or overlap");
+        notices.push(SceneError::new("mesh.self_intersection", message).value(count.to_string()));
+        return Ok(());
+    }
+    let middle = |facet: u32| {
+        let corners = mesh.facets[facet as usize].map(|node| mesh.positions[node as usize]);
+        let mean: [f64; 3] = core::array::from_fn(|d| (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0);
+        mean.map(|x| format!("{x:.6}")).join(", ")
+    };
+    let message = format!(
+        "the surface meets itself: triangle {first} around ({}) crosses, touches or overlaps triangle {second} around ({})",
+        middle(first),
+        middle(second)
+    );
+    let error = SceneError::new("mesh.self_intersection", message).value(format!("{among} pairs"));
+    let error = error.allowed("triangles that meet at common vertices and edges only");
+    let error = error.hint("`overlap = \"keep\"` takes the surface as it is");
+    // Those that close a free boundary stand nowhere in the file.
+    Err(match [second, first].into_iter().find(of_file) {
+        Some(facet) => found.at(source, facet, error),
+        None => error,
+    })
 }
 
 fn flipped(notices: &mut Vec<SceneError>, count: usize, what: &str) {

@@ -63,23 +63,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
     // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, place| OutlineError::TooCoarse { spacing, parts: [part; 2], place };
-    let mut triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    for ring in rings {
-        let mut handles: Vec<FixedVertexHandle> = Vec::with_capacity(ring.points.len());
-        for point in &ring.points {
-            handles.push(triangulation.insert(shrink(*point)).map_err(|_| failed(ring.part, *point))?);
-        }
-        for (k, from) in handles.iter().enumerate() {
-            let to = handles[(k + 1) % handles.len()];
-            if triangulation.try_add_constraint(*from, to).len() != 1 {
-                return Err(failed(ring.part, ring.points[k]));
-            }
-        }
-    }
-    let border = triangulation.num_vertices();
-    for point in lattice(rings, low, high, spacing) {
-        triangulation.insert(shrink(point)).map_err(|_| failed(0, point))?;
-    }
+    let (mut triangulation, border) = constrained(rings, &lattice(rings, low, high, spacing), shrink, failed)?;
     let parameters = RefinementParameters::<f64>::new()
         .with_angle_limit(AngleLimit::from_radius_to_shortest_edge_ratio(RADIUS_TO_EDGE))
         .with_min_required_area(SMALLEST_AREA * (spacing / extent) * (spacing / extent))
@@ -123,6 +107,61 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
     mesh.facets = mesh.facets_from_cells()?;
     let quality = quality(&mesh, refined.refinement_complete);
     Ok((mesh, quality))
+}
+
+/// The triangulation of rings and of points inside them, with the edges of the rings; and how many points the rings have.
+///
+/// All points are given at once: one by one, those of a long straight side have no triangle to lie in, and each new one
+/// would be looked for along all others.
+fn constrained(
+    rings: &[Ring],
+    inside: &[[f64; 2]],
+    shrink: impl Fn([f64; 2]) -> Point2<f64>,
+    failed: impl Fn(u32, [f64; 2]) -> OutlineError,
+) -> Result<(ConstrainedDelaunayTriangulation<Point2<f64>>, usize), OutlineError> {
+    let mut points: Vec<Point2<f64>> = Vec::new();
+    let mut edges: Vec<[usize; 2]> = Vec::new();
+    for ring in rings {
+        let first = points.len();
+        points.extend(ring.points.iter().map(|point| shrink(*point)));
+        edges.extend((first..points.len()).map(|k| [k, if k + 1 < points.len() { k + 1 } else { first }]));
+    }
+    let border = points.len();
+    points.extend(inside.iter().map(|point| shrink(*point)));
+    let count = points.len();
+    let ring_of = |number: usize| {
+        let mut number = number;
+        for ring in rings {
+            match ring.points.get(number) {
+                Some(point) => return (ring.part, *point),
+                None => number -= ring.points.len(),
+            }
+        }
+        (0, inside.first().copied().unwrap_or([0.0; 2]))
+    };
+    let mut crossing = None;
+    let made = ConstrainedDelaunayTriangulation::try_bulk_load_cdt(points, edges.clone(), |edge| {
+        crossing = crossing.or(Some(edge[0]));
+    });
+    let refuse = |number: usize| {
+        let (part, point) = ring_of(number);
+        Err(failed(part, point))
+    };
+    let Ok(triangulation) = made else { return refuse(0) };
+    // Points that fall together, edges that cross, and points that lie on an edge between two others.
+    if triangulation.num_vertices() < count {
+        return refuse(crossing.unwrap_or(0));
+    }
+    if let Some(number) = crossing {
+        return refuse(number);
+    }
+    for [from, to] in edges {
+        let ends = [from, to].map(FixedVertexHandle::from_index);
+        if !triangulation.exists_constraint(ends[0], ends[1]) {
+            return refuse(from);
+        }
+    }
+    Ok((triangulation, border))
 }
 
 /// Points of a triangular lattice inside the rings and clear of them, row by row.

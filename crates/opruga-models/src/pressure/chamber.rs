@@ -20,6 +20,8 @@ pub(super) enum Boundary {
 #[derive(Debug)]
 pub(super) struct NodeRings {
     pub(super) width: usize,
+    /// The longest ring of each pack of nodes: the slots behind it add nothing.
+    pub(super) widths: Vec<u32>,
     /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which adds nothing.
     pub(super) neighbour: Vec<u32>,
     /// `[node / 8][slot]`: whether the eight neighbours follow each other, so that they can be read at once.
@@ -241,7 +243,9 @@ impl Boundary {
         match self {
             Boundary::Plane(edges) => edges.heap_bytes(),
             Boundary::Space(rings) => {
-                rings.neighbour.capacity() * 4 + rings.together.capacity() + rings.facets.capacity() * 12
+                (rings.neighbour.capacity() + rings.widths.capacity()) * 4
+                    + rings.together.capacity()
+                    + rings.facets.capacity() * 12
             }
         }
     }
@@ -263,7 +267,11 @@ impl NodeRings {
         }
         let follow = |places: &[u32]| places.windows(2).all(|pair| pair[1] == pair[0] + 1);
         let together = neighbour.chunks(WIDTH).map(follow).collect();
-        NodeRings { width, neighbour, together, facets }
+        let longest = |pack: usize| {
+            let nodes = pack * WIDTH..nodes.min((pack + 1) * WIDTH);
+            nodes.map(|node| rings.of(node as u32).len()).max().unwrap_or(0) as u32
+        };
+        NodeRings { width, widths: (0..packs).map(longest).collect(), neighbour, together, facets }
     }
 
     /// V = Σ xᵢ·∂V/∂xᵢ / 3 with ∂V/∂xᵢ = ⅙ Σ x_k × x_{k+1} around the ring of node i.
@@ -277,9 +285,11 @@ impl NodeRings {
             let mut total = [P::zero(); 3];
             let first = self.neighbour_position::<P, D>(view, origin, place, 0);
             let mut previous = first;
-            for slot in 1..=self.width {
+            let pack = place / WIDTH;
+            let width = self.widths[if view.layout == Layout::Single { pack } else { pack / WIDTH }] as usize;
+            for slot in 1..=width {
                 let next =
-                    if slot == self.width { first } else { self.neighbour_position::<P, D>(view, origin, place, slot) };
+                    if slot == width { first } else { self.neighbour_position::<P, D>(view, origin, place, slot) };
                 total[0] += previous[1] * next[2] - previous[2] * next[1];
                 total[1] += previous[2] * next[0] - previous[0] * next[2];
                 total[2] += previous[0] * next[1] - previous[1] * next[0];

@@ -1,0 +1,116 @@
+//! A tree of boxes over triangles in the order of a space-filling curve.
+
+/// Triangles below a node of the lowest level of the tree.
+const LEAF: usize = 4;
+
+/// Lowest and highest corner.
+pub(crate) type Bounds = [[f64; 3]; 2];
+
+const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+pub(crate) fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    (0..3).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
+}
+
+/// The square of the distance of a box from a point.
+pub(crate) fn distance_to(bounds: &Bounds, point: &[f64; 3]) -> f64 {
+    let mut square = 0.0;
+    for d in 0..3 {
+        let (below, above) = (bounds[0][d] - point[d], point[d] - bounds[1][d]);
+        let out = if below > 0.0 {
+            below
+        } else if above > 0.0 {
+            above
+        } else {
+            0.0
+        };
+        square += out * out;
+    }
+    square
+}
+
+fn join(a: &mut Bounds, b: &Bounds) {
+    for d in 0..3 {
+        if b[0][d] < a[0][d] {
+            a[0][d] = b[0][d];
+        }
+        if b[1][d] > a[1][d] {
+            a[1][d] = b[1][d];
+        }
+    }
+}
+
+/// A complete binary tree of boxes: node 1 is the root, nodes 2n and 2n + 1 are below node n.
+pub(crate) struct Tree {
+    /// Nodes of the lowest level: a power of two.
+    pub(crate) leaves: usize,
+    pub(crate) boxes: Vec<Bounds>,
+    pub(crate) facet_boxes: Vec<Bounds>,
+    /// Triangles in the order of the curve.
+    order: Vec<u32>,
+}
+
+impl Tree {
+    /// The tree over the triangles with these corners.
+    pub(crate) fn of(corners: &[[[f64; 3]; 3]]) -> Tree {
+        let mut whole = NOTHING;
+        let facet_boxes: Vec<Bounds> = corners
+            .iter()
+            .map(|triangle| {
+                let mut bounds = NOTHING;
+                triangle.iter().for_each(|p| join(&mut bounds, &[*p, *p]));
+                join(&mut whole, &bounds);
+                bounds
+            })
+            .collect();
+        let scale: [f64; 3] = core::array::from_fn(|d| {
+            let extent = whole[1][d] - whole[0][d];
+            if extent > 0.0 { 1_048_575.0 / extent } else { 0.0 }
+        });
+        let mut keys: Vec<(u64, u32)> = facet_boxes
+            .iter()
+            .enumerate()
+            .map(|(number, [low, high])| {
+                let cell = |d: usize| ((0.5 * low[d] + 0.5 * high[d] - whole[0][d]) * scale[d]) as u64;
+                (spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2, number as u32)
+            })
+            .collect();
+        keys.sort_unstable();
+        let order: Vec<u32> = keys.into_iter().map(|(_, number)| number).collect();
+        let leaves = order.len().div_ceil(LEAF).next_power_of_two();
+        let mut tree = Tree { leaves, boxes: vec![NOTHING; 2 * leaves], facet_boxes, order };
+        for leaf in 0..leaves {
+            let mut bounds = NOTHING;
+            tree.facets_of(leaf).iter().for_each(|facet| join(&mut bounds, &tree.facet_boxes[*facet as usize]));
+            tree.boxes[leaves + leaf] = bounds;
+        }
+        for node in (1..leaves).rev() {
+            let mut bounds = tree.boxes[2 * node];
+            join(&mut bounds, &tree.boxes[2 * node + 1]);
+            tree.boxes[node] = bounds;
+        }
+        tree
+    }
+
+    /// The triangles of a leaf.
+    pub(crate) fn facets_of(&self, leaf: usize) -> &[u32] {
+        let end = self.order.len();
+        &self.order[(leaf * LEAF).min(end)..((leaf + 1) * LEAF).min(end)]
+    }
+
+    /// The last leaf below a node.
+    pub(crate) fn last_leaf(&self, node: usize) -> usize {
+        let below = self.leaves.ilog2() - node.ilog2();
+        ((node + 1) << below) - 1 - self.leaves
+    }
+}
+
+/// The lower 20 bits of a number, each followed by two zeros.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0xf_ffff;
+    x = (x | x << 32) & 0x1f_0000_0000_ffff;
+    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}

@@ -1,0 +1,153 @@
+//! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
+
+use crate::changes::{Source, Told};
+use crate::error::WorldError;
+use opruga_core::spec::Value;
+use opruga_core::state::Columns;
+use opruga_core::system::System;
+
+/// Little-endian numbers, one after the other.
+pub(crate) struct Writer<'a>(pub(crate) &'a mut Vec<u8>);
+
+impl Writer<'_> {
+    pub(crate) fn count(&mut self, n: u64) {
+        self.0.extend(n.to_le_bytes());
+    }
+    pub(crate) fn number(&mut self, x: f64) {
+        self.0.extend(x.to_le_bytes());
+    }
+    pub(crate) fn text(&mut self, text: &str) {
+        self.count(text.len() as u64);
+        self.0.extend(text.as_bytes());
+    }
+    pub(crate) fn numbers(&mut self, numbers: &[f64]) {
+        self.count(numbers.len() as u64);
+        numbers.iter().for_each(|x| self.number(*x));
+    }
+    pub(crate) fn value(&mut self, value: &Value) {
+        match value {
+            Value::Number(x) => {
+                self.count(0);
+                self.number(*x);
+            }
+            Value::Integer(n) => {
+                self.count(1);
+                self.count(*n as u64);
+            }
+            Value::Boolean(b) => {
+                self.count(2);
+                self.count(u64::from(*b));
+            }
+            Value::Text(text) => {
+                self.count(3);
+                self.text(text);
+            }
+            Value::Numbers(numbers) => {
+                self.count(4);
+                self.numbers(numbers);
+            }
+            Value::Integers(numbers) => {
+                self.count(5);
+                self.count(numbers.len() as u64);
+                numbers.iter().for_each(|n| self.count(u64::from(*n)));
+            }
+            Value::Rows(rows) => {
+                self.count(6);
+                self.count(rows.len() as u64);
+                rows.iter().for_each(|row| self.numbers(row));
+            }
+        }
+    }
+    pub(crate) fn vectors<const D: usize>(&mut self, vectors: &[[f64; D]]) {
+        self.count(vectors.len() as u64);
+        for x in vectors.iter().flatten() {
+            self.number(*x);
+        }
+    }
+    /// The vectors of the nodes of one body; room is made once, for this is most of a snapshot.
+    pub(crate) fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
+        self.count(system.nodes as u64);
+        let from = self.0.len();
+        self.0.resize(from + system.nodes * D * 8, 0);
+        let (bytes, _) = self.0[from..].as_chunks_mut::<8>();
+        let (nodes, _) = bytes.as_chunks_mut::<D>();
+        for (node, to) in nodes.iter_mut().enumerate() {
+            *to = columns.at(system.layout.place(node, lane)).map(f64::to_le_bytes);
+        }
+    }
+}
+
+pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
+
+impl Reader<'_> {
+    pub(crate) fn eight(&mut self) -> Result<[u8; 8], WorldError> {
+        let (head, tail) =
+            self.0.split_first_chunk::<8>().ok_or_else(|| WorldError::Snapshot("it ends too early".into()))?;
+        self.0 = tail;
+        Ok(*head)
+    }
+    pub(crate) fn count(&mut self) -> Result<u64, WorldError> {
+        Ok(u64::from_le_bytes(self.eight()?))
+    }
+    /// A count of things that each take at least eight bytes: never more than there are bytes.
+    pub(crate) fn length(&mut self) -> Result<usize, WorldError> {
+        let n = self.count()?;
+        if n > self.0.len() as u64 / 8 {
+            return Err(WorldError::Snapshot(format!("it promises {n} numbers, more than it holds")));
+        }
+        Ok(n as usize)
+    }
+    pub(crate) fn number(&mut self) -> Result<f64, WorldError> {
+        Ok(f64::from_le_bytes(self.eight()?))
+    }
+    pub(crate) fn text(&mut self) -> Result<String, WorldError> {
+        let n = self.count()?;
+        let promised = || WorldError::Snapshot(format!("it promises a text of {n} bytes, more than it holds"));
+        let n = usize::try_from(n).map_err(|_| promised())?;
+        let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
+        self.0 = tail;
+        String::from_utf8(head.to_vec()).map_err(|_| WorldError::Snapshot("a text is no UTF-8".into()))
+    }
+    pub(crate) fn numbers(&mut self) -> Result<Vec<f64>, WorldError> {
+        let n = self.length()?;
+        (0..n).map(|_| self.number()).collect()
+    }
+    pub(crate) fn value(&mut self) -> Result<Value, WorldError> {
+        Ok(match self.count()? {
+            0 => Value::Number(self.number()?),
+            1 => Value::Integer(self.count()? as i64),
+            2 => Value::Boolean(self.count()? == 1),
+            3 => Value::Text(self.text()?),
+            4 => Value::Numbers(self.numbers()?),
+            5 => {
+                let n = self.length()?;
+                Value::Integers((0..n).map(|_| Ok(self.count()? as u32)).collect::<Result<_, WorldError>>()?)
+            }
+            6 => {
+                let n = self.length()?;
+                Value::Rows((0..n).map(|_| self.numbers()).collect::<Result<_, _>>()?)
+            }
+            _ => return Err(WorldError::Snapshot("a value is of an unknown kind".into())),
+        })
+    }
+    pub(crate) fn change(&mut self) -> Result<Told, WorldError> {
+        Ok(match self.count()? {
+            0 => Told::Set(self.text()?, self.value()?),
+            1 => Told::Added(Source::Command(self.count()? as usize)),
+            2 => Told::Added(Source::Program(self.count()? as usize)),
+            _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
+        })
+    }
+    pub(crate) fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
+        let n = self.length()?;
+        let mut out = Vec::with_capacity(n);
+        for _ in 0..n {
+            let mut vector = [0.0; D];
+            for x in &mut vector {
+                *x = self.number()?;
+            }
+            out.push(vector);
+        }
+        Ok(out)
+    }
+}

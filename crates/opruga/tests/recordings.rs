@@ -1,0 +1,151 @@
+//! Recordings of worlds that a program handles: what it does comes with them.
+
+use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
+use opruga::io::recording::{Header, Recording};
+use opruga::io::scene;
+use opruga::recordings::{Playback, Tape, TapeError};
+use opruga::{Options, World, catalogue, scenes};
+use std::path::PathBuf;
+
+fn blueprint(name: &str) -> Blueprint<2> {
+    let text = scenes::find(name).expect("a scene");
+    let options = scene::Options { files: scenes::files(), ..scene::Options::default() };
+    match scene::read(text.as_bytes(), name, &catalogue(), &options) {
+        Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint,
+        _ => panic!("a scene of the plane"),
+    }
+}
+
+fn world(name: &str) -> World<2> {
+    World::new(blueprint(name), Options::default()).expect("a world")
+}
+
+fn header(name: &str) -> Header {
+    Header { name: name.into(), frame: 1.0 / 60.0, ..Header::default() }
+}
+
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("opruga-{}-{name}.rec", std::process::id()))
+}
+
+fn command(at: f64, until: f64, action: Action<2>) -> CommandBlueprint<2> {
+    CommandBlueprint { at, until, action }
+}
+
+/// What a program does before some frames.
+fn handle(world: &mut World<2>, frame: u64) {
+    let drag = Action::Drag {
+        body: 0,
+        node: None,
+        facet: false,
+        stiffness: Some(200.0),
+        path: vec![vec![0.1, 0.0, 2.0], vec![0.4, 1.0, 3.0]],
+        largest_force: Some(80.0),
+    };
+    match frame {
+        3 => world.command(command(0.1, 0.4, drag)).expect("a drag"),
+        7 => world.set("world.gravity", opruga::core::spec::Value::Numbers(vec![1.0, -5.0])).expect("set"),
+        9 => {
+            let push = Action::Push { body: 1, select: Selector::Nodes(vec![0, 4]), force: [3.0, 0.0] };
+            world.command(command(0.0, 0.3, push)).expect("a push");
+            let pin = Action::Pin { body: 2, select: Selector::Side("bottom".into()), axes: [true, false] };
+            world.command(command(0.2, 0.25, pin)).expect("a pin");
+        }
+        14 => {
+            let (x, v) = (world.position(1, 3), world.velocity(1, 3));
+            world.place_node(1, 3, [x[0] + 0.01, x[1]], v).expect("placed");
+        }
+        20 => world.remove_body(&world.blueprint().bodies[3].name.clone()).expect("removed"),
+        _ => {}
+    }
+}
+
+#[test]
+fn what_a_program_does_is_in_the_recording_and_is_done_again() {
+    let path = file("handled");
+    let mut recorded = world("pressures");
+    let mut tape = Tape::begin(&path, true, &header("pressures"), &mut recorded).expect("a file");
+    let mut hashes = vec![recorded.state_hash()];
+    let frames = 30;
+    for frame in 1..=frames {
+        handle(&mut recorded, frame);
+        tape.step(&mut recorded).expect("a frame");
+        hashes.push(recorded.state_hash());
+    }
+    tape.finish(&mut recorded).expect("an end");
+    let open = || {
+        let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
+        Playback::<_, 2>::of(recording, frames).expect("whole")
+    };
+    // Computed again, every frame has the same bits; without what the program did it has not.
+    let (mut playback, mut again) = (open(), world("pressures"));
+    for frame in 1..=frames {
+        playback.step(&mut again, frame).expect("a frame");
+        assert_eq!(again.state_hash(), hashes[frame as usize], "frame {frame}");
+        assert_eq!(playback.state(frame).expect("a state"), again.snapshot(), "frame {frame}");
+    }
+    let mut alone = world("pressures");
+    (0..frames).for_each(|_| alone.frame().expect("a frame"));
+    assert_ne!(alone.state_hash(), hashes[frames as usize]);
+    // Shown in any order, and gone on with from any of them.
+    let mut shown = world("pressures");
+    for frame in [12, 3, 29, 0, 21, 20, 8, 30] {
+        playback.show(&mut shown, frame).expect("a frame");
+        assert_eq!(shown.state_hash(), hashes[frame as usize], "frame {frame}");
+        if frame < frames {
+            playback.step(&mut shown, frame + 1).expect("a step");
+            assert_eq!(shown.state_hash(), hashes[frame as usize + 1], "after frame {frame}");
+        }
+    }
+    std::fs::remove_file(path).expect("the file is there");
+}
+
+#[test]
+fn what_cannot_be_recorded_is_an_error_and_the_frames_before_stay() {
+    let path = file("law");
+    let mut world = world("ball");
+    let mut tape = Tape::begin(&path, true, &header("ball"), &mut world).expect("a file");
+    tape.step(&mut world).expect("a frame");
+    world.add_force(0, std::sync::Arc::new(|_, _, _, _| [0.0, 1.0])).expect("a law");
+    let error = tape.step(&mut world).expect_err("only the program knows the law");
+    assert!(matches!(&error, TapeError::Write(e) if e.code == "recording.input"), "{error}");
+    drop(tape);
+    let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
+    assert_eq!(recording.frames(), 0..2);
+    std::fs::remove_file(path).expect("the file is there");
+}
+
+/// A state that differs in motion alone is put into the islands that are there; the bits are those of islands built anew.
+#[test]
+fn a_snapshot_goes_into_the_islands_that_are_there() {
+    for (name, frames) in [("pressures", 40), ("leaking-tyre", 30), ("two-chambers", 20), ("ball", 60)] {
+        let mut run = world(name);
+        let mut states = vec![run.snapshot()];
+        for _ in 0..frames {
+            run.frame().expect("a frame");
+            states.push(run.snapshot());
+        }
+        let mut reused = world(name);
+        let built = reused.islands_built();
+        for (number, state) in states.iter().enumerate().rev() {
+            reused.restore(state).expect("a state");
+            assert_eq!(&reused.snapshot(), state, "{name}, frame {number}");
+            let mut fresh = world(name);
+            fresh.restore(state).expect("a state");
+            assert_eq!((fresh.energy(), fresh.momentum()), (reused.energy(), reused.momentum()), "{name}, {number}");
+            if number + 1 < states.len() && number % 7 == 0 {
+                reused.frame().expect("a frame");
+                assert_eq!(reused.snapshot(), states[number + 1], "{name}, after frame {number}");
+            }
+        }
+        if name != "ball" {
+            assert_eq!(reused.islands_built(), built, "{name}: nothing was built anew");
+        }
+        // What does not fit changes nothing.
+        let before = reused.snapshot();
+        for bad in [&states[3][..states[3].len() - 1], &[&states[3][..], &[0; 8]].concat(), &before[8..]] {
+            assert!(reused.restore(bad).is_err());
+            assert_eq!(reused.snapshot(), before, "{name}");
+        }
+    }
+}
