@@ -6,6 +6,7 @@ mod bench;
 mod checkpoints;
 mod failure;
 mod interrupt;
+mod modes;
 mod outputs;
 mod plots;
 mod recorder;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Command::Check(check) => watch::check(check),
         Command::Sweep(call) => sweep::sweep(call),
         Command::Replay(replay) => replay::replay(replay),
+        Command::Modes(call) => modes::modes(call),
         Command::List { json } => reports::list(*json),
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),

@@ -1,6 +1,6 @@
 //! The whole state of a world in bytes, and back.
 
-use crate::build::BodyState;
+use crate::build::{BodyHistory, BodyState};
 use crate::changes::{Change, Source, Told};
 use crate::commands::Progress;
 use crate::error::WorldError;
@@ -9,7 +9,7 @@ use crate::rebuild::Touched;
 use crate::world::World;
 use opruga_core::spec::Value;
 use opruga_core::state::Columns;
-use opruga_core::system::System;
+use opruga_core::system::{SolverWork, System};
 use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -147,6 +147,17 @@ impl Reader<'_> {
             _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
         })
     }
+    fn history<const D: usize>(&mut self) -> Result<BodyHistory<D>, WorldError> {
+        let owner = self.text()?;
+        let columns = self.length()?;
+        let columns = (0..columns).map(|_| self.vectors::<D>()).collect::<Result<_, _>>()?;
+        let history = BodyHistory { owner, columns, numbers: self.numbers()? };
+        let numbers = history.columns.iter().flatten().flatten().chain(&history.numbers);
+        if let Some(odd) = numbers.copied().find(|x| !x.is_finite()) {
+            return Err(WorldError::Snapshot(format!("`{}` remembers {odd}", history.owner)));
+        }
+        Ok(history)
+    }
     fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
         let n = self.length()?;
         let mut out = Vec::with_capacity(n);
@@ -161,7 +172,7 @@ impl Reader<'_> {
     }
 }
 
-const VERSION: u64 = 3;
+const VERSION: u64 = 4;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -214,6 +225,10 @@ impl<const D: usize> World<D> {
                 out.count(memory.len() as u64);
                 memory.for_each(|m| out.number(*m));
             }
+            out.text(system.history.owner);
+            out.count(system.history.columns.len() as u64);
+            system.history.columns.iter().for_each(|columns| out.columns(columns, system, lane));
+            out.numbers(&system.history.numbers);
         }
         out.count(self.running.len() as u64);
         for running in &self.running {
@@ -238,6 +253,11 @@ impl<const D: usize> World<D> {
         for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
             out.count(n);
         }
+        let s = &f.solver;
+        for n in [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved] {
+            out.count(n);
+        }
+        out.number(s.residual);
     }
 
     /// Goes to the state of a snapshot of a world with the same blueprint.
@@ -263,7 +283,7 @@ impl<const D: usize> World<D> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         let mut reader = Reader(bytes);
         if reader.count()? != VERSION {
-            return refuse("its version is not 3");
+            return refuse("its version is not 4");
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
@@ -297,7 +317,11 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            states.insert(number, BodyState { x, v, memory });
+            let history = reader.history()?;
+            if history.columns.iter().any(|column| column.len() != x.len()) {
+                return refuse(&format!("body `{}` has another shape", body.name));
+            }
+            states.insert(number, BodyState { x, v, memory, history });
         }
         if reader.count()? != self.running.len() as u64 {
             return refuse("it has another number of commands");
@@ -326,6 +350,11 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
+        let mut solver = [0; 5];
+        for n in &mut solver {
+            *n = reader.count()?;
+        }
+        let residual = reader.number()?;
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
@@ -342,6 +371,7 @@ impl<const D: usize> World<D> {
         let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
         self.limited_pulls.store(limited_pulls, Ordering::Relaxed);
+        let [steps, iterations, linear_iterations, accepted, halved] = solver;
         self.flows = Flows {
             user,
             gas,
@@ -356,6 +386,7 @@ impl<const D: usize> World<D> {
             limited_pulls,
             lost_bodies,
             open_frames,
+            solver: SolverWork { steps, iterations, linear_iterations, accepted, halved, residual },
         };
         self.refresh_ledger();
         Ok(())
