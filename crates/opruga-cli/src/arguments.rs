@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Sweep(Sweep),
     /// Make the pictures of a recorded run again, export its frames, or compute it again and compare
     Replay(Replay),
+    /// Find the natural frequencies of a body, and draw the shapes in which it swings
+    Modes(Modes),
     /// List models, integrators, shapes, colliders and the scenes that come with the program
     List {
         /// Print JSON
@@ -294,6 +296,42 @@ pub(crate) struct Run {
 }
 
 #[derive(Args, Debug)]
+pub(crate) struct Modes {
+    /// A scene file, or the name of a scene that comes with the program
+    pub(crate) scene: String,
+    /// How many modes, the lowest ones, 1 to 500
+    #[arg(short = 'n', long = "count", default_value_t = 10)]
+    pub(crate) count: usize,
+    /// The body [default: the first one]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Option<String>,
+    /// About the equilibrium, which the integrator `equilibrium` looks for, instead of the state at the start
+    #[arg(long)]
+    pub(crate) equilibrium: bool,
+    /// About the state at this simulated time [s]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub(crate) after: f64,
+    /// Override a parameter, such as body.ball.mass=2; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// The folder for the output [default: out/SCENE-modes]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace the output that is there
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// No picture of the shapes
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+    /// Print the frequencies, or an error, as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+}
+
+#[derive(Args, Debug)]
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
@@ -389,6 +427,7 @@ impl Command {
             Command::Sweep(sweep) => sweep.json,
             Command::Replay(replay) => replay.json,
             Command::Mesh(mesh) => mesh.json,
+            Command::Modes(modes) => modes.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,

@@ -8,6 +8,7 @@ mod exports;
 mod failure;
 mod interrupt;
 mod mesh;
+mod modes;
 mod outputs;
 mod plots;
 mod recorder;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Check(check) => watch::check(check),
         Command::Sweep(call) => sweep::sweep(call),
         Command::Replay(replay) => replay::replay(replay),
+        Command::Modes(call) => modes::modes(call),
         Command::List { json } => reports::list(*json),
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),

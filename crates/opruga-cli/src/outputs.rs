@@ -7,7 +7,9 @@ use crate::source::Source;
 use opruga::World;
 use opruga::draw;
 use opruga::io::safe_write::OutputFolder;
-use opruga::io::tables::{EnergySummary, FinalBody, MomentumSummary, Summary, WarningSummary, write_final};
+use opruga::io::tables::{
+    EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
+};
 use opruga::pictures::{Moment, Scenery};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -88,7 +90,7 @@ impl Outputs<'_> {
             nanoseconds_per_node_step: self.nanoseconds(nodes),
             simd: world.simd().name().into(),
             threads: world.threads(),
-            reproducibility: "everywhere".into(),
+            reproducibility: if world.same_bits_everywhere() { "everywhere" } else { "this_cpu_class" }.into(),
             energy: EnergySummary {
                 kinetic: e.kinetic,
                 elastic: e.elastic,
@@ -108,6 +110,7 @@ impl Outputs<'_> {
                 angular: if D == 2 { vec![m.angular[2]] } else { m.angular.to_vec() },
             },
             state_hash: format!("{:016x}", world.state_hash()),
+            solver: solver_summary(world),
             warnings: self.all_warnings(world),
             files,
         }
@@ -236,6 +239,19 @@ impl Outputs<'_> {
     pub(crate) fn say_where(&self) {
         eprintln!("written to {}", self.folder.path("").display());
     }
+}
+
+/// What implicit integrators did, if there are any.
+fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
+    let work = world.solver_work();
+    (work.steps > 0).then_some(SolverSummary {
+        systems: work.steps,
+        newton_iterations: work.iterations,
+        linear_iterations: work.linear_iterations,
+        largest_residual: work.residual,
+        accepted: work.accepted,
+        halved: work.halved,
+    })
 }
 
 /// `1 node`, `2 nodes`.

@@ -140,6 +140,7 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         ("shapes", kinds(&opruga::shapes::all())),
         ("colliders", kinds(&catalogue.colliders)),
     ];
+    let pairs = opruga::Registry::<2>::default().pairs();
     let scenes: Vec<(&str, &str)> =
         opruga::scenes::names().map(|n| (n, opruga::scenes::title(opruga::scenes::find(n).unwrap_or("")))).collect();
     if as_json {
@@ -150,6 +151,8 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         }
         let scenes: Vec<_> = scenes.iter().map(|(n, t)| json!({"name": n, "title": t})).collect();
         object.insert("scenes".into(), scenes.into());
+        let pair = |(model, integrator, fits): &(&str, &str, bool)| json!({"model": model, "integrator": integrator, "fits": fits});
+        object.insert("pairs".into(), pairs.iter().map(pair).collect::<Vec<_>>().into());
         print_data(&format!("{}\n", serde_json::Value::Object(object)))?;
         return Ok(0);
     }
@@ -160,6 +163,17 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
             let dimensions: Vec<String> = kind.dimensions.iter().map(|d| format!("{d}D")).collect();
             let _ = writeln!(text, "  {:<18} {:<6} {}", kind.kind, dimensions.join(" "), kind.summary);
         }
+    }
+    let mut refused: Vec<(&str, Vec<&str>)> = Vec::new();
+    for (model, integrator, _) in pairs.iter().filter(|pair| !pair.2) {
+        match refused.iter_mut().find(|row| row.0 == *model) {
+            Some(row) => row.1.push(integrator),
+            None => refused.push((model, vec![integrator])),
+        }
+    }
+    let _ = writeln!(text, "every model goes with every integrator, but");
+    for (model, integrators) in refused {
+        let _ = writeln!(text, "  {model:<18} not with {}", integrators.join(", "));
     }
     let _ = writeln!(text, "scenes (opruga run NAME)");
     for (name, title) in scenes {

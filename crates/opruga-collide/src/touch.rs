@@ -2,7 +2,7 @@
 
 use crate::collider::{Collider, Law, Part};
 use crate::contacts::Placed;
-use crate::motion::{Carry, Frame, Pose};
+use crate::motion::{Carry, Frame};
 use crate::response::{Surface, rounding};
 use crate::shape::{Shape, entry};
 use crate::vector::{dot, subtract};
@@ -24,7 +24,6 @@ struct Seen<'a, const D: usize> {
     to: &'a [f64; D],
     /// Where the node began, carried along with the collider.
     carried: [f64; D],
-    pose: &'a Pose<D>,
     law: &'a Law,
     reach: f64,
 }
@@ -41,7 +40,7 @@ impl<const D: usize> Way<'_, D> {
             }
         };
         let carry: &Carry<D> = carry;
-        let seen = Seen { to: self.to, carried: carry.along(self.from), pose, law: &collider.law, reach: self.reach };
+        let seen = Seen { to: self.to, carried: carry.along(self.from), law: &collider.law, reach: self.reach };
         for (part, number) in collider.parts.iter().zip(numbers) {
             let found = match part {
                 Part::HalfSpace(shape) => seen.solid(&shape.posed(pose)),

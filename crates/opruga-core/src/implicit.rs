@@ -5,8 +5,9 @@
 use crate::error::StepError;
 use crate::potential::{Account, Definiteness, Sink};
 use crate::state::Columns;
-use crate::system::{Stage, System};
-use opruga_math::sum_in_fixed_order;
+use crate::system::{Member, Stage, System, view};
+use crate::tile::{Tile, Weight};
+use opruga_math::{WIDTH, sum_in_fixed_order};
 
 impl<const D: usize> System<D> {
     /// The force of all models and the weight on every node in a state, at a time after the start of the step [N].
@@ -37,25 +38,73 @@ impl<const D: usize> System<D> {
     /// The potential energy of all models and of the weight in a state [J], after [`System::evaluate`] of the same state;
     /// none where a model that pushes has no energy.
     pub fn potential_energy(&self, stage: Stage, time: f64) -> Option<f64> {
+        let silent = |member: &Member<D>| {
+            let views = member.potential.views();
+            !views.energy && (member.potential.account() == Account::User || !views.damping)
+        };
+        (!self.members.iter().any(silent)).then(|| self.stored_energy(stage, time))
+    }
+
+    /// The energy of all models that have one, and of the weight, in a state [J], after [`System::evaluate`] of the same state.
+    pub fn stored_energy(&self, stage: Stage, time: f64) -> f64 {
         let view = self.view(stage, self.time + time);
         let mut sum = 0.0;
-        for member in &self.members {
-            let views = member.potential.views();
-            if views.energy {
-                sum += sum_in_fixed_order(&member.potential.energy(self.simd, &view, &member.scratch));
-            } else if member.potential.account() == Account::User || !views.damping {
-                return None;
-            }
+        for member in self.members.iter().filter(|member| member.potential.views().energy) {
+            sum += sum_in_fixed_order(&member.potential.energy(self.simd, &view, &member.scratch));
         }
-        let mut parts = [0.0; opruga_math::WIDTH];
+        let mut parts = [0.0; WIDTH];
         for place in 0..self.nodes {
             let mut height = 0.0;
             for d in 0..D {
                 height += self.gravity[d] * view.x[d][place];
             }
-            parts[place % opruga_math::WIDTH] -= self.mass.at(place) * height;
+            parts[place % WIDTH] -= self.mass.at(place) * height;
         }
-        Some(sum + sum_in_fixed_order(&parts))
+        sum + sum_in_fixed_order(&parts)
+    }
+
+    /// The kinetic energy [J].
+    pub fn kinetic_energy(&self) -> f64 {
+        let mut parts = [0.0; WIDTH];
+        for place in 0..self.nodes {
+            for d in 0..D {
+                let v = self.state.v.0[d][place];
+                parts[place % WIDTH] += 0.5 * self.mass.at(place) * v * v;
+            }
+        }
+        sum_in_fixed_order(&parts)
+    }
+
+    /// The part of the forces that comes from outside, weight and loads, after [`System::evaluate`] of the same state [N].
+    pub fn outer_forces(&mut self, stage: Stage, time: f64, out: &mut Columns<D>) {
+        let now = self.time + time;
+        let view = view(&self.state, self.nodes, self.layout, stage, now);
+        for tile in 0..self.plan.len() {
+            let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
+            let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
+            let weight = Some(Weight { mass: &self.mass, gravity: self.gravity });
+            let mut power = [0.0; WIDTH];
+            let force_of_tile = force.each_mut().map(|f| &mut **f);
+            let slots = &mut self.slots;
+            let mut all = Tile { range: range.clone(), force: force_of_tile, power: &mut power, weight, slots };
+            all.settle(self.simd);
+            for member in self.members.iter().filter(|member| member.potential.account() == Account::User) {
+                member.potential.add_force(self.simd, &view, &member.scratch, &mut all);
+            }
+            for d in 0..D {
+                out.0[d][range.clone()].copy_from_slice(&force[d][..range.len()]);
+            }
+        }
+    }
+
+    /// Delivers the second derivatives of what acts from outside, after [`System::evaluate`] of the same state.
+    pub fn outer_hessian(&self, stage: Stage, time: f64, sink: &mut dyn Sink<D>) {
+        let view = self.view(stage, self.time + time);
+        for member in self.members.iter().filter(|member| member.potential.account() == Account::User) {
+            if member.potential.views().hessian {
+                member.potential.hessian(&view, &member.scratch, Definiteness::Exact, sink);
+            }
+        }
     }
 
     /// Delivers ∂²U/∂x∂x of all models in a state, after [`System::evaluate`] of the same state.

@@ -28,12 +28,17 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     ///
     /// Its spectral radius is at most 1 where the step h is stable. The state is scaled as (x, v), not (ωx, v).
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
-    /// Refuses a system that it cannot step, such as a free body where an equilibrium is asked for.
+    /// Refuses a system that it cannot step, such as a free body where an equilibrium is asked for; `obstacles` says whether
+    /// there are any that may hold it.
     ///
     /// # Errors
     /// [`BuildError`] with the reason.
-    fn check(&self, _system: &System<D>) -> Result<(), BuildError> {
+    fn check(&self, _system: &System<D>, _obstacles: bool) -> Result<(), BuildError> {
         Ok(())
+    }
+    /// Names and values of what a reader may want to see, such as the part of the load that is on.
+    fn readings(&self, _system: &System<D>) -> Vec<(&'static str, f64)> {
+        Vec::new()
     }
     /// Whether the same bits come out on every processor, and not only on those of one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {

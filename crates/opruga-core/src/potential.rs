@@ -233,6 +233,10 @@ impl<const D: usize> Ingredients<'_, D> {
 pub trait Model<const D: usize>: Send + Sync {
     /// Its parameters and documentation.
     fn spec(&self) -> &'static Spec;
+    /// Whether its potentials have an energy and second derivatives, whatever the parameters.
+    fn views(&self) -> Views {
+        Views { energy: true, hessian: true, damping: false }
+    }
     /// Builds it for one body, or for eight alike ones.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ const SAFETY: f64 = 0.98;
 const DISPLACEMENT: f64 = 1e-7;
 
 /// A rule that is stable up to this angle ωh of a step has no limit: the implicit ones.
-const LARGEST_PHASE: f64 = 1e9;
+const LARGEST_PHASE: f64 = 1e6;
 
 /// Where the frequencies and the damping of all modes of a system lie.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -110,6 +110,8 @@ impl SolverWork {
 /// What an integrator remembers from step to step; part of the state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History<const D: usize> {
+    /// The name of the integrator whose it is.
+    pub owner: &'static str,
     /// Columns of one vector per node.
     pub columns: Vec<Columns<D>>,
     /// Plain numbers, zero at the start.
@@ -225,7 +227,7 @@ pub struct System<const D: usize> {
     stages: usize,
     pub(crate) forces: [Column; D],
     before: [Column; D],
-    slots: Column,
+    pub(crate) slots: Column,
 }
 
 impl<const D: usize> System<D> {
@@ -303,6 +305,9 @@ impl<const D: usize> System<D> {
         self.plan(integrator.work_columns());
         let size = integrator.history();
         let places = self.places();
+        if self.history.owner != integrator.name() {
+            self.history = History { owner: integrator.name(), ..History::default() };
+        }
         self.history.columns.resize_with(size.columns, || Columns::zeros(places));
         self.history.numbers.resize(size.numbers, 0.0);
     }
@@ -581,7 +586,7 @@ impl<const D: usize> System<D> {
     }
 }
 
-fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: Stage, time: f64) -> View<'_, D> {
+pub(crate) fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: Stage, time: f64) -> View<'_, D> {
     let (x, v) = match stage {
         Stage::Current => (&state.x, &state.v),
         Stage::Work(k) => (&state.work[k][0], &state.work[k][1]),

@@ -30,7 +30,7 @@ pub use image::Image;
 pub use layout::Style;
 pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture};
 pub use plot::{Axis, Chart, HeatMap, HeatPanel, Level, Line, Marker, Panel};
-pub use strip::{StripStyle, best_count, spread, strip};
+pub use strip::{StripStyle, best_count, captioned_strip, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};
 pub use video::Mp4Writer;
 pub use view::View;

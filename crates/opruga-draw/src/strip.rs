@@ -112,8 +112,19 @@ pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     (9..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
 }
 
-/// Draws pictures side by side in rows, with one view, one length scale and one legend for all.
+/// Draws pictures side by side in rows, with one view, one length scale and one legend for all; below each its time.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
+    let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
+    captioned_strip(pictures, &time_texts(&times), view, style)
+}
+
+/// The same with a text of its own below each picture.
+pub fn captioned_strip(
+    pictures: &[&Picture],
+    captions: &[String],
+    view: &View,
+    style: &StripStyle,
+) -> Result<Image, DrawError> {
     let first = pictures.first().ok_or(DrawError::Empty("a film strip needs a picture"))?;
     let unit = (style.width as f32 / 1400.0).clamp(0.6, 6.0);
     let margin = (16.0 * unit).round();
@@ -143,12 +154,11 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
         scale = found;
     }
     let mut canvas = Canvas::new(&mut image);
-    let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
-    for (index, time) in time_texts(&times).iter().enumerate() {
+    for (index, caption) in captions.iter().enumerate().take(pictures.len()) {
         let [left, top] = grid.place(index, [margin, head]);
         canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
         let point = [left + 0.5 * panel, top + tall + 19.0 * unit];
-        canvas.text(time, point, 15.0 * unit, Anchor::Middle, INK);
+        canvas.text(caption, point, 15.0 * unit, Anchor::Middle, INK);
     }
     let fits = (whole - 2.0 * margin) / text_width(&first.title, title).max(1.0);
     canvas.text(&first.title, [margin, head - 16.0 * unit], title * fits.min(1.0), Anchor::Start, INK);

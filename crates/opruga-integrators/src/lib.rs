@@ -2,6 +2,7 @@
 
 pub mod backward_euler;
 pub mod bdf2;
+pub mod equilibrium;
 pub mod explicit_euler;
 mod first_stage;
 pub mod heun;
@@ -47,5 +48,6 @@ fn list<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
         Box::new(bdf2::Bdf2Kind),
         Box::new(implicit_midpoint::ImplicitMidpointKind),
         Box::new(newmark::NewmarkKind),
+        Box::new(equilibrium::EquilibriumKind),
     ]
 }

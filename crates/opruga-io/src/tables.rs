@@ -138,6 +138,9 @@ pub struct Summary {
     pub momentum: MomentumSummary,
     /// 16 hexadecimal digits over positions, then velocities.
     pub state_hash: String,
+    /// What implicit integrators did; left out where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver: Option<SolverSummary>,
     /// What was odd, counted.
     pub warnings: Vec<WarningSummary>,
     /// The files that were written.
@@ -160,6 +163,23 @@ pub struct EnergySummary {
     pub loss_contact: f64,
     pub loss_integrator: f64,
     pub closure: f64,
+}
+
+/// What implicit integrators did since the beginning.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SolverSummary {
+    /// Systems of equations, one a body and step.
+    pub systems: u64,
+    /// Iterations of Newton's method.
+    pub newton_iterations: u64,
+    /// Products with the matrix, or factorisations.
+    pub linear_iterations: u64,
+    /// The largest force out of balance on a node at the end of a step [N].
+    pub largest_residual: f64,
+    /// Steps that counted though they had not converged.
+    pub accepted: u64,
+    /// Steps that were made in two halves.
+    pub halved: u64,
 }
 
 /// Momentum at the end.

@@ -1,7 +1,7 @@
 //! A sparse symmetric matrix of blocks, one row and column of blocks for each node, and parts of rank one.
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
-use crate::dot;
+
 use opruga_core::potential::Sink;
 
 /// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
@@ -30,7 +30,7 @@ pub struct BlockMatrix<const D: usize> {
 }
 
 /// How many orders of calls are remembered.
-pub const SCRIPTS: usize = 2;
+const SCRIPTS: usize = 2;
 
 /// An order of calls, and where each lands.
 #[derive(Clone, Debug, Default)]

@@ -29,6 +29,47 @@ pub(crate) struct BodyState<const D: usize> {
     pub(crate) v: Vec<[f64; D]>,
     /// Memory of each model of the blueprint: every eighth number belongs to this body.
     pub(crate) memory: Vec<Vec<f64>>,
+    pub(crate) history: BodyHistory<D>,
+}
+
+/// What an integrator remembers of one body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct BodyHistory<const D: usize> {
+    /// The integrator.
+    pub(crate) owner: String,
+    pub(crate) columns: Vec<Vec<[f64; D]>>,
+    pub(crate) numbers: Vec<f64>,
+}
+
+impl<const D: usize> BodyHistory<D> {
+    /// That of a body in a lane.
+    pub(crate) fn of(system: &System<D>, lane: usize) -> BodyHistory<D> {
+        let place = |node| system.layout.place(node, lane);
+        let column = |c: &Columns<D>| (0..system.nodes).map(|n| c.at(place(n))).collect();
+        BodyHistory {
+            owner: system.history.owner.into(),
+            columns: system.history.columns.iter().map(column).collect(),
+            numbers: system.history.numbers.clone(),
+        }
+    }
+    /// Whether the integrator of a system remembers as much.
+    pub(crate) fn fits(&self, system: &System<D>) -> bool {
+        let own = &system.history;
+        self.owner == own.owner && self.columns.len() == own.columns.len() && self.numbers.len() == own.numbers.len()
+    }
+    /// Gives it back to the system of a body, if that has the same integrator.
+    pub(crate) fn restore(&self, system: &mut System<D>, lane: usize) {
+        if !self.fits(system) {
+            return;
+        }
+        let own = &mut system.history;
+        own.numbers.clone_from(&self.numbers);
+        for (column, kept) in own.columns.iter_mut().zip(&self.columns) {
+            for (node, value) in kept.iter().enumerate().take(system.nodes) {
+                column.set(system.layout.place(node, lane), *value);
+            }
+        }
+    }
 }
 
 /// The masses of the nodes of a body [kg].
@@ -88,7 +129,7 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
             v
         })
         .collect();
-    BodyState { x, v, memory: Vec::new() }
+    BodyState { x, v, memory: Vec::new(), history: BodyHistory::default() }
 }
 
 /// Which bodies may lie side by side: the same rest shape and integrator, and models that differ in numbers only.
@@ -113,7 +154,11 @@ fn alike_values(a: &Values, b: &Values) -> bool {
 /// Groups of bodies that are stepped together, in the order of their first body.
 ///
 /// A body keeps its seat among its kind when others are taken away: so only the group that loses or wins a body changes.
-pub(crate) fn group<const D: usize>(bodies: &[BodyBlueprint<D>], alive: &[bool], batches: bool) -> Vec<Vec<usize>> {
+pub(crate) fn group<const D: usize>(
+    bodies: &[BodyBlueprint<D>],
+    alive: &[bool],
+    batches: impl Fn(&BodyBlueprint<D>) -> bool,
+) -> Vec<Vec<usize>> {
     let mut kinds: Vec<Vec<usize>> = Vec::new();
     let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (number, body) in bodies.iter().enumerate() {
@@ -131,7 +176,7 @@ pub(crate) fn group<const D: usize>(bodies: &[BodyBlueprint<D>], alive: &[bool],
         let small = bodies[members[0]].mesh.positions.len() <= LARGEST_IN_BATCH;
         for seats in members.chunks(WIDTH) {
             let there: Vec<usize> = seats.iter().copied().filter(|b| alive[*b]).collect();
-            if batches && small && there.len() >= SMALLEST_BATCH {
+            if small && there.len() >= SMALLEST_BATCH && batches(&bodies[members[0]]) {
                 groups.push(there);
             } else {
                 groups.extend(there.into_iter().map(|b| vec![b]));
@@ -227,7 +272,18 @@ impl<const D: usize> Builder<'_, D> {
             }
             None => Arc::clone(self.integrator),
         };
-        system.plan(integrator.work_columns());
+        let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+        // Loads know their derivatives; a model may lack them.
+        for member in &system.members[..first.models.len()] {
+            if !member.potential.views().include(integrator.needs()) {
+                return Err(refuse(no_view(member.potential.name(), integrator.name())));
+            }
+        }
+        system.equip(&*integrator);
+        for (l, state) in states.iter().enumerate() {
+            state.history.restore(&mut system, l);
+        }
+        integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
         Ok(Island::new(system, integrator, bodies.to_vec()))
     }
 
@@ -325,6 +381,15 @@ impl<const D: usize> Builder<'_, D> {
         }
         Ok(())
     }
+}
+
+/// A model without what an integrator needs.
+fn no_view(model: &str, integrator: &str) -> BuildError {
+    let message = format!(
+        "the model has no second derivatives, which `{integrator}` needs; hint: an explicit integrator steps it, such as \
+         `symplectic_euler`"
+    );
+    BuildError::new(model, "integrator.needs", message)
 }
 
 fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {

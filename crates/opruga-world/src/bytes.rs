@@ -1,5 +1,6 @@
 //! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
 
+use crate::build::BodyHistory;
 use crate::changes::{Source, Told};
 use crate::error::WorldError;
 use opruga_core::spec::Value;
@@ -137,6 +138,17 @@ impl Reader<'_> {
             2 => Told::Added(Source::Program(self.count()? as usize)),
             _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
         })
+    }
+    pub(crate) fn history<const D: usize>(&mut self) -> Result<BodyHistory<D>, WorldError> {
+        let owner = self.text()?;
+        let columns = self.length()?;
+        let columns = (0..columns).map(|_| self.vectors::<D>()).collect::<Result<_, _>>()?;
+        let history = BodyHistory { owner, columns, numbers: self.numbers()? };
+        let numbers = history.columns.iter().flatten().flatten().chain(&history.numbers);
+        if let Some(odd) = numbers.copied().find(|x| !x.is_finite()) {
+            return Err(WorldError::Snapshot(format!("`{}` remembers {odd}", history.owner)));
+        }
+        Ok(history)
     }
     pub(crate) fn vectors<const D: usize>(&mut self) -> Result<Vec<[f64; D]>, WorldError> {
         let n = self.length()?;

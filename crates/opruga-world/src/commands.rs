@@ -226,7 +226,7 @@ impl<const D: usize> World<D> {
             }
         }
         let island = &mut self.islands[island];
-        island.system.plan(island.integrator.work_columns());
+        island.system.equip(&*island.integrator);
     }
 
     /// Pulls that act at present: held point, pointer, force [N].

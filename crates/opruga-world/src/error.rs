@@ -56,6 +56,17 @@ pub enum WorldError {
         /// What the model says.
         message: String,
     },
+    /// An implicit integrator has not found the end of a step.
+    #[error(
+        "body `{body}`: {message}; the world is at its last good frame; hint: more substeps, more `iterations`, or \
+         `when_not_converged = \"halve\"`"
+    )]
+    NotConverged {
+        /// The body.
+        body: String,
+        /// What the integrator says.
+        message: String,
+    },
     /// A name, path or value does not fit.
     #[error("`{path}`: {message}")]
     Path {
@@ -77,6 +88,7 @@ impl WorldError {
             WorldError::UnstableStep { .. } => "step.unstable",
             WorldError::Diverged { .. } => "run.diverged",
             WorldError::Step { .. } => "run.model",
+            WorldError::NotConverged { .. } => "run.not_converged",
             WorldError::Path { .. } => "path.unknown",
             WorldError::Snapshot(_) => "snapshot.damaged",
         }

@@ -6,7 +6,7 @@ use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::Stability;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{System, Work8, Workspace};
+use opruga_core::system::{History, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
@@ -35,6 +35,7 @@ struct Saved<const D: usize> {
     x: Columns<D>,
     v: Columns<D>,
     memory: Vec<Vec<f64>>,
+    history: History<D>,
     time: f64,
     /// What entered and left since the start of the frame.
     work: Work8,
@@ -46,6 +47,7 @@ impl<const D: usize> Saved<D> {
             x: system.state.x.clone(),
             v: system.state.v.clone(),
             memory: system.members.iter().map(|m| m.memory.clone()).collect(),
+            history: system.history.clone(),
             time,
             work: system.work,
         }
@@ -61,6 +63,7 @@ impl<const D: usize> Saved<D> {
         for (kept, member) in self.memory.iter_mut().zip(&system.members) {
             kept.clone_from(&member.memory);
         }
+        copy_history(&system.history, &mut self.history);
         (self.time, self.work) = (time, system.work);
     }
 
@@ -71,6 +74,7 @@ impl<const D: usize> Saved<D> {
         for (kept, member) in self.memory.iter_mut().zip(&mut system.members) {
             std::mem::swap(kept, &mut member.memory);
         }
+        std::mem::swap(&mut self.history, &mut system.history);
         std::mem::swap(&mut self.time, &mut system.time);
     }
 }
@@ -126,6 +130,7 @@ impl<const D: usize> Island<D> {
                 out.extend(member.potential.readings(&view, &member.scratch, &member.memory, lane));
             }
         }
+        out.extend(self.integrator.readings(&self.system));
         out
     }
 
@@ -254,6 +259,7 @@ impl<const D: usize> Island<D> {
             for (member, kept) in self.system.members.iter_mut().zip(&saved.memory) {
                 member.memory.clone_from(kept);
             }
+            copy_history(&saved.history, &mut self.system.history);
             self.system.time = saved.time;
         }
     }
@@ -283,6 +289,19 @@ impl<const D: usize> Island<D> {
     pub(crate) fn heap_bytes(&self) -> usize {
         let kept: usize = self.last.iter().chain(&self.looks).map(|s| 2 * D * s.x.0[0].heap_bytes()).sum();
         self.system.heap_bytes() + kept
+    }
+}
+
+/// Copies what an integrator remembers into memory that is there already.
+fn copy_history<const D: usize>(from: &History<D>, to: &mut History<D>) {
+    to.owner = from.owner;
+    to.numbers.clone_from(&from.numbers);
+    to.columns.resize_with(from.columns.len(), || Columns::zeros(0));
+    for (to, from) in to.columns.iter_mut().zip(&from.columns) {
+        for d in 0..D {
+            to.0[d].grow(from.0[d].len());
+            to.0[d].copy_from_slice(&from.0[d]);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
-use opruga_core::system::{System, Work8};
+use opruga_core::system::{SolverWork, System, Work8};
 use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes, sum_in_fixed_order};
 
 /// Energy of the world and what entered and left it since the start [J]; every channel is measured by itself.
@@ -246,6 +246,8 @@ pub(crate) struct Flows {
     pub(crate) limited_pulls: u64,
     /// Bodies that went too far and were taken away.
     pub(crate) lost_bodies: u64,
+    /// What implicit integrators did.
+    pub(crate) solver: SolverWork,
     /// Frames that ended with a larger part of the energy unexplained than [`LARGEST_CLOSURE`].
     pub(crate) open_frames: u64,
 }
@@ -260,6 +262,7 @@ impl Flows {
         self.correction += total_of(system, &work.correction);
         self.limited_forces += work.limited_forces;
         self.limited_velocities += work.limited_velocities;
+        self.solver.add(&work.solver);
     }
     /// The ledger for the present stock.
     pub(crate) fn ledger<'a, const D: usize>(

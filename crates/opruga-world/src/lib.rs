@@ -11,6 +11,7 @@ mod island;
 pub mod ledger;
 mod loads;
 mod looks;
+pub mod modes;
 mod plausible;
 mod population;
 mod problems;

@@ -7,7 +7,7 @@ use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
 use opruga_core::potential::{Account, CellState, Count};
 use opruga_core::stability::Stability;
-use opruga_core::system::Stage;
+use opruga_core::system::{SolverWork, Stage};
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -27,6 +27,14 @@ impl<const D: usize> World<D> {
             }
         }
         out
+    }
+    /// What implicit integrators did since the start: iterations, products, the largest residual.
+    pub fn solver_work(&self) -> SolverWork {
+        self.flows.solver
+    }
+    /// Whether the same bits come out on every processor, and not only on those of one class.
+    pub fn same_bits_everywhere(&self) -> bool {
+        self.islands.iter().all(|island| island.integrator.same_bits_everywhere(&island.system))
     }
     /// How many islands there are: bodies that are stepped together.
     pub fn islands(&self) -> usize {
@@ -197,6 +205,17 @@ impl<const D: usize> World<D> {
             "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
              integrator (more substeps make it smaller, `verlet` and `runge_kutta` make less of it)",
             self.flows.open_frames,
+        );
+        let solver = &self.flows.solver;
+        count(
+            "step.not_converged",
+            "a step counted though Newton's method had not converged (`when_not_converged = \"accept\"`)",
+            solver.accepted,
+        );
+        count(
+            "step.halved",
+            "a step was made in two halves since Newton's method had not converged (`when_not_converged = \"halve\"`)",
+            solver.halved,
         );
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {

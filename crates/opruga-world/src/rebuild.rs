@@ -1,7 +1,7 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
 use crate::blueprint::BodyBlueprint;
-use crate::build::{BodyState, Builder, build_integrator, group};
+use crate::build::{BodyHistory, BodyState, Builder, build_integrator, group};
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::world::World;
@@ -41,7 +41,14 @@ impl<const D: usize> World<D> {
                 .iter()
                 .map(|m| m.memory.iter().skip(lane).step_by(WIDTH).copied().collect())
                 .collect(),
+            history: BodyHistory::of(system, lane),
         }
+    }
+
+    /// Whether bodies like one may be stepped side by side.
+    fn batches(&self, body: &BodyBlueprint<D>) -> bool {
+        let kind = body.integrator.as_ref().unwrap_or(&self.blueprint.integrator).kind();
+        self.options.batches && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
     }
 
     /// Builds the islands of some bodies anew after commands on them began or ended; who lies beside whom stays.
@@ -78,7 +85,7 @@ impl<const D: usize> World<D> {
         let before = self.stock_energy();
         let integrator: Arc<_> =
             build_integrator(&self.registry, &self.blueprint.integrator, || "integrator".into())?.into();
-        let groups = group(&self.blueprint.bodies, &self.alive, self.options.batches);
+        let groups = group(&self.blueprint.bodies, &self.alive, |body| self.batches(body));
         // For every group its old island, or one that is new.
         let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());
         for members in &groups {
@@ -108,7 +115,7 @@ impl<const D: usize> World<D> {
     }
 
     /// Builds the island of some bodies in the states they have, or that `fresh` gives them.
-    fn island_of(
+    pub(crate) fn island_of(
         &self,
         members: &[usize],
         fresh: &BTreeMap<usize, BodyState<D>>,

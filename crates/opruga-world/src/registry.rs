@@ -2,7 +2,7 @@
 
 use opruga_core::integrator::IntegratorKind;
 use opruga_core::potential::Model;
-use opruga_core::spec::Spec;
+use opruga_core::spec::{Spec, Values};
 
 /// Models and integrators by name. A user's crate adds its own.
 pub struct Registry<const D: usize> {
@@ -42,6 +42,18 @@ impl<const D: usize> Registry<D> {
     /// The integrator of a name.
     pub fn integrator(&self, kind: &str) -> Option<&dyn IntegratorKind<D>> {
         self.integrators.iter().find(|m| m.spec().kind == kind).map(|m| &**m)
+    }
+    /// Every model with every integrator, and whether the one can be stepped by the other: what it needs the model has.
+    pub fn pairs(&self) -> Vec<(&'static str, &'static str, bool)> {
+        let mut out = Vec::new();
+        for model in &self.models {
+            for kind in &self.integrators {
+                let needs = kind.build(&Values::defaults(kind.spec(), D)).map(|integrator| integrator.needs());
+                let fits = needs.is_ok_and(|needs| model.views().include(needs));
+                out.push((model.spec().kind, kind.spec().kind, fits));
+            }
+        }
+        out
     }
     /// The specifications of all models.
     pub fn models(&self) -> Vec<&'static Spec> {

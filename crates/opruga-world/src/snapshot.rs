@@ -9,6 +9,7 @@ use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::rebuild::Touched;
 use crate::world::World;
+use opruga_core::system::SolverWork;
 use opruga_math::WIDTH;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -67,6 +68,10 @@ impl<const D: usize> World<D> {
                 out.count(memory.len() as u64);
                 memory.for_each(|m| out.number(*m));
             }
+            out.text(system.history.owner);
+            out.count(system.history.columns.len() as u64);
+            system.history.columns.iter().for_each(|columns| out.columns(columns, system, lane));
+            out.numbers(&system.history.numbers);
         }
         out.count(self.running.len() as u64);
         for running in &self.running {
@@ -91,6 +96,11 @@ impl<const D: usize> World<D> {
         for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
             out.count(n);
         }
+        let s = &f.solver;
+        for n in [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved] {
+            out.count(n);
+        }
+        out.number(s.residual);
     }
 
     /// Goes to the state of a snapshot of a world with the same blueprint. Commands that a program has given since then are
@@ -131,7 +141,7 @@ impl<const D: usize> World<D> {
     fn read_head(reader: &mut Reader<'_>) -> Result<(u64, Vec<Told>), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != VERSION {
-            return refuse("its version is not 3");
+            return refuse("its version is not 4");
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
@@ -167,7 +177,11 @@ impl<const D: usize> World<D> {
             if x.iter().chain(&v).flatten().any(|c| !c.is_finite()) {
                 return refuse(&format!("body `{}` has a number that is not finite", body.name));
             }
-            rest.states.insert(number, BodyState { x, v, memory });
+            let history = reader.history()?;
+            if history.columns.iter().any(|column| column.len() != x.len()) {
+                return refuse(&format!("body `{}` has another shape", body.name));
+            }
+            rest.states.insert(number, BodyState { x, v, memory, history });
         }
         let count = reader.length()?;
         if !(commands[0]..=commands[1]).contains(&count) {
@@ -196,11 +210,17 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
+        let mut solver = [0; 5];
+        for n in &mut solver {
+            *n = reader.count()?;
+        }
+        let residual = reader.number()?;
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
         let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
+        let [steps, iterations, linear_iterations, accepted, halved] = solver;
         rest.flows = Flows {
             user,
             gas,
@@ -215,6 +235,7 @@ impl<const D: usize> World<D> {
             limited_pulls,
             lost_bodies,
             open_frames,
+            solver: SolverWork { steps, iterations, linear_iterations, accepted, halved, residual },
         };
         Ok(rest)
     }
@@ -236,12 +257,10 @@ impl<const D: usize> World<D> {
         let rest = self.read_rest(&mut reader, [of_scene, of_scene + given.len()])?;
         let fits = |number: &usize| {
             let (island, lane) = self.place[*number];
-            let members = &self.islands[island].system.members;
-            rest.states[number]
-                .memory
-                .iter()
-                .zip(members)
-                .all(|(kept, member)| kept.len() == member.memory.iter().skip(lane).step_by(WIDTH).len())
+            let (state, system) = (&rest.states[number], &self.islands[island].system);
+            let mut models = state.memory.iter().zip(&system.members);
+            let alike = models.all(|(kept, member)| kept.len() == member.memory.iter().skip(lane).step_by(WIDTH).len());
+            alike && state.history.fits(system)
         };
         if rest.alive != self.alive || self.islands.is_empty() || !rest.states.keys().all(fits) {
             return Ok(false);
@@ -265,6 +284,7 @@ impl<const D: usize> World<D> {
                     island.system.state.x.set(place, state.x[node]);
                     island.system.state.v.set(place, state.v[node]);
                 }
+                state.history.restore(&mut island.system, l);
                 for (member, kept) in island.system.members.iter_mut().zip(&state.memory) {
                     member.memory.iter_mut().skip(l).step_by(WIDTH).zip(kept).for_each(|(to, from)| *to = *from);
                 }

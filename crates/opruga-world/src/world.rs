@@ -237,6 +237,9 @@ impl<const D: usize> World<D> {
                 Err(StepError::Model { model, message }) => {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }
                 }
+                Err(error @ StepError::NotConverged { .. }) => {
+                    WorldError::NotConverged { body: body(0), message: error.to_string() }
+                }
                 Ok(()) => WorldError::Step { body: body(0), message: String::new() },
             });
         }
@@ -303,6 +306,8 @@ impl<const D: usize> World<D> {
         let place = island.system.layout.place(node as usize, lane);
         island.system.state.x.set(place, position);
         island.system.state.v.set(place, velocity);
+        // What an integrator remembers does not lead to here.
+        island.system.history.numbers.fill(0.0);
         island.refresh();
         // Nobody's work or loss.
         let before = self.energy.total();

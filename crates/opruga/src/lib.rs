@@ -34,6 +34,7 @@ pub use opruga_io as io;
 pub use opruga_math as math;
 pub use opruga_math::Simd;
 pub use opruga_mesh as mesh;
+pub use opruga_world as world;
 pub use opruga_world::shapes;
 pub use opruga_world::{BodyHandle, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint};
 

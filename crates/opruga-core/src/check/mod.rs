@@ -12,6 +12,7 @@
 //! | hessian | second derivatives with central differences of the force; symmetric |
 //! | product | `add_hessian_product` with the assembled matrix; eight bodies with one |
 //! | clamped | the clamped Hessian has no negative eigenvalue |
+//! | views | energy and second derivatives are there if the model says so of all its potentials |
 //! | tiles | forces in tiles of any size with forces in one tile, to the bit; also begun with the weight |
 //! | lanes | all sets of vector instructions of this processor, to the bit |
 //! | batch | eight bodies side by side with each alone, to the bit, forces and energy |
@@ -32,7 +33,7 @@ mod dissipation;
 mod invariance;
 mod random;
 
-use crate::potential::{Ingredients, Model, Potential};
+use crate::potential::{Ingredients, Model, Potential, Views};
 use crate::spec::Values;
 use crate::state::{Layout, Parameter};
 use case::{Answer, Body, Case};
@@ -213,6 +214,9 @@ impl<const D: usize> Suite<'_, D> {
         let mut add = |quantity, error, tolerance| rows.push(Row { quantity, state, error, tolerance });
         let potential = self.build(Some(0))?;
         let views = potential.views();
+        let claimed = self.model.views();
+        let kept = views.include(Views { damping: false, ..claimed });
+        add("views", if kept { 0.0 } else { 1.0 }, 0.0);
         self.same_bits(random, &*potential, &mut add)?;
         if views.energy && self.options.derivatives {
             self.gradient(&*potential, &mut add)?;

@@ -1,1 +1,52 @@
+//! Order 1, no limit, the amplitude of an oscillation, free fall.
 
+use super::{BackwardEuler, SPEC};
+use crate::implicit::settings::Settings;
+use crate::testing;
+use opruga_core::spec::Values;
+
+fn rule() -> BackwardEuler {
+    BackwardEuler { settings: Settings::new(&Values::defaults(&SPEC, 2)) }
+}
+
+#[test]
+fn amplification_is_one_step() {
+    testing::check_amplification(&rule(), &rule());
+}
+#[test]
+fn order_is_one() {
+    testing::check_order(&rule(), &rule(), 1.0);
+}
+#[test]
+fn there_is_no_limit() {
+    testing::check_no_limit(&rule());
+}
+#[test]
+fn free_fall_is_that_of_its_recurrence() {
+    testing::check_free_fall(&rule(), |n| 0.5 * n * (n + 1.0));
+}
+
+/// 1/√(1 + h²ω²): .995037, .707107, .099504 at hω = .1, 1, 10 (validation B4).
+#[test]
+fn the_amplitude_falls_as_its_closed_form_says() {
+    for (z, expected) in [(0.1, 0.995_037), (1.0, 0.707_107), (10.0, 0.099_504)] {
+        let (omega, steps) = (5.0, 20);
+        let mut system = testing::oscillator::<2>(2.0, 2.0 * omega * omega, 0.0, 1.0, 0.0);
+        testing::run(&mut system, &rule(), z / omega, steps);
+        let (x, v) = (system.state.x.at(0)[0], system.state.v.at(0)[0]);
+        let amplitude = (x * x + v * v / (omega * omega)).sqrt();
+        let factor = libm::pow(amplitude, 1.0 / steps as f64);
+        assert!((factor - 1.0 / (1.0 + z * z).sqrt()).abs() < 1e-13, "{z}: {factor}");
+        assert!((factor - expected).abs() < 1e-6, "{z}: {factor}");
+    }
+}
+
+/// Springs pull along their axis at the end of the step: linear momentum is kept, angular momentum falls as it does for the
+/// oscillation, by O(h).
+#[test]
+fn linear_momentum_is_kept() {
+    let [linear, coarse] = testing::drift_of_momentum(&rule(), 0.02, 200);
+    assert!(linear < 1e-13, "{linear}");
+    let [_, fine] = testing::drift_of_momentum(&rule(), 0.01, 400);
+    assert!(coarse > 1e-3 && fine < 0.7 * coarse, "{coarse} {fine}");
+}

@@ -143,6 +143,20 @@ impl<const D: usize> Linear<D> {
         });
     }
 
+    /// Raises the diagonal by a part of itself.
+    pub(crate) fn raise(&mut self, part: f64) {
+        for node in 0..self.whole.rows() {
+            let block = self.whole.diagonal_block(node);
+            let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
+            self.whole.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
+        }
+        for block in &mut self.diagonal {
+            for d in 0..D {
+                block[d][d] += part * block[d][d].abs();
+            }
+        }
+    }
+
     /// y = A x with nothing taken out.
     pub(crate) fn multiply(&self, mixture: &Mixture<D>, x: &[f64], y: &mut [f64]) {
         if !mixture.matrix_free {

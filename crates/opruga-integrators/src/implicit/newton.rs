@@ -22,6 +22,8 @@ pub(crate) struct Balance {
     pub(crate) time: f64,
     /// The length of the step [s].
     pub(crate) h: f64,
+    /// The part of the weight and of the loads that acts.
+    pub(crate) load: f64,
 }
 
 /// How the iteration ended.
@@ -32,6 +34,33 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
+}
+
+/// The longest correction of a node in statics, in extents of the body.
+const LONGEST: f64 = 0.5;
+
+/// Which derivatives a direction is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Keep {
+    /// The exact ones.
+    Exact,
+    /// Each element's without its negative eigenvalues.
+    Clamped,
+    /// The same with the diagonal raised by a part of itself: for directions without any stiffness.
+    Raised(f64),
+}
+
+impl Keep {
+    fn definiteness(self) -> Definiteness {
+        if self == Keep::Exact { Definiteness::Exact } else { Definiteness::Clamped }
+    }
+    fn next(self) -> Option<Keep> {
+        match self {
+            Keep::Exact => Some(Keep::Clamped),
+            Keep::Clamped => Some(Keep::Raised(1e-8)),
+            Keep::Raised(part) => (part < 1e-2).then_some(Keep::Raised(100.0 * part)),
+        }
+    }
 }
 
 /// The part of the slope that may be left after a step of the line search.
@@ -75,23 +104,22 @@ pub(crate) fn solve<const D: usize>(
         let moves = farthest > 0.0;
 
         // The direction; the exact derivatives as long as they are positive definite.
+        let mut keep = if clamped { Keep::Clamped } else { Keep::Exact };
         let direction = loop {
-            let keep = if clamped { Definiteness::Clamped } else { Definiteness::Exact };
             match find_direction(system, room, balance, settings, keep, moves, &mut first_norm) {
                 Ok((products, slope)) => {
                     solved.products += products;
-                    if slope <= 0.0 || moves || clamped {
+                    if slope <= 0.0 || moves || keep != Keep::Exact {
                         break Some(slope);
                     }
                 }
-                Err(products) => {
-                    solved.products += products;
-                    if clamped {
-                        break None;
-                    }
-                }
+                Err(products) => solved.products += products,
             }
             clamped = true;
+            match keep.next() {
+                Some(next) => keep = next,
+                None => break None,
+            }
         };
         let Some(slope) = direction else { break };
 
@@ -100,6 +128,12 @@ pub(crate) fn solve<const D: usize>(
             longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
         }
         solved.correction = longest.sqrt();
+        if balance.sigma == 0.0 && solved.correction > LONGEST * room.extent && !moves {
+            // Without inertia a soft direction leads far.
+            let part = LONGEST * room.extent / solved.correction;
+            room.step.iter_mut().for_each(|s| *s *= part);
+            solved.correction *= part;
+        }
         if moves || changed || settings.budget || solved.correction <= goal {
             full_step(system, room, balance)?;
         } else {
@@ -131,7 +165,7 @@ fn look<const D: usize>(system: &System<D>, room: &mut Room<D>, balance: &Balanc
     contacting.look(system, x0, u, balance.theta, balance.h, *extent)
 }
 
-fn mixture<'a, const D: usize>(
+pub(crate) fn mixture<'a, const D: usize>(
     system: &'a System<D>,
     mass: &'a [f64],
     balance: &Balance,
@@ -157,14 +191,16 @@ fn find_direction<const D: usize>(
     room: &mut Room<D>,
     balance: &Balance,
     settings: &Settings,
-    keep: Definiteness,
+    keep: Keep,
     moves: bool,
     first_norm: &mut f64,
 ) -> Result<(u32, f64), u32> {
-    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } =
-        room;
-    let mixture = mixture(system, mass, balance, keep, settings);
+    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } = room;
+    let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
+    if let Keep::Raised(part) = keep {
+        linear.raise(part);
+    }
     // b = −(r − friction) − A d in the free directions.
     trial.copy_from_slice(residual);
     contacting.subtract_friction(trial);
@@ -183,8 +219,7 @@ fn find_direction<const D: usize>(
     *first_norm = norm.larger(*first_norm);
     // Far from the solution a rough direction does (Eisenstat and Walker 1996).
     let share = if *first_norm > 0.0 && !settings.budget { (norm / *first_norm).larger(1e-9) } else { 1.0 };
-    let products =
-        linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
+    let products = linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
     let slope = -dot(right, step);
     if moves {
@@ -203,7 +238,7 @@ fn find_direction<const D: usize>(
 }
 
 /// The forces at x₀ + u (or at the trial), and what is out of balance.
-fn evaluate<const D: usize>(
+pub(crate) fn evaluate<const D: usize>(
     system: &mut System<D>,
     room: &mut Room<D>,
     balance: &Balance,
@@ -216,6 +251,14 @@ fn evaluate<const D: usize>(
         for d in 0..D {
             let k = node * D + d;
             room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
+        }
+    }
+    if balance.load != 1.0 {
+        system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+        for node in 0..system.nodes {
+            for d in 0..D {
+                room.residual[node * D + d] += (1.0 - balance.load) * room.outer.0[d][node];
+            }
         }
     }
     Ok(())
@@ -272,7 +315,12 @@ fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
 }
 
 /// The incremental potential and the size of its parts [J].
-fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balance, trial: bool) -> Option<(f64, f64)> {
+fn potential<const D: usize>(
+    system: &System<D>,
+    room: &Room<D>,
+    balance: &Balance,
+    trial: bool,
+) -> Option<(f64, f64)> {
     let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
     let u = if trial { &room.trial } else { &room.u };
     let mut inertia = 0.0;
@@ -283,7 +331,16 @@ fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balan
         }
     }
     inertia *= 0.5 * balance.sigma;
-    Some((energy + inertia, energy.abs() + inertia))
+    let mut lifted = 0.0;
+    if balance.load != 1.0 {
+        // What the missing part of the weight would have given.
+        for node in 0..system.nodes {
+            for d in 0..D {
+                lifted += (1.0 - balance.load) * room.outer.0[d][node] * u[node * D + d];
+            }
+        }
+    }
+    Some((energy + inertia + lifted, energy.abs() + inertia + lifted.abs()))
 }
 
 /// Whether what is out of balance is no more than the rounding of the forces.

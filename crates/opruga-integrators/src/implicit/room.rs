@@ -27,6 +27,8 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) v1: Vec<f64>,
     /// The force of the models, and what is out of balance.
     pub(crate) force: Columns<D>,
+    /// The part of it that comes from outside.
+    pub(crate) outer: Columns<D>,
     pub(crate) residual: Vec<f64>,
     pub(crate) trial: Vec<f64>,
     pub(crate) step: Vec<f64>,
@@ -43,6 +45,8 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) struck: Vec<usize>,
     pub(crate) linear: Linear<D>,
     pub(crate) contacting: Contacting<D>,
+    /// Work from outside before the step [J].
+    pub(crate) work_before: f64,
     /// The largest extent of the body [m].
     pub(crate) extent: f64,
 }
@@ -60,6 +64,7 @@ impl<const D: usize> Default for Room<D> {
             u1: Vec::new(),
             v1: Vec::new(),
             force: Columns::zeros(0),
+            outer: Columns::zeros(0),
             residual: Vec::new(),
             trial: Vec::new(),
             step: Vec::new(),
@@ -72,6 +77,7 @@ impl<const D: usize> Default for Room<D> {
             projectors: Vec::new(),
             linear: Linear::default(),
             contacting: Contacting::default(),
+            work_before: 0.0,
             extent: 1.0,
         }
     }
@@ -112,7 +118,7 @@ impl<const D: usize> Room<D> {
         self.mass.extend((0..system.nodes).map(|node| system.mass.at(node)));
         self.free.resize(system.nodes, true);
         self.projectors.resize(system.nodes, isotropic(1.0));
-        for column in &mut self.force.0 {
+        for column in self.force.0.iter_mut().chain(&mut self.outer.0) {
             column.grow(system.places() + opruga_math::WIDTH);
         }
         gather(&system.state.x, system.nodes, &mut self.x0);
@@ -159,6 +165,18 @@ impl<const D: usize> Room<D> {
                 velocities.0[d][place] = beta * (u[k] - z[k]);
             }
         }
+    }
+
+    /// The largest force out of balance on a node that nothing holds [N].
+    pub(crate) fn largest_residual(&self) -> f64 {
+        let mut largest: f64 = 0.0;
+        for (node, rest) in self.residual.as_chunks::<D>().0.iter().enumerate() {
+            if self.free[node] {
+                let square: f64 = rest.iter().map(|r| r * r).sum();
+                largest = if square > largest { square } else { largest };
+            }
+        }
+        largest.sqrt()
     }
 
     /// The stage as forces are evaluated in it.

@@ -113,19 +113,10 @@ fn attempt<R: Rule<D>, const D: usize>(
 fn report<R: Rule<D>, const D: usize>(
     settings: &Settings,
     system: &mut System<D>,
-    room: &mut Room<D>,
+    room: &Room<D>,
     solved: &Solved,
 ) -> Result<(), StepError> {
-    room.right.copy_from_slice(&room.residual);
-    room.contacting.subtract_friction(&mut room.right);
-    let mut residual: f64 = 0.0;
-    for node in 0..system.nodes {
-        if room.free[node] {
-            let square: f64 = room.right[node * D..(node + 1) * D].iter().map(|r| r * r).sum();
-            residual = if square > residual { square } else { residual };
-        }
-    }
-    let residual = residual.sqrt();
+    let residual = room.largest_residual();
     let work = &mut system.work.solver;
     work.steps += 1;
     work.iterations += u64::from(solved.iterations);
@@ -149,7 +140,7 @@ fn report<R: Rule<D>, const D: usize>(
 }
 
 /// Writes the end of the step into the state.
-fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
     let (places, nodes) = (system.places(), system.nodes);
     for d in 0..D {
         for place in 0..places {

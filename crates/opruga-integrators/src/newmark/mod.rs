@@ -8,7 +8,7 @@
 //! method, whose amplitude at hω → ∞ falls by the factor ρ in a step and whose damping of slow motion is the least that this
 //! allows: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
 //!
-//! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a command has changed the body.
+//! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a program has placed a node.
 //! Nodes that an obstacle holds forget theirs: it belongs to the time before the impact. Free fall is exact.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
@@ -113,7 +113,7 @@ impl<const D: usize> Rule<D> for Newmark {
                 room.z[k] = theta * way - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
             }
         }
-        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h }
+        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h, load: 1.0 }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
         for k in 0..room.u.len() {

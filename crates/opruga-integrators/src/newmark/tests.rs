@@ -1,1 +1,56 @@
+//! Order 2, no limit, damping at high frequencies as asked for, free fall is exact.
 
+use super::{Newmark, SPEC};
+use crate::testing;
+use opruga_core::integrator::Integrator;
+use opruga_core::spec::{Value, Values};
+
+fn rule(spectral_radius: Option<f64>) -> Newmark {
+    let mut values = Values::defaults(&SPEC, 2);
+    if let Some(rho) = spectral_radius {
+        values.set(&SPEC, "spectral_radius", Value::Number(rho), 2).unwrap();
+    }
+    Newmark::new(&values)
+}
+
+const ALL: [Option<f64>; 5] = [None, Some(0.0), Some(0.5), Some(0.8), Some(1.0)];
+
+#[test]
+fn amplification_is_one_step() {
+    for rho in ALL {
+        testing::check_amplification(&rule(rho), &rule(rho));
+    }
+}
+#[test]
+fn order_is_two() {
+    for rho in ALL {
+        testing::check_order(&rule(rho), &rule(rho), 2.0);
+    }
+}
+#[test]
+fn there_is_no_limit() {
+    for rho in [None, Some(0.3), Some(0.8)] {
+        testing::check_no_limit(&rule(rho));
+    }
+}
+#[test]
+fn free_fall_is_exact() {
+    for rho in ALL {
+        testing::check_free_fall(&rule(rho), |n| 0.5 * n * n);
+    }
+}
+
+/// The largest eigenvalue at hω → ∞ is the one that was asked for (Chung and Hulbert 1993), and average acceleration has 1
+/// everywhere.
+#[test]
+fn the_spectral_radius_is_the_one_that_was_asked_for() {
+    for rho in [0.0, 0.3, 0.8, 1.0] {
+        let radius = Integrator::<2>::amplification(&rule(Some(rho)), 1.0, 0.0, 1e7).spectral_radius();
+        // Three eigenvalues meet there: a perturbation ε moves them by its cube root.
+        assert!((radius - rho).abs() < 2e-4, "{rho}: {radius}");
+    }
+    for z in [0.1, 1.0, 10.0, 1e4] {
+        let radius = Integrator::<2>::amplification(&rule(None), 1.0, 0.0, z).spectral_radius();
+        assert!((radius - 1.0).abs() < 1e-12, "{z}: {radius}");
+    }
+}

@@ -1,7 +1,7 @@
 //! What the tests of all integrators share: small problems with closed forms, and measurements on them.
 
 mod contract;
-mod problems;
+pub(crate) mod problems;
 mod real_time;
 mod stability;
 
@@ -23,7 +23,7 @@ pub(crate) fn state<const D: usize>(system: &System<D>) -> Vec<f64> {
 
 /// Makes steps.
 pub(crate) fn run<const D: usize>(system: &mut System<D>, integrator: &dyn Integrator<D>, h: f64, steps: usize) {
-    system.plan(integrator.work_columns());
+    system.equip(integrator);
     for _ in 0..steps {
         integrator.step(system, h).unwrap();
     }
@@ -40,16 +40,26 @@ fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
     {
         let m = integrator.amplification(omega, c, h);
         let mass = 2.5;
-        for (column, (x, v)) in [(0, (1.0, 0.0)), (1, (0.0, 1.0))] {
-            let mut system = oscillator::<D>(mass, mass * omega * omega, mass * c, x, v);
+        for column in 0..m.size() {
+            let one = |row: usize| if row == column { 1.0 } else { 0.0 };
+            let mut system = oscillator::<D>(mass, mass * omega * omega, mass * c, one(0), one(1));
+            system.equip(integrator);
+            // Of rules with a history, a step in the middle of a run.
+            for (k, history) in system.history.columns.iter_mut().enumerate() {
+                history.set(0, core::array::from_fn(|d| one(2 + k) * (d + 1) as f64));
+            }
+            system.history.numbers.fill(h);
             run(&mut system, integrator, h, 1);
-            let (x, v) = (system.state.x.at(0), system.state.v.at(0));
-            for d in 0..D {
-                // Coordinate d starts with d + 1 times the amplitude.
-                let (x, v) = (x[d] / (d + 1) as f64, v[d] / (d + 1) as f64);
-                let scale = 1e-12 * (1.0 + m[0][column].abs() + m[1][column].abs());
-                assert!((x - m[0][column]).abs() <= scale, "{omega} {c} {h}: {x} {m:?}");
-                assert!((v - m[1][column]).abs() <= scale, "{omega} {c} {h}: {v} {m:?}");
+            let history: Vec<_> = system.history.columns.iter().map(|columns| columns.at(0)).collect();
+            let after = [vec![system.state.x.at(0), system.state.v.at(0)], history].concat();
+            assert_eq!(after.len(), m.size());
+            let scale = 1e-12 * (1.0 + (0..m.size()).map(|row| m[row][column].abs()).sum::<f64>());
+            for (row, vector) in after.iter().enumerate() {
+                for d in 0..D {
+                    // Coordinate d starts with d + 1 times the amplitude.
+                    let value = vector[d] / (d + 1) as f64;
+                    assert!((value - m[row][column]).abs() <= scale, "{omega} {c} {h}: {value} {row} {column} {m:?}");
+                }
             }
         }
     }
@@ -132,6 +142,39 @@ pub(crate) fn check_free_fall(integrator: &dyn Integrator<3>, factor: fn(f64) ->
     assert!((system.time - 10.0).abs() < 1e-9);
 }
 
+/// Stable for every step, however large, with and without damping.
+pub(crate) fn check_no_limit(integrator: &dyn Integrator<2>) {
+    for (omega, damping) in [(5.0, 0.0), (5.0, 3.0), (1e4, 1e2), (0.0, 4.0)] {
+        assert_eq!(Spectrum::uniform(omega, damping).largest_stable_step(integrator), Some(f64::INFINITY));
+    }
+    for z in [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6] {
+        let radius = integrator.amplification(5.0, 0.0, z / 5.0).spectral_radius();
+        assert!(radius <= 1.0 + 4e-15, "hω = {z}: {radius}");
+        let mut system = oscillator::<2>(1.0, 25.0, 0.0, 1.0, 0.0);
+        run(&mut system, integrator, z / 5.0, 500);
+        assert!(system.state.x.at(0)[0].abs() <= 1.0 + 1e-9, "hω = {z}: {:?}", system.state.x.at(0));
+    }
+}
+
+/// Linear and angular momentum of a damped, spinning, drifting pair after many steps, relative to the largest share.
+pub(crate) fn drift_of_momentum(integrator: &dyn Integrator<2>, h: f64, steps: usize) -> [f64; 2] {
+    let mut system = two_nodes::<2>(0.4);
+    let momenta = |system: &System<2>| {
+        let mut out = [0.0; 3];
+        for p in 0..2 {
+            let (m, x, v) = (system.mass.at(p), system.state.x.at(p), system.state.v.at(p));
+            out[0] += m * v[0];
+            out[1] += m * v[1];
+            out[2] += m * (x[0] * v[1] - x[1] * v[0]);
+        }
+        out
+    };
+    let before = momenta(&system);
+    run(&mut system, integrator, h, steps);
+    let after = momenta(&system);
+    [((after[0] - before[0]).abs() + (after[1] - before[1]).abs()) / 3.0, (after[2] - before[2]).abs() / 3.0]
+}
+
 /// The undamped stability limit hω: amplitudes stay bounded just below it and explode just above it.
 pub(crate) fn check_limit(integrator: &dyn Integrator<2>, limit: f64) {
     let omega = 5.0;
@@ -169,7 +212,7 @@ pub(crate) fn check_bounded_energy(integrator: &dyn Integrator<2>, order: f64) {
     let mut bounds = Vec::new();
     for steps_per_second in [100.0, 200.0] {
         let mut system = two_nodes::<2>(0.0);
-        system.plan(integrator.work_columns());
+        system.equip(integrator);
         let start = problems::energy_of_two_nodes(&system);
         let mut early = 0.0f64;
         let mut late = 0.0f64;

@@ -1,7 +1,7 @@
 //! Small models, written once more and plainly, since integrators cannot see the crate of models.
 
 use opruga_core::error::StepError;
-use opruga_core::potential::{Potential, Views};
+use opruga_core::potential::{Definiteness, Potential, Sink, Views};
 use opruga_core::state::{Columns, Layout, Parameter, View};
 use opruga_core::system::System;
 use opruga_core::tile::Tile;
@@ -19,7 +19,18 @@ impl<const D: usize> Potential<D> for Anchors {
         "anchors"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: false, damping: self.damping > 0.0 }
+        Views { energy: true, hessian: true, damping: self.damping > 0.0 }
+    }
+    fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
+        let places = 0..view.nodes * view.layout.stride();
+        let square: f64 = places.flat_map(|p| view.position(p)).map(|x| x * x).sum();
+        [0.5 * self.stiffness * square, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], _keep: Definiteness, sink: &mut dyn Sink<D>) {
+        (0..view.nodes).for_each(|p| sink.block(p, p, diagonal(self.stiffness)));
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        (0..view.nodes).for_each(|p| sink.block(p, p, diagonal(self.damping)));
     }
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
@@ -30,6 +41,10 @@ impl<const D: usize> Potential<D> for Anchors {
             }
         }
     }
+}
+
+fn diagonal<const D: usize>(value: f64) -> [[f64; D]; D] {
+    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
 }
 
 /// One node on a spring and damper to the origin; coordinate d starts with d + 1 times the amplitude.
@@ -60,12 +75,50 @@ impl Springs {
     }
 }
 
+impl Springs {
+    /// Delivers matrices of so much along each spring, and so much across.
+    fn deliver<const D: usize>(&self, view: &View<D>, sink: &mut dyn Sink<D>, strength: impl Fn(f64) -> [f64; 2]) {
+        for &[a, b] in &self.pairs {
+            let d: [f64; D] = core::array::from_fn(|i| view.x[i][a] - view.x[i][b]);
+            let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let [along, across] = strength(length);
+            let block: [[f64; D]; D] = core::array::from_fn(|i| {
+                core::array::from_fn(|j| {
+                    let n = d[i] * d[j] / (length * length);
+                    along * n + across * (if i == j { 1.0 } else { 0.0 } - n)
+                })
+            });
+            let minus = block.map(|row| row.map(|c| -c));
+            for (p, q, block) in [(a, a, block), (b, b, block), (a, b, minus), (b, a, minus)] {
+                sink.block(p, q, block);
+            }
+        }
+    }
+}
+
 impl<const D: usize> Potential<D> for Springs {
     fn name(&self) -> &'static str {
         "springs"
     }
     fn views(&self) -> Views {
-        Views { energy: true, hessian: false, damping: self.damping > 0.0 }
+        Views { energy: true, hessian: self.gas == 0.0, damping: self.damping > 0.0 }
+    }
+    fn energy(&self, _simd: Simd, view: &View<D>, _scratch: &[f64]) -> [f64; 8] {
+        let stretch = |&[a, b]: &[usize; 2]| {
+            let d: [f64; D] = core::array::from_fn(|i| view.x[i][a] - view.x[i][b]);
+            d.iter().map(|c| c * c).sum::<f64>().sqrt() - self.rest_length
+        };
+        let energy: f64 = self.pairs.iter().map(stretch).map(|s| 0.5 * self.stiffness * s * s).sum();
+        [energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    }
+    fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.deliver(view, sink, |length| {
+            let across = self.stiffness * (1.0 - self.rest_length / length);
+            [self.stiffness, if keep == Definiteness::Clamped && across < 0.0 { 0.0 } else { across }]
+        });
+    }
+    fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
+        self.deliver(view, sink, |_| [self.damping, 0.0]);
     }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
         self.pairs.iter().for_each(|&[a, b]| visit(a.min(b) as u32, a.max(b) as u32));

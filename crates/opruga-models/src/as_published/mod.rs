@@ -83,6 +83,9 @@ impl<const D: usize> Model<D> for AsPublishedModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn views(&self) -> Views {
+        Views { energy: false, hessian: false, damping: true }
+    }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let refuse = |code, message: &str| Err(BuildError::new(SPEC.kind, code, message));
         if D != 2 {

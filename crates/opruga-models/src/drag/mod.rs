@@ -35,6 +35,9 @@ impl<const D: usize> Model<D> for DragModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn views(&self) -> Views {
+        Views { energy: false, hessian: true, damping: true }
+    }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let rate = ingredients.by_body(|values| values.number("rate").unwrap_or(0.0));
         Ok(Box::new(Drag { rate: Parameter::by_body(rate), mass: ingredients.mass.clone() }))

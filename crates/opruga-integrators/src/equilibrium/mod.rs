@@ -1,0 +1,260 @@
+//! # Equilibrium
+//!
+//! Every step ends where all forces balance, F(x, 0, t) = 0, and nothing moves: statics. Over time it follows loads, pins
+//! and pointers that change (quasi-static motion); one step is enough where nothing does.
+//!
+//! Newton's method looks for the balance downhill: on the potential U, where there is one, every iteration lowers it. From
+//! far away it helps to put the weight and the loads on in parts (`load_steps`). What a body loses on its way to the
+//! equilibrium is entered as `loss_damping`.
+//!
+//! **Through a snap** (`arc_length`): where a shallow arch gives way, no equilibrium is near the old one. Then the load is an
+//! unknown as well: each step goes a given way along the curve of equilibria, through its limits where the load falls, until
+//! all of the load is on. The part that is on is the reading `load_factor`.
+//!
+//! ```text
+//!  load │   ╱╲          ╱        the curve of equilibria of a shallow arch: without `arc_length` the body jumps
+//!     1 ├──╱──╲────────╱──       at the first limit, or the iteration does not converge; with it every point of
+//!       │ ╱    ╲  ____╱          the curve is visited, also those that could not be held by a weight
+//!       └────────────────▶ way
+//! ```
+//!
+//! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free.
+//! Obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
+//! within the iteration only.
+//!
+//! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
+
+mod arc;
+pub mod rigid;
+#[cfg(test)]
+mod tests;
+
+use crate::implicit::newton::{Balance, Solved, solve};
+use crate::implicit::room::Room;
+use crate::implicit::settings::{STATIC_FIELDS, Settings, Solver};
+use crate::implicit::step::{commit, same_bits_everywhere};
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::potential::Views;
+use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
+use opruga_core::system::{Stage, System};
+
+/// The parameters.
+pub const SPEC: Spec = Spec {
+    kind: "equilibrium",
+    summary: "statics: every step ends in the balance of all forces, through a snap by arc length",
+    documentation: "F(x, 0, t) = 0 by Newton's method, downhill on the potential; velocities are zero. The state at the end \
+(`final.csv`) is the equilibrium under the loads at that time. A body that nothing holds is refused with the names of its \
+rigid modes. With `arc_length` every step goes so far along the curve of equilibria, through its limits, until the whole load \
+is on; `load_factor` in diagnostics.csv is the part that is on.",
+    dimensions: &[2, 3],
+    fields: &[
+        Field::new(
+            "load_steps",
+            Allowed::Integer { least: 1, greatest: 10_000 },
+            "",
+            Default::Integer(1),
+            "In how many parts the weight and the loads are put on in the first step.",
+        ),
+        Field::new(
+            "arc_length",
+            Allowed::POSITIVE,
+            "m",
+            Default::Absent,
+            "The way of a step along the curve of equilibria, as the root of the mean square of the displacements of all nodes. \
+Absent: the whole load at once.",
+        ),
+        STATIC_FIELDS[0],
+        STATIC_FIELDS[1],
+        STATIC_FIELDS[2],
+    ],
+};
+
+/// The kind `equilibrium`.
+#[derive(Debug)]
+pub struct EquilibriumKind;
+
+/// The balance of all forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Equilibrium {
+    load_steps: u32,
+    arc_length: Option<f64>,
+    settings: Settings,
+}
+
+/// The numbers of the history: the part of the load that is on, and whether it has reached the whole.
+const LOAD: usize = 0;
+const COMPLETE: usize = 1;
+
+impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+    fn batches(&self) -> bool {
+        false
+    }
+    fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
+        Ok(Box::new(Equilibrium::new(values)))
+    }
+}
+
+impl Equilibrium {
+    fn new(values: &Values) -> Equilibrium {
+        let mut settings = Settings::new(values);
+        settings.iterations = values.integer("iterations").map_or(200, |n| n as u32);
+        if settings.solver == Solver::MatrixFree {
+            settings.solver = Solver::ConjugateGradients;
+        }
+        Equilibrium {
+            load_steps: values.integer("load_steps").unwrap_or(1) as u32,
+            arc_length: values.number("arc_length"),
+            settings,
+        }
+    }
+
+    /// Looks for the displacement at which the forces balance under a part of the load, from that in `room.u` on.
+    fn balance<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        load: f64,
+        h: f64,
+    ) -> Result<(), StepError> {
+        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load };
+        let solved = solve(system, room, &balance, &self.settings)?;
+        self.report(system, room, &solved)
+    }
+
+    fn report<const D: usize>(&self, system: &mut System<D>, room: &Room<D>, solved: &Solved) -> Result<(), StepError> {
+        let residual = room.largest_residual();
+        let work = &mut system.work.solver;
+        work.steps += 1;
+        work.iterations += u64::from(solved.iterations);
+        work.linear_iterations += u64::from(solved.products);
+        work.residual = if residual > work.residual { residual } else { work.residual };
+        if solved.converged {
+            return Ok(());
+        }
+        Err(StepError::NotConverged {
+            integrator: SPEC.kind,
+            iterations: solved.iterations,
+            residual,
+            correction: solved.correction,
+            tolerance: self.settings.tolerance * room.extent,
+            time: system.time,
+        })
+    }
+
+    fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
+        system.begin_implicit();
+        let moving = system.kinetic_energy();
+        // Statics knows no velocities.
+        for column in &mut system.state.v.0 {
+            column.fill(0.0);
+        }
+        room.load(system);
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
+        let before = system.stored_energy(Stage::Current, 0.0) + moving;
+        let (mut load, complete) = (system.history.numbers[LOAD], system.history.numbers[COMPLETE] > 0.0);
+        room.contacting.clear();
+        room.y.fill(0.0);
+        room.z.fill(0.0);
+        room.hold(system, 1.0, h);
+        for k in 0..room.u.len() {
+            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+        }
+        match self.arc_length {
+            Some(length) if !complete => load = arc::follow(self, system, room, length, load, h)?,
+            _ if complete => self.balance(system, room, 1.0, h)?,
+            _ => {
+                for part in 1..=self.load_steps {
+                    load = f64::from(part) / f64::from(self.load_steps);
+                    self.balance(system, room, load, h)?;
+                }
+            }
+        }
+        room.u1.copy_from_slice(&room.u);
+        // The work of loads and pins by the mean of their forces at both ends.
+        for (v, u) in room.v1.iter_mut().zip(&room.u) {
+            *v = u / h;
+        }
+        self.enter_work(system, room, h)?;
+        system.evaluate(Stage::Current, h, 0.0, &mut room.force)?;
+        let after = system.stored_energy(Stage::Current, h);
+        let given: f64 = system.work.user.iter().sum::<f64>() - room.work_before;
+        system.work.damping[0] += before + given - after;
+        if self.arc_length.is_some() {
+            for d in 0..D {
+                for node in 0..system.nodes {
+                    system.history.columns[0].0[d][node] = room.u1[node * D + d];
+                }
+            }
+        }
+        system.history.numbers[LOAD] = load;
+        system.history.numbers[COMPLETE] = if load >= 1.0 { 1.0 } else { 0.0 };
+        system.end_implicit(h);
+        for column in &mut system.state.v.0 {
+            column.fill(0.0);
+        }
+        Ok(())
+    }
+
+    /// Moves the system to the end, entering what loads and pins do on the way; velocities are zero then.
+    fn enter_work<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
+        let damping = system.work.damping;
+        room.work_before = system.work.user.iter().sum();
+        let moving = room.u1.clone();
+        room.u1.fill(0.0);
+        commit(system, room);
+        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
+        room.u1.copy_from_slice(&moving);
+        commit(system, room);
+        system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
+        system.work.damping = damping;
+        room.v1.fill(0.0);
+        commit(system, room);
+        Ok(())
+    }
+}
+
+impl<const D: usize> Integrator<D> for Equilibrium {
+    fn name(&self) -> &'static str {
+        SPEC.kind
+    }
+    fn needs(&self) -> Views {
+        Views { hessian: true, ..Views::default() }
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: usize::from(self.arc_length.is_some()), numbers: 2 }
+    }
+    fn amplification(&self, omega: f64, _c: f64, _h: f64) -> Amplification {
+        // To rest at once; where nothing pulls back, it stays where it is.
+        let kept = if omega > 0.0 { 0.0 } else { 1.0 };
+        Amplification::new([[kept, 0.0], [0.0, 0.0]])
+    }
+    fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
+        if obstacles { Ok(()) } else { rigid::refuse_free_motions(system) }
+    }
+    fn readings(&self, system: &System<D>) -> Vec<(&'static str, f64)> {
+        vec![("load_factor", system.history.numbers[LOAD])]
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        self.arc_length.is_none() && same_bits_everywhere(self.settings.solver, system)
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        let mut room = system.room.take::<Room<D>>();
+        let (work, velocities) = (system.work, system.state.v.clone());
+        let outcome = self.attempt(system, &mut room, h);
+        if outcome.is_err() {
+            let solver = system.work.solver;
+            system.work = work;
+            system.work.solver = solver;
+            system.state.v = velocities;
+        }
+        system.room.put(room);
+        outcome
+    }
+}

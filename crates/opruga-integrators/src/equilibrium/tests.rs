@@ -1,0 +1,175 @@
+//! Hanging bars, a truss that snaps, bodies that nothing holds.
+
+use super::{COMPLETE, Equilibrium, LOAD, SPEC};
+use crate::testing::problems::Springs;
+use opruga_core::integrator::Integrator;
+use opruga_core::spec::{Value, Values};
+use opruga_core::state::{Columns, Layout, Parameter};
+use opruga_core::system::{Pin, System};
+use opruga_math::Simd;
+use std::sync::Arc;
+
+fn rule(fields: &[(&str, Value)]) -> Equilibrium {
+    let mut values = Values::defaults(&SPEC, 2);
+    for (name, value) in fields {
+        values.set(&SPEC, name, value.clone(), 2).unwrap();
+    }
+    Equilibrium::new(&values)
+}
+
+/// Nodes joined by springs.
+fn body<const D: usize>(places: &[[f64; D]], pairs: Vec<[usize; 2]>, stiffness: f64, mass: Vec<f64>) -> System<D> {
+    let (mut x, v) = (Columns::zeros(8), Columns::zeros(8));
+    for column in &mut x.0 {
+        column.grow(Layout::Single.places(places.len()) + 8);
+    }
+    let mut speeds = v;
+    for column in &mut speeds.0 {
+        column.grow(Layout::Single.places(places.len()) + 8);
+    }
+    for (node, place) in places.iter().enumerate() {
+        x.set(node, *place);
+    }
+    let first: [f64; D] = core::array::from_fn(|d| places[pairs[0][0]][d] - places[pairs[0][1]][d]);
+    let rest_length = first.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let mass = Parameter::column(mass);
+    let mut system = System::new(Simd::best(), Layout::Single, places.len(), 1, x, speeds, mass);
+    system.add(Box::new(Springs { pairs, stiffness, damping: 0.0, rest_length, gas: 0.0 }));
+    system
+}
+
+fn pin<const D: usize>(system: &mut System<D>, node: usize, axes: [bool; D]) {
+    let anchor = system.state.x.at(node);
+    system.pins.push(Pin { place: node, axes, anchor, motion: Arc::default() });
+}
+
+/// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1), for any number of springs
+/// with half the mass at the ends, by every solver.
+#[test]
+fn a_hanging_bar_has_the_length_of_its_closed_form() {
+    for (nodes, solver) in [(2, "conjugate_gradients"), (11, "conjugate_gradients"), (41, "cholesky")] {
+        let springs = nodes - 1;
+        let places: Vec<[f64; 2]> = (0..nodes).map(|k| [0.0, -(k as f64) / springs as f64]).collect();
+        let part = 1000.0 / springs as f64;
+        let mass = (0..nodes).map(|k| if k == 0 || k == springs { 0.5 * part } else { part }).collect();
+        let pairs = (0..springs).map(|k| [k, k + 1]).collect();
+        let mut system = body(&places, pairs, 125_000.0 * springs as f64, mass);
+        system.gravity = [0.0, -9.81];
+        pin(&mut system, 0, [true, true]);
+        let rule = rule(&[("linear_solver", Value::Text(solver.into()))]);
+        system.equip(&rule);
+        Integrator::<2>::check(&rule, &system, false).unwrap();
+        rule.step(&mut system, 1.0).unwrap();
+        let sunk = -1.0 - system.state.x.at(springs)[1];
+        assert!((sunk - 0.039_24).abs() < 1e-12, "{nodes} nodes: {sunk}");
+        assert!(system.state.v.0.iter().flatten().all(|v| *v == 0.0));
+        // What the weight gave and the springs did not take is entered as damping: half of it.
+        let (damped, work): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
+        assert!(damped > 0.0 && work.abs() < 1e-9, "{damped} {work}");
+    }
+}
+
+/// Two springs of length 1 with their apex at a height of 0.2 m: pressed down by λ m g, the load falls after its limit and
+/// rises again behind. Every point of the curve obeys the closed form 2 k (1 − l)(y/l) = −λ m g.
+#[test]
+fn a_truss_is_followed_through_its_snap() {
+    let (height, k, weight) = (0.2, 1000.0, 30.0);
+    let half = (1.0f64 - height * height).sqrt();
+    let truss = || {
+        let mut system = body(&[[-half, 0.0], [0.0, height], [half, 0.0]], vec![[0, 1], [1, 2]], k, vec![1.0; 3]);
+        system.gravity = [0.0, -weight];
+        pin(&mut system, 0, [true, true]);
+        pin(&mut system, 2, [true, true]);
+        pin(&mut system, 1, [true, false]);
+        system
+    };
+    let needed = |y: f64| {
+        let length = (half * half + y * y).sqrt();
+        2.0 * k * (1.0 - length) * (y / length) / weight
+    };
+    let arc = rule(&[("arc_length", Value::Number(0.01))]);
+    let mut system = truss();
+    system.equip(&arc);
+    let (mut highest, mut lowest, mut steps) = (0.0f64, f64::INFINITY, 0);
+    while system.history.numbers[COMPLETE] == 0.0 {
+        arc.step(&mut system, 0.1).unwrap();
+        let (load, y) = (system.history.numbers[LOAD], system.state.x.at(1)[1]);
+        assert!((needed(y) - load).abs() < 1e-7, "{y}: {load}, not {}", needed(y));
+        highest = if load > highest && load < 1.0 && y > 0.0 { load } else { highest };
+        lowest = if load < lowest { load } else { lowest };
+        steps += 1;
+        assert!(steps < 100);
+    }
+    // The limits at y = ±0.2/√3 or thereabouts: ±0.1048 of the load.
+    assert!((highest - 0.1048).abs() < 1e-3 && (lowest + 0.1048).abs() < 1e-3, "{highest} {lowest}");
+    let behind = system.state.x.at(1)[1];
+    assert!(behind < -height && (needed(behind) - 1.0).abs() < 1e-9, "{behind}");
+    // And it stays there.
+    arc.step(&mut system, 0.1).unwrap();
+    assert!((system.state.x.at(1)[1] - behind).abs() < 1e-9);
+
+    // All at once it jumps to the same place.
+    let mut jumped = truss();
+    let plain = rule(&[]);
+    jumped.equip(&plain);
+    plain.step(&mut jumped, 0.1).unwrap();
+    assert!((jumped.state.x.at(1)[1] - behind).abs() < 1e-8, "{}", jumped.state.x.at(1)[1]);
+}
+
+#[test]
+fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
+    let message = |pins: &[(usize, [bool; 2])]| {
+        let mut system = body(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], vec![[0, 1], [1, 2]], 10.0, vec![1.0; 3]);
+        pins.iter().for_each(|(node, axes)| pin(&mut system, *node, *axes));
+        system.equip(&rule(&[]));
+        let outcome = Integrator::<2>::check(&rule(&[]), &system, false);
+        assert!(Integrator::<2>::check(&rule(&[]), &system, true).is_ok());
+        outcome.map_err(|error| {
+            assert_eq!(error.code, "static.rigid_modes");
+            error.message.split(';').next().unwrap_or_default().to_string()
+        })
+    };
+    let told = |text: &str| Err(format!("nothing holds the body against {text}"));
+    assert_eq!(message(&[]), told("translation along x, translation along y, rotation: 3 rigid modes"));
+    assert_eq!(message(&[(0, [false, true])]), told("translation along x, rotation: 2 rigid modes"));
+    assert_eq!(message(&[(0, [true, true])]), told("rotation: 1 rigid mode"));
+    assert_eq!(message(&[(0, [true, true]), (1, [true, false])]), told("rotation: 1 rigid mode"));
+    assert_eq!(message(&[(0, [true, true]), (1, [false, true])]), Ok(()));
+    // A pendulum is held by its weight, unless it hangs at its centre of mass.
+    let pendulum = |shift: f64| {
+        let places = [[0.0, 0.0], [1.0, 0.0], [shift - 1.0, 0.0]];
+        let mut system = body(&places, vec![[0, 1], [0, 2]], 10.0, vec![1.0; 3]);
+        system.gravity = [0.0, -9.81];
+        pin(&mut system, 0, [true, true]);
+        system.equip(&rule(&[]));
+        Integrator::<2>::check(&rule(&[]), &system, false)
+    };
+    assert_eq!(pendulum(0.1), Ok(()));
+    assert!(pendulum(0.0).unwrap_err().message.contains("rotation: 1 rigid mode"));
+    // Axes along x only, at three heights.
+    assert_eq!(message(&[(0, [true, false]), (2, [true, false])]), told("translation along y: 1 rigid mode"));
+
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut system = body(&corners, vec![[0, 1], [1, 2], [2, 3]], 10.0, vec![1.0; 4]);
+    let error = Integrator::<3>::check(&rule(&[]), &system, false).unwrap_err();
+    assert!(error.message.contains("6 rigid modes") && error.message.contains("about an axis along z"), "{error}");
+    pin(&mut system, 0, [true, true, true]);
+    pin(&mut system, 1, [true, true, true]);
+    system.equip(&rule(&[]));
+    let error = Integrator::<3>::check(&rule(&[]), &system, false).unwrap_err();
+    assert!(error.message.contains("rotation about an axis along x: 1 rigid mode"), "{error}");
+}
+
+#[test]
+fn a_balance_that_is_not_found_leaves_the_state_as_it_was() {
+    let mut system = body(&[[0.0, 0.0], [0.0, -1.0]], vec![[0, 1]], 10.0, vec![1.0, 5.0]);
+    system.gravity = [0.0, -9.81];
+    pin(&mut system, 0, [true, true]);
+    system.state.v.set(1, [3.0, 0.0]);
+    let rule = rule(&[("iterations", Value::Integer(1))]);
+    system.equip(&rule);
+    let (x, v) = (system.state.x.clone(), system.state.v.clone());
+    let error = rule.step(&mut system, 0.5).unwrap_err().to_string();
+    assert!(error.starts_with("`equilibrium` did not converge in 1 iterations at t = 0 s: the forces are out"), "{error}");
+    assert_eq!((&system.state.x, &system.state.v), (&x, &v));
+}

@@ -1,0 +1,168 @@
+//! Natural frequencies: small oscillations of a body about its present state.
+//!
+//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all models and loads as they act now and the lumped masses of the nodes: q = φ cos ωt
+//! with K φ = ω² M φ. Damping is left out. The state should be an equilibrium; about any other state the frequencies are
+//! those of the springs' and the gas's stiffness there. A negative ω² is told as it is: the state is unstable, as a body is
+//! that is about to buckle.
+
+use crate::error::WorldError;
+use crate::world::World;
+use opruga_core::error::BuildError;
+use opruga_core::potential::Definiteness;
+use opruga_core::state::Columns;
+use opruga_core::system::Stage;
+use opruga_integrators::equilibrium::rigid::{shape_of, unheld_motions};
+use opruga_solve::eigen::lowest_modes;
+use opruga_solve::{BlockMatrix, Cholesky, dot};
+use std::collections::BTreeMap;
+
+/// One natural frequency and its shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode<const D: usize> {
+    /// ω² [1/s²]; zero for rigid modes, negative where the state is unstable.
+    pub square: f64,
+    /// Displacement of every node, with Σ m |φ|² = 1 kg·m² [m].
+    pub shape: Vec<[f64; D]>,
+    /// How far K φ = ω² M φ holds, |K φ − ω² M φ| in the norm of M⁻¹ [1/s²].
+    pub residual: f64,
+    /// The name of a motion of the whole body that nothing holds, such as `translation along x`.
+    pub rigid: Option<String>,
+}
+
+impl<const D: usize> Mode<D> {
+    /// ω [rad/s]; zero where ω² is not positive.
+    pub fn omega(&self) -> f64 {
+        if self.square > 0.0 { self.square.sqrt() } else { 0.0 }
+    }
+    /// The frequency ω/2π [Hz].
+    pub fn frequency(&self) -> f64 {
+        self.omega() / (2.0 * core::f64::consts::PI)
+    }
+}
+
+/// A rigid motion that strains the body by less than this part of its stiffness is free.
+const FREE: f64 = 1e-9;
+
+impl<const D: usize> World<D> {
+    /// The lowest `count` natural modes of a body about its present state, rigid ones first.
+    ///
+    /// # Errors
+    /// [`WorldError`] if there is no such body, if a model lacks second derivatives or refuses the state, or if no
+    /// frequency can be found since a node without mass can move.
+    pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
+        if self.handle(body).is_none() {
+            return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
+        }
+        let name = self.blueprint.bodies[body].name.clone();
+        let refuse = |code, message: String| WorldError::Build {
+            place: format!("body `{name}`"),
+            source: BuildError::new("modes", code, message),
+        };
+        // By itself: others side by side do not matter.
+        let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
+        if let Some(member) = system.members.iter().find(|member| !member.potential.views().hessian) {
+            let message = format!("`{}` has no second derivatives", member.potential.name());
+            return Err(refuse("integrator.needs", message));
+        }
+        let mut force = Columns::zeros(system.places());
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut force).map_err(|e| refuse("run.model", e.to_string()))?;
+        let mut stiffness = BlockMatrix::<D>::default();
+        stiffness.assemble(system.nodes, 0, |matrix| {
+            system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
+        });
+        let mut mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
+        let mut held = vec![false; mass.len()];
+        system.held_axes(&mut |place, d| held[place * D + d] = true);
+        if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
+            let message = format!("node {} has no mass; allowed: masses above 0 where a node can move", light / D);
+            return Err(refuse("modes.no_mass", message));
+        }
+        // Held axes: no row and no column.
+        let free: Vec<bool> = (0..system.nodes).map(|node| !held[node * D..(node + 1) * D].contains(&true)).collect();
+        let projectors: Vec<[[f64; D]; D]> = (0..system.nodes)
+            .map(|node| {
+                let kept = |d: usize| if held[node * D + d] { 0.0 } else { 1.0 };
+                core::array::from_fn(|i| core::array::from_fn(|j| if i == j { kept(i) } else { 0.0 }))
+            })
+            .collect();
+        stiffness.constrain(&free, &projectors);
+        let mut fastest: f64 = 0.0;
+        for (k, m) in mass.iter().enumerate() {
+            let ratio = if held[k] { 0.0 } else { stiffness.diagonal_block(k / D)[k % D][k % D].abs() / m };
+            fastest = if ratio > fastest { ratio } else { fastest };
+        }
+        let fastest = if fastest > 0.0 { fastest } else { 1.0 };
+
+        // Rigid motions that strain nothing need no search.
+        let mut rigid: Vec<Mode<D>> = Vec::new();
+        let mut known: Vec<Vec<f64>> = Vec::new();
+        for motion in unheld_motions(&system) {
+            let mut shape = shape_of(&system, &motion);
+            if !orthonormalise(&mut shape, &mass, &known) {
+                continue;
+            }
+            let mut strained = vec![0.0; shape.len()];
+            stiffness.multiply(&shape, &mut strained);
+            if dot(&shape, &strained).abs() <= FREE * fastest {
+                rigid.push(Mode { square: 0.0, shape: vectors(&shape), residual: 0.0, rigid: Some(motion.name()) });
+                known.push(shape);
+            }
+        }
+        for (m, held) in mass.iter_mut().zip(&held) {
+            *m = if *held { 0.0 } else { *m };
+        }
+
+        // (K + s M) must be positive definite; that of a state that is about to buckle needs a larger s.
+        let mut shift = 1e-6 * fastest;
+        let mut factor = Cholesky::default();
+        loop {
+            let mut shifted = BlockMatrix::<D>::default();
+            shifted.assemble(system.nodes, 0, |matrix| {
+                system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
+                for node in 0..system.nodes {
+                    matrix.add_diagonal(node, shift * system.mass.at(node));
+                }
+            });
+            shifted.constrain(&free, &projectors);
+            if factor.update(&shifted).is_ok() {
+                break;
+            }
+            shift *= 10.0;
+            if shift > 1e3 * fastest {
+                return Err(refuse("modes.indefinite", "the stiffness of this state has no natural frequencies".into()));
+            }
+        }
+        let wanted = count.saturating_sub(rigid.len());
+        let found =
+            lowest_modes(wanted, &mass, shift, &known, |x| factor.solve(x), |x, y| stiffness.multiply(x, y));
+        rigid.truncate(count);
+        rigid.extend(found.into_iter().map(|mode| Mode {
+            square: mode.square,
+            shape: vectors(&mode.shape),
+            residual: mode.residual,
+            rigid: None,
+        }));
+        Ok(rigid)
+    }
+}
+
+fn vectors<const D: usize>(shape: &[f64]) -> Vec<[f64; D]> {
+    shape.as_chunks::<D>().0.to_vec()
+}
+
+/// Makes a shape orthogonal to others and gives it unit length in the scalar product of the masses.
+fn orthonormalise(shape: &mut [f64], mass: &[f64], known: &[Vec<f64>]) -> bool {
+    for _ in 0..2 {
+        for other in known {
+            let along: f64 = shape.iter().zip(other).zip(mass).map(|((s, o), m)| s * o * m).sum();
+            shape.iter_mut().zip(other).for_each(|(s, o)| *s -= along * o);
+        }
+    }
+    let square: f64 = shape.iter().zip(mass).map(|(s, m)| s * s * m).sum();
+    if square.is_nan() || square <= 0.0 {
+        return false;
+    }
+    let scale = 1.0 / square.sqrt();
+    shape.iter_mut().for_each(|s| *s *= scale);
+    true
+}
