@@ -144,6 +144,7 @@ impl Reader<'_> {
             0 => Told::Set(self.text()?, self.value()?),
             1 => Told::Added(Source::Command(self.count()? as usize)),
             2 => Told::Added(Source::Program(self.count()? as usize)),
+            3 => Told::Became(self.count()? as usize),
             _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
         })
     }
@@ -195,6 +196,10 @@ impl<const D: usize> World<D> {
                     out.count(2);
                     out.count(*number as u64);
                 }
+                Change::Became { command, .. } => {
+                    out.count(3);
+                    out.count(*command as u64);
+                }
             }
         }
         out.count(self.alive.len() as u64);
@@ -219,6 +224,8 @@ impl<const D: usize> World<D> {
         for running in &self.running {
             match &running.progress {
                 Progress::Waiting => out.count(0),
+                // It ended before it began, with its body: that follows from what is there.
+                Progress::Done if running.command.at > self.time() => out.count(0),
                 Progress::Done => out.count(1),
                 Progress::Acting { held, anchors } => {
                     out.count(2);
@@ -245,11 +252,24 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        self.restored(bytes, false)
+    }
+
+    /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
+    /// be others, and more or fewer.
+    ///
+    /// # Errors
+    /// As [`World::restore`].
+    pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        self.restored(bytes, true)
+    }
+
+    fn restored(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
         let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
         let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
         let islands =
             (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
-        let outcome = self.go_to(bytes);
+        let outcome = self.go_to(bytes, other_future);
         if outcome.is_err() {
             (self.blueprint, self.changes, self.colliders, self.running) = kept;
             (self.alive, self.generation, self.frames, self.flows) = bodies;
@@ -259,7 +279,7 @@ impl<const D: usize> World<D> {
         outcome
     }
 
-    fn go_to(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    fn go_to(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         let mut reader = Reader(bytes);
         if reader.count()? != VERSION {
@@ -299,11 +319,12 @@ impl<const D: usize> World<D> {
             }
             states.insert(number, BodyState { x, v, memory });
         }
-        if reader.count()? != self.running.len() as u64 {
+        let commands = reader.length()?;
+        if commands != self.running.len() && !other_future {
             return refuse("it has another number of commands");
         }
         let mut progress = Vec::new();
-        for _ in 0..self.running.len() {
+        for _ in 0..commands {
             progress.push(match reader.count()? {
                 0 => Progress::Waiting,
                 1 => Progress::Done,
@@ -318,6 +339,11 @@ impl<const D: usize> World<D> {
                 _ => return refuse("a command is in an unknown state"),
             });
         }
+        // Commands stand in the order of time: those that have begun come first.
+        if progress.iter().skip(self.running.len()).any(|progress| *progress != Progress::Waiting) {
+            return refuse("it has another number of commands");
+        }
+        progress.resize(self.running.len(), Progress::Waiting);
         let mut numbers = [0.0; 8];
         for x in &mut numbers {
             *x = reader.number()?;
@@ -333,7 +359,8 @@ impl<const D: usize> World<D> {
         self.generation.resize(self.alive.len(), 0);
         self.frames = frames;
         for (running, progress) in self.running.iter_mut().zip(progress) {
-            running.progress = progress;
+            let gone = running.command.action.body().is_some_and(|b| self.alive.get(b) == Some(&false));
+            running.progress = if gone && progress == Progress::Waiting { Progress::Done } else { progress };
         }
         self.regroup(&Touched::All, &states)?;
         if changed {
