@@ -45,6 +45,40 @@ struct Fixed {
     skin: Option<Skin>,
 }
 
+/// What the colours of the bodies tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quantity {
+    /// The mean elongation of the edges at each node [%].
+    #[default]
+    Strain,
+    /// The force of the models that store energy, without gas, on each node [N].
+    ElasticForce,
+    /// The pressure of the gas of the whole body [Pa]; bodies without gas have no colour.
+    Pressure,
+    /// The speed of each node [m/s].
+    Speed,
+    /// Nothing: bodies have a colour each.
+    Plain,
+}
+
+impl Quantity {
+    /// All of them, in the order of menus.
+    pub const ALL: [Quantity; 5] =
+        [Quantity::Strain, Quantity::ElasticForce, Quantity::Pressure, Quantity::Speed, Quantity::Plain];
+
+    /// Name and unit for legends; none where there is nothing to tell.
+    fn legend(self) -> Option<Legend> {
+        let (label, unit) = match self {
+            Quantity::Strain => ("strain", "%"),
+            Quantity::ElasticForce => ("elastic force", "N"),
+            Quantity::Pressure => ("pressure", "Pa"),
+            Quantity::Speed => ("speed", "m/s"),
+            Quantity::Plain => return None,
+        };
+        Some(Legend { label: label.into(), unit: unit.into(), range: None, map: ColourMap::default() })
+    }
+}
+
 /// What changes from picture to picture, kept small.
 #[derive(Clone, Debug)]
 pub struct Moment {
@@ -52,8 +86,10 @@ pub struct Moment {
     pub time: f64,
     /// Coordinates of all nodes of all bodies, body by body [m].
     coordinates: Vec<f32>,
-    /// The mean elongation of the edges at each node [%]: the coordinates are too coarse for it.
-    strains: Vec<f32>,
+    /// What the colours tell.
+    quantity: Quantity,
+    /// That quantity at every node; for strains the coordinates are too coarse. Empty where bodies are plain.
+    scalars: Vec<f32>,
     /// Bodies that are there.
     bodies: Vec<usize>,
     pulls: Vec<PullPicture>,
@@ -131,13 +167,21 @@ impl Scenery {
     /// Keeps what a world looks like now; with arrows also pulls, and the pressure on the bodies with gas [Pa] or the
     /// force on the nodes of the others [N].
     pub fn capture<const D: usize>(&self, world: &mut World<D>, arrows: bool) -> Moment {
-        let (mut coordinates, mut strains) = (Vec::new(), Vec::new());
+        self.capture_quantity(world, arrows, Quantity::Strain)
+    }
+
+    /// As [`Scenery::capture`], with another quantity for the colours.
+    pub fn capture_quantity<const D: usize>(&self, world: &mut World<D>, arrows: bool, quantity: Quantity) -> Moment {
+        let (mut coordinates, mut scalars) = (Vec::new(), Vec::new());
         let bodies: Vec<usize> = world.bodies().filter(|b| *b < self.bodies.len()).collect();
         for &body in &bodies {
             let fixed = &self.bodies[body];
             let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();
             coordinates.extend(positions.iter().flat_map(|position| position[..D].iter().map(|c| *c as f32)));
-            strains.extend(strain(fixed, &positions).into_iter().map(|strain| strain as f32));
+            match quantity {
+                Quantity::Strain => scalars.extend(strain(fixed, &positions).into_iter().map(|s| s as f32)),
+                _ => push_quantity(world, body, fixed.nodes, quantity, &mut scalars),
+            }
         }
         let pulls: Vec<PullPicture> = world
             .pulls()
@@ -155,7 +199,7 @@ impl Scenery {
         }
         let colliders =
             world.colliders().map_or_else(Vec::new, |c| c.pictures(world.time()).into_iter().map(collider).collect());
-        Moment { time: world.time(), coordinates, strains, bodies, pulls, colliders, arrows: drawn }
+        Moment { time: world.time(), coordinates, quantity, scalars, bodies, pulls, colliders, arrows: drawn }
     }
 
     /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
@@ -180,11 +224,11 @@ impl Scenery {
         }
     }
 
-    /// The picture of a moment, coloured by the mean strain of the edges at each node.
+    /// The picture of a moment.
     pub fn picture(&self, moment: &Moment) -> Picture {
         let mut bodies = Vec::new();
         let mut coordinates = moment.coordinates.chunks_exact(usize::from(self.dimension));
-        let mut strains = moment.strains.iter().map(|strain| f64::from(*strain));
+        let mut scalars = moment.scalars.iter().map(|scalar| f64::from(*scalar));
         for &body in &moment.bodies {
             let fixed = &self.bodies[body];
             let positions: Vec<[f64; 3]> = coordinates
@@ -192,7 +236,7 @@ impl Scenery {
                 .take(fixed.nodes)
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
-            let scalar: Vec<f64> = strains.by_ref().take(fixed.nodes).collect();
+            let scalar: Vec<f64> = scalars.by_ref().take(fixed.nodes).collect();
             if let Some(skin) = &fixed.skin {
                 bodies.push(skinned(skin, &positions, &scalar, &fixed.label));
                 continue;
@@ -219,7 +263,31 @@ impl Scenery {
             pulls: moment.pulls.clone(),
             y_down: self.y_down,
             length_unit: self.length_unit.clone(),
-            legend: Some(Legend { label: "strain".into(), unit: "%".into(), range: None, map: ColourMap::default() }),
+            legend: moment.quantity.legend(),
+        }
+    }
+}
+
+/// Adds a quantity at every node of a body.
+fn push_quantity<const D: usize>(
+    world: &mut World<D>,
+    body: usize,
+    nodes: usize,
+    quantity: Quantity,
+    scalars: &mut Vec<f32>,
+) {
+    let size = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>().sqrt() as f32;
+    match quantity {
+        Quantity::Strain | Quantity::Plain => {}
+        Quantity::Speed => scalars.extend((0..nodes as u32).map(|node| size(world.velocity(body, node)))),
+        Quantity::ElasticForce => {
+            let forces = world.node_forces(body, Some(Account::Elastic));
+            scalars.extend((0..nodes).map(|node| forces.get(node).map_or(f32::NAN, |force| size(*force))));
+        }
+        Quantity::Pressure => {
+            let readings = world.readings(body);
+            let pressure = readings.iter().find(|(name, _)| *name == "pressure").map_or(f64::NAN, |(_, p)| *p);
+            scalars.extend(std::iter::repeat_n(pressure as f32, nodes));
         }
     }
 }
@@ -227,7 +295,7 @@ impl Scenery {
 /// The skin that a body carries, coloured as the nodes that carry it.
 fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> BodyPicture {
     BodyPicture {
-        scalar: skin.values(scalar),
+        scalar: if scalar.is_empty() { Vec::new() } else { skin.values(scalar) },
         positions: skin.positions(positions),
         facets: Facets::Triangles(skin.triangles.clone()),
         cells: Vec::new(),
