@@ -1,4 +1,4 @@
-//! Which crate may see which: math ← mesh ← core ← {models, integrators, collide} ← world ← io ← draw ← opruga ← cli.
+//! Which crate may see which: math ← mesh ← core ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, cli}.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,6 +17,7 @@ fn layers() -> BTreeMap<&'static str, u32> {
         ("opruga-io", 5),
         ("opruga-draw", 6),
         ("opruga", 7),
+        ("opruga-studio", 8),
         ("opruga-cli", 9),
         ("xtask", 10),
     ])
