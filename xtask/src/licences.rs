@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::process::Command;
 
 /// Licences that may appear; of alternatives (`OR`) one is enough, of sums (`AND`) all are needed.
-const ALLOWED: [&str; 14] = [
+const ALLOWED: [&str; 15] = [
     "MIT",
     "MIT-0",
     "Apache-2.0",
@@ -19,6 +19,8 @@ const ALLOWED: [&str; 14] = [
     "0BSD",
     "BSL-1.0",
     "OFL-1.1",
+    // A font of the window's toolkit: free to pass on, as the fonts under OFL-1.1 are.
+    "Ubuntu-font-1.0",
 ];
 
 /// Reads the dependency graph and refuses unknown licences.

@@ -1,5 +1,5 @@
 //! Which crate may see which:
-//! math ← mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← cli.
+//! math ← mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, cli}.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,6 +19,7 @@ fn layers() -> BTreeMap<&'static str, u32> {
         ("opruga-io", 6),
         ("opruga-draw", 7),
         ("opruga", 8),
+        ("opruga-studio", 9),
         ("opruga-cli", 10),
         ("xtask", 11),
     ])

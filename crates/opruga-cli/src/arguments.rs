@@ -10,7 +10,7 @@ use std::path::PathBuf;
     name = "opruga",
     version,
     max_term_width = 110,
-    after_help = "Without a command, `opruga` runs the scene `ball`."
+    after_help = "Without a command, `opruga` opens the studio where there is a screen; where there is none, it runs the scene `ball`."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -21,6 +21,11 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Run a scene and write tables, pictures, a video and plots
     Run(Run),
+    /// Open a scene in the window of Opruga Studio: pull its bodies, draw others, change their physics
+    Studio {
+        /// A scene file, or the name of a scene that comes with the program [default: ball]
+        scene: Option<String>,
+    },
     /// Read a scene and report all of its errors, without running it
     Check(Check),
     /// Run a scene at many values of its parameters and compare what happens
@@ -431,7 +436,7 @@ impl Command {
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,
-            Command::Reference { .. } => false,
+            Command::Reference { .. } | Command::Studio { .. } => false,
         }
     }
 }

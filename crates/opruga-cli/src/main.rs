@@ -17,6 +17,7 @@ mod replay;
 mod reports;
 mod run;
 mod source;
+mod studio;
 mod sweep;
 mod watch;
 
@@ -44,19 +45,10 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
-    let command = arguments.command.unwrap_or_else(|| Command::Run(arguments::Run::default_scene()));
-    let json = command.json();
-    let outcome = match &command {
-        Command::Run(run) => watch::run(run),
-        Command::Check(check) => watch::check(check),
-        Command::Sweep(call) => sweep::sweep(call),
-        Command::Replay(replay) => replay::replay(replay),
-        Command::Modes(call) => modes::modes(call),
-        Command::List { json } => reports::list(*json),
-        Command::New { name, force, .. } => reports::new(name, *force),
-        Command::Reference { schema } => reports::reference(*schema),
-        Command::Bench { what } => reports::bench(what),
-        Command::Mesh(call) => mesh::mesh(call),
+    let json = arguments.command.as_ref().is_some_and(Command::json);
+    let outcome = match &arguments.command {
+        None => studio::first(),
+        Some(command) => run_command(command),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),
@@ -65,6 +57,22 @@ fn main() -> ExitCode {
             failure.print(json);
             ExitCode::from(failure.exit_code())
         }
+    }
+}
+
+fn run_command(command: &Command) -> Result<u8, Failure> {
+    match command {
+        Command::Run(run) => watch::run(run),
+        Command::Studio { scene } => studio::studio(scene.as_deref()),
+        Command::Modes(call) => modes::modes(call),
+        Command::Mesh(call) => mesh::mesh(call),
+        Command::Check(check) => watch::check(check),
+        Command::Sweep(call) => sweep::sweep(call),
+        Command::Replay(replay) => replay::replay(replay),
+        Command::List { json } => reports::list(*json),
+        Command::New { name, force, .. } => reports::new(name, *force),
+        Command::Reference { schema } => reports::reference(*schema),
+        Command::Bench { what } => reports::bench(what),
     }
 }
 

@@ -18,12 +18,12 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// The font of all pictures: Inter, cut down to the letters, digits and signs in use.
+/// The font of all pictures, as an OpenType file: Inter, cut down to Latin, Greek and Cyrillic letters, digits and signs.
+pub const FONT: &[u8] = include_bytes!("../font/inter-subset.otf");
+
 fn font() -> &'static FontRef<'static> {
-    static FONT: OnceLock<FontRef<'static>> = OnceLock::new();
-    FONT.get_or_init(|| {
-        FontRef::try_from_slice(include_bytes!("../font/inter-subset.otf")).expect("the font of the crate is a font")
-    })
+    static READ: OnceLock<FontRef<'static>> = OnceLock::new();
+    READ.get_or_init(|| FontRef::try_from_slice(FONT).expect("the font of the crate is a font"))
 }
 
 /// The space which a sign takes; all digits take the same, so that running numbers do not jump.

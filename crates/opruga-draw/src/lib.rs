@@ -9,6 +9,7 @@ mod animation;
 mod canvas;
 mod colour;
 mod error;
+mod eye;
 mod fitting;
 mod flat;
 mod image;
@@ -23,8 +24,10 @@ mod video;
 mod view;
 
 pub use animation::GifWriter;
+pub use canvas::FONT;
 pub use colour::{BODIES, ColourMap, OKABE_ITO};
 pub use error::DrawError;
+pub use eye::{Eye, Lens, scene as draw_scene};
 pub use fitting::Fitting;
 pub use image::Image;
 pub use layout::Style;

@@ -262,6 +262,15 @@ pub enum Action<const D: usize> {
         /// The new value.
         value: opruga_core::spec::Value,
     },
+    /// Give a body other models or another integrator, while it moves.
+    Change {
+        /// The body.
+        body: usize,
+        /// Its models from now on; none: as before.
+        models: Option<Vec<Values>>,
+        /// Its own integrator from now on; none: as before.
+        integrator: Option<Values>,
+    },
     /// Add a body.
     Add(std::boxed::Box<BodyBlueprint<D>>),
     /// Take a body away.

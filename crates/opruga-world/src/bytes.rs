@@ -136,6 +136,7 @@ impl Reader<'_> {
             0 => Told::Set(self.text()?, self.value()?),
             1 => Told::Added(Source::Command(self.count()? as usize)),
             2 => Told::Added(Source::Program(self.count()? as usize)),
+            3 => Told::Became(self.count()? as usize),
             _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
         })
     }

@@ -1,7 +1,7 @@
 //! What changes in a scene while it runs: parameters that are set, bodies that are added. It is written down, so that a
 //! snapshot of a changed scene can be restored in a world of the scene as it was, and an earlier one in a changed world.
 
-use crate::blueprint::{BodyBlueprint, Surroundings, Time};
+use crate::blueprint::{Action, BodyBlueprint, Surroundings, Time};
 use crate::build::build_colliders;
 use crate::error::WorldError;
 use crate::inputs::Input;
@@ -17,6 +17,8 @@ pub(crate) enum Change<const D: usize> {
     Set { path: String, value: Value, before: Before<D> },
     /// A body was added behind the others.
     Added(Source),
+    /// A body was given other models or another integrator by the command of this number.
+    Became { command: usize, before: Before<D> },
 }
 
 impl<const D: usize> Change<D> {
@@ -25,6 +27,7 @@ impl<const D: usize> Change<D> {
         match self {
             Change::Set { path, value, .. } => Told::Set(path.clone(), value.clone()),
             Change::Added(source) => Told::Added(*source),
+            Change::Became { command, .. } => Told::Became(*command),
         }
     }
 }
@@ -42,6 +45,7 @@ pub(crate) enum Source {
 #[derive(Clone, Debug)]
 pub(crate) enum Before<const D: usize> {
     Models(Vec<(usize, Vec<Values>)>),
+    Body { number: usize, models: Vec<Values>, integrator: Option<Values> },
     OwnIntegrators(Vec<(usize, Option<Values>)>),
     Integrator(Values),
     Surroundings(Surroundings<D>),
@@ -258,6 +262,10 @@ impl<const D: usize> World<D> {
                     self.blueprint.bodies[body].models = models;
                 }
             }
+            Before::Body { number, models, integrator } => {
+                let body = &mut self.blueprint.bodies[number];
+                (body.models, body.integrator) = (models, integrator);
+            }
             Before::OwnIntegrators(changed) => {
                 for (body, values) in changed {
                     self.blueprint.bodies[body].integrator = values;
@@ -280,7 +288,7 @@ impl<const D: usize> World<D> {
     pub(crate) fn replay(&mut self, changes: Vec<Told>) -> Result<(), WorldError> {
         while let Some(change) = self.changes.pop() {
             match change {
-                Change::Set { before, .. } => self.undo(before),
+                Change::Set { before, .. } | Change::Became { before, .. } => self.undo(before),
                 Change::Added(_) => {
                     self.blueprint.bodies.pop();
                 }
@@ -292,6 +300,20 @@ impl<const D: usize> World<D> {
                 Told::Set(path, value) => {
                     let (before, _) = self.change(&path, value.clone())?;
                     self.changes.push(Change::Set { path, value, before });
+                }
+                Told::Became(command) => {
+                    let Some(Action::Change { body, models, integrator }) =
+                        self.running.get(command).map(|running| running.command.action.clone())
+                    else {
+                        return Err(WorldError::Snapshot(
+                            "it holds a change of a body that no command here makes".into(),
+                        ));
+                    };
+                    if body >= self.blueprint.bodies.len() {
+                        return Err(WorldError::Snapshot("it changes a body that is not there".into()));
+                    }
+                    let before = self.exchange(body, models, integrator);
+                    self.changes.push(Change::Became { command, before });
                 }
                 Told::Added(source) => {
                     let body = self.body_from(source).ok_or_else(|| {
@@ -309,7 +331,7 @@ impl<const D: usize> World<D> {
     fn body_from(&self, source: Source) -> Option<BodyBlueprint<D>> {
         match source {
             Source::Command(number) => match &self.running.get(number)?.command.action {
-                crate::blueprint::Action::Add(body) => Some((**body).clone()),
+                Action::Add(body) => Some((**body).clone()),
                 _ => None,
             },
             Source::Program(number) => self.added.get(number).cloned(),
@@ -322,4 +344,5 @@ impl<const D: usize> World<D> {
 pub(crate) enum Told {
     Set(String, Value),
     Added(Source),
+    Became(usize),
 }

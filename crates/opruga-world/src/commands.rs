@@ -9,8 +9,8 @@ use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::Pin;
 use std::collections::BTreeSet;
-use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// How far a command has come.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,17 +24,33 @@ pub(crate) enum Progress<const D: usize> {
 }
 
 /// A command and how far it has come.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Running<const D: usize> {
     pub(crate) command: CommandBlueprint<D>,
     pub(crate) progress: Progress<D>,
+    /// The path of a drag, shared with the pull that it becomes; empty for all others.
+    pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
+}
+
+impl<const D: usize> Running<D> {
+    /// A command whose time has not come.
+    pub(crate) fn waiting(command: CommandBlueprint<D>) -> Running<D> {
+        let path = match &command.action {
+            Action::Drag { path, .. } => path.clone(),
+            _ => Vec::new(),
+        };
+        Running { command, progress: Progress::Waiting, path: Arc::new(RwLock::new(path)) }
+    }
 }
 
 impl<const D: usize> Action<D> {
-    /// The body on which it acts from its beginning to its end.
-    pub(crate) fn body(&self) -> Option<usize> {
+    /// The body that it is about; none where it names a parameter, or a body by its name.
+    pub fn body(&self) -> Option<usize> {
         match self {
-            Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } => Some(*body),
+            Action::Drag { body, .. }
+            | Action::Push { body, .. }
+            | Action::Pin { body, .. }
+            | Action::Change { body, .. } => Some(*body),
             Action::Set { .. } | Action::Add(_) | Action::Remove { .. } => None,
         }
     }
@@ -52,8 +68,75 @@ impl<const D: usize> World<D> {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }
         self.write_down(|| Input::Command(command.clone()));
-        self.running.push(Running { command, progress: Progress::Waiting });
+        self.running.push(Running::waiting(command));
         Ok(())
+    }
+
+    /// Gives a command that begins now, as if the scene had held it from the start; returns its number.
+    ///
+    /// Commands of the scene that are due begin before it. The number stays the same until the world is built anew.
+    ///
+    /// # Errors
+    /// [`WorldError`] if its time is not that of the coming frame or if it is refused; then it was never given.
+    pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
+        let (at, now) = (command.at, self.time());
+        if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
+            let message = format!("the command begins at {at} s, and the world is at {now} s");
+            return Err(WorldError::Path { path: "at".into(), message });
+        }
+        self.run_commands()?;
+        self.write_down(|| Input::Act);
+        // Where a reader of the scene puts it: in the order of time, behind those that begin with it.
+        let number = self.running.iter().rposition(|r| r.command.at <= at).map_or(0, |last| last + 1);
+        self.running.insert(number, Running::waiting(command));
+        let outcome = self.begin(number).and_then(|body| self.rebuild(&body.into_iter().collect()));
+        if let Err(error) = outcome {
+            self.running.remove(number);
+            return Err(error);
+        }
+        Ok(number)
+    }
+
+    /// Leads the pointer of a drag: adds a row `[t, x, y(, z)]` to the end of its path.
+    ///
+    /// What was stepped before does not change if the row lies behind the frame that comes next.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
+    pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
+        let refuse = |message: &str| WorldError::Path { path: format!("command {number}"), message: message.into() };
+        let running = self.running.get_mut(number).ok_or_else(|| refuse("there is no such command"))?;
+        let Action::Drag { path, .. } = &mut running.command.action else {
+            return Err(refuse("it is no drag, which alone has a path"));
+        };
+        let rises = path.last().is_none_or(|last| last[0] < row[0]);
+        if row.len() != D + 1 || !rises || !row.iter().all(|x| x.is_finite()) {
+            return Err(refuse("a row of its path is a later time and a point, all of them finite"));
+        }
+        path.push(row.clone());
+        running.path.write().unwrap_or_else(PoisonError::into_inner).push(row);
+        Ok(())
+    }
+
+    /// Ends a command at a time [s] instead of its own.
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no such command, or it would not end after its beginning.
+    pub fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
+        match self.running.get_mut(number) {
+            Some(running) if until > running.command.at => {
+                running.command.until = until;
+                Ok(())
+            }
+            Some(running) => {
+                let message = format!("it begins at {} s and cannot end at {until} s", running.command.at);
+                Err(WorldError::Path { path: format!("command {number}"), message })
+            }
+            None => {
+                let message = "there is no such command".into();
+                Err(WorldError::Path { path: format!("command {number}"), message })
+            }
+        }
     }
 
     /// Begins and ends commands at the start of a frame.
@@ -120,6 +203,11 @@ impl<const D: usize> World<D> {
                 self.set_now(path, value.clone())?;
                 return Ok(None);
             }
+            Action::Change { body, models, integrator } => {
+                self.running[number].progress = Progress::Done;
+                self.become_other(number, *body, models.clone(), integrator.clone())?;
+                return Ok(None);
+            }
             Action::Add(body) => {
                 self.running[number].progress = Progress::Done;
                 self.include((**body).clone(), Source::Command(number))?;
@@ -178,14 +266,15 @@ impl<const D: usize> World<D> {
     pub(crate) fn apply_running(&mut self, island: usize) {
         let bodies = self.islands[island].bodies.clone();
         for number in 0..self.running.len() {
-            let Progress::Acting { held, anchors } = &self.running[number].progress else { continue };
-            let action = &self.running[number].command.action;
+            let running = &self.running[number];
+            let Progress::Acting { held, anchors } = &running.progress else { continue };
+            let action = &running.command.action;
             let Some(lane) = bodies.iter().position(|b| Some(*b) == action.body()) else { continue };
             let system = &mut self.islands[island].system;
             let layout = system.layout;
             let place = |node: u32| layout.place(node as usize, lane);
             match action {
-                Action::Drag { stiffness, path, largest_force, .. } => {
+                Action::Drag { stiffness, largest_force, .. } => {
                     let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (place(*n), *s)).collect();
                     let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
                     let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
@@ -193,7 +282,7 @@ impl<const D: usize> World<D> {
                     let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
                     system.add(Box::new(Pull::<D> {
                         held,
-                        path: Arc::new(path.clone()),
+                        path: Arc::clone(&running.path),
                         stiffness,
                         damping: 2.0 * (stiffness * mass).sqrt(),
                         largest_force: largest_force.unwrap_or(f64::INFINITY),
@@ -234,7 +323,7 @@ impl<const D: usize> World<D> {
         let mut out = Vec::new();
         for running in &self.running {
             let Progress::Acting { held, .. } = &running.progress else { continue };
-            let Action::Drag { body, stiffness, path, largest_force, .. } = &running.command.action else { continue };
+            let Action::Drag { body, stiffness, largest_force, .. } = &running.command.action else { continue };
             let (island, lane) = self.place[*body];
             let system = &self.islands[island].system;
             let held: Vec<(usize, f64)> =
@@ -244,7 +333,7 @@ impl<const D: usize> World<D> {
             let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
             let pull = Pull::<D> {
                 held,
-                path: Arc::new(path.clone()),
+                path: Arc::clone(&running.path),
                 stiffness,
                 damping: 2.0 * (stiffness * mass).sqrt(),
                 largest_force: largest_force.unwrap_or(f64::INFINITY),

@@ -39,6 +39,8 @@ pub enum Input<const D: usize> {
         /// The name of the body.
         name: String,
     },
+    /// [`World::act`], [`World::lead`] and [`World::finish`]: commands that are made while they act are kept in a scene.
+    Act,
     /// [`World::add_force`]: a law that only the program knows, which cannot be written as bytes.
     Force {
         /// The body, by its number.
@@ -73,7 +75,7 @@ impl<const D: usize> World<D> {
             Input::Set { path, value } => self.set(path, value.clone()),
             Input::Remove { name } => self.remove_body(name),
             Input::Place { body, node, position, velocity } => self.place_node(*body, *node, *position, *velocity),
-            Input::Add { .. } | Input::Force { .. } => Err(input.unwritable()),
+            Input::Add { .. } | Input::Force { .. } | Input::Act => Err(input.unwritable()),
         }
     }
 }
@@ -85,9 +87,16 @@ impl<const D: usize> Input<D> {
             Input::Force { body } => {
                 refuse(format!("body {body}"), "a force that only the program knows cannot be recorded")
             }
+            Input::Act => refuse(
+                "command".into(),
+                "a command that the program leads while it acts cannot be recorded; save the scene with it instead",
+            ),
             Input::Add { name } => refuse(name.clone(), "a body that the program adds cannot be recorded"),
             Input::Command(CommandBlueprint { action: Action::Add(body), .. }) => {
                 refuse(body.name.clone(), "a body that the program adds cannot be recorded")
+            }
+            Input::Command(CommandBlueprint { action: Action::Change { body, .. }, .. }) => {
+                refuse(format!("body {body}"), "other models that the program gives a body cannot be recorded")
             }
             _ => refuse(String::new(), "this cannot be recorded"),
         }
@@ -124,7 +133,7 @@ impl<const D: usize> Input<D> {
                 out.count(u64::from(*node));
                 out.vectors(&[*position, *velocity]);
             }
-            Input::Add { .. } | Input::Force { .. } => return Err(self.unwritable()),
+            Input::Add { .. } | Input::Force { .. } | Input::Act => return Err(self.unwritable()),
         }
         Ok(bytes)
     }
@@ -191,7 +200,7 @@ fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> boo
             out.count(4);
             out.text(name);
         }
-        Action::Add(_) => return false,
+        Action::Add(_) | Action::Change { .. } => return false,
     }
     true
 }

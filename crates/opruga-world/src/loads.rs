@@ -6,8 +6,8 @@ use opruga_core::state::{Layout, View};
 use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError, RwLock};
 
 const USER: Views = Views { energy: false, hessian: true, damping: false };
 
@@ -163,8 +163,8 @@ impl<const D: usize> FollowerPressure<D> {
 pub(crate) struct Pull<const D: usize> {
     /// Places of the held nodes and their shares, which add up to one.
     pub(crate) held: Vec<(usize, f64)>,
-    /// Path of the pointer, rows `[t, x, y(, z)]`.
-    pub(crate) path: Arc<Vec<Vec<f64>>>,
+    /// Path of the pointer, rows `[t, x, y(, z)]`; it grows while somebody leads the pointer.
+    pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
     /// Stiffness [N/m].
     pub(crate) stiffness: f64,
     /// Damping [N·s/m].
@@ -178,7 +178,8 @@ pub(crate) struct Pull<const D: usize> {
 impl<const D: usize> Pull<D> {
     /// The held point, the pointer, and the force on the held point [N].
     pub(crate) fn force(&self, view: &View<D>) -> ([f64; D], [f64; D], [f64; D], bool) {
-        let (pointer, speed) = along_path::<D>(&self.path, view.time);
+        let path = self.path.read().unwrap_or_else(PoisonError::into_inner);
+        let (pointer, speed) = along_path::<D>(&path, view.time);
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
         for (place, share) in &self.held {
             for d in 0..D {

@@ -1,12 +1,13 @@
 //! Bodies come and go.
 
 use crate::blueprint::{Action, BodyBlueprint};
-use crate::changes::{Change, Source};
+use crate::changes::{Before, Change, Source};
 use crate::commands::Progress;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
 use crate::world::{Warning, World};
+use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
 
@@ -61,6 +62,50 @@ impl<const D: usize> World<D> {
             return Err(WorldError::Path { path: name.to_string(), message: "there is no such body".into() });
         };
         self.take_away(&[body])
+    }
+
+    /// Gives a body other models or another integrator. Positions and velocities stay; what a model remembers stays with
+    /// the first of its kind, and a kind that the body did not have begins as at the start of a scene.
+    pub(crate) fn become_other(
+        &mut self,
+        command: usize,
+        body: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Result<(), WorldError> {
+        let was = self.state_of(body);
+        let mut state = was.clone();
+        let old: Vec<&str> = self.blueprint.bodies[body].models.iter().map(Values::kind).collect();
+        if let Some(models) = &models {
+            let kept = |values: &Values| old.iter().position(|kind| *kind == values.kind());
+            let memory = std::mem::take(&mut state.memory);
+            state.memory = models.iter().map(|m| kept(m).map_or_else(Vec::new, |k| memory[k].clone())).collect();
+        }
+        let before = self.exchange(body, models, integrator);
+        let fresh = BTreeMap::from([(body, state)]);
+        let touched = Touched::Bodies(vec![body]);
+        if let Err(error) = self.regroup(&touched, &fresh).and_then(|()| self.check_stability()) {
+            self.undo(before);
+            self.regroup(&touched, &BTreeMap::from([(body, was)]))?;
+            self.check_stability()?;
+            return Err(error);
+        }
+        self.changes.push(Change::Became { command, before });
+        Ok(())
+    }
+
+    /// Exchanges models and integrator of a body in the blueprint alone; returns what they were.
+    pub(crate) fn exchange(
+        &mut self,
+        number: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Before<D> {
+        let body = &mut self.blueprint.bodies[number];
+        let before = Before::Body { number, models: body.models.clone(), integrator: body.integrator.clone() };
+        body.models = models.unwrap_or_else(|| std::mem::take(&mut body.models));
+        body.integrator = integrator.or_else(|| body.integrator.take());
+        before
     }
 
     fn take_away(&mut self, bodies: &[usize]) -> Result<(), WorldError> {

@@ -49,6 +49,10 @@ impl<const D: usize> World<D> {
                     out.count(2);
                     out.count(*number as u64);
                 }
+                Change::Became { command, .. } => {
+                    out.count(3);
+                    out.count(*command as u64);
+                }
             }
         }
         out.count(self.alive.len() as u64);
@@ -77,6 +81,8 @@ impl<const D: usize> World<D> {
         for running in &self.running {
             match &running.progress {
                 Progress::Waiting => out.count(0),
+                // It ended before it began, with its body: that follows from what is there.
+                Progress::Done if running.command.at > self.time() => out.count(0),
                 Progress::Done => out.count(1),
                 Progress::Acting { held, anchors } => {
                     out.count(2);
@@ -109,9 +115,8 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let of_scene = self.blueprint.commands.len();
-        let given: Vec<_> = self.running[of_scene..].iter().map(|r| r.command.clone()).collect();
-        self.restore_with(bytes, &given)
+        let commands = self.running.iter().map(|r| r.command.clone()).collect();
+        self.restored(bytes, commands, false)
     }
 
     /// Goes to the state of a snapshot of a world with the same blueprint to which a program had given these commands, or
@@ -120,14 +125,34 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// As [`World::restore`].
     pub fn restore_with(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
-        if self.go_to_alike(bytes, given)? {
+        let commands = self.blueprint.commands.iter().chain(given).cloned().collect();
+        self.restored(bytes, commands, false)
+    }
+
+    /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
+    /// be others, and more or fewer.
+    ///
+    /// # Errors
+    /// As [`World::restore`].
+    pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let commands = self.running.iter().map(|r| r.command.clone()).collect();
+        self.restored(bytes, commands, true)
+    }
+
+    fn restored(
+        &mut self,
+        bytes: &[u8],
+        commands: Vec<CommandBlueprint<D>>,
+        other_future: bool,
+    ) -> Result<(), WorldError> {
+        if self.go_to_alike(bytes, &commands, other_future)? {
             return Ok(());
         }
         let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
         let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
         let islands =
             (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
-        let outcome = self.go_to(bytes, given);
+        let outcome = self.go_to(bytes, &commands, other_future);
         if outcome.is_err() {
             (self.blueprint, self.changes, self.colliders, self.running) = kept;
             (self.alive, self.generation, self.frames, self.flows) = bodies;
@@ -151,9 +176,9 @@ impl<const D: usize> World<D> {
         Ok((frames, (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?))
     }
 
-    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; `commands` is the least and the
-    /// largest number of commands.
-    fn read_rest(&self, reader: &mut Reader<'_>, commands: [usize; 2]) -> Result<Rest<D>, WorldError> {
+    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; `commands` says how many there are,
+    /// and whether those that had not begun may be more or fewer.
+    fn read_rest(&self, reader: &mut Reader<'_>, (commands, other_future): (usize, bool)) -> Result<Rest<D>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
@@ -184,7 +209,8 @@ impl<const D: usize> World<D> {
             rest.states.insert(number, BodyState { x, v, memory, history });
         }
         let count = reader.length()?;
-        if !(commands[0]..=commands[1]).contains(&count) {
+        // Commands of the scene cannot be missing; those of a program may have come later.
+        if !other_future && !(self.blueprint.commands.len()..=commands).contains(&count) {
             return refuse("it has another number of commands");
         }
         for _ in 0..count {
@@ -201,6 +227,13 @@ impl<const D: usize> World<D> {
                 }
                 _ => return refuse("a command is in an unknown state"),
             });
+        }
+        if other_future {
+            // Commands stand in the order of time: those that have begun come first.
+            if rest.progress.iter().skip(commands).any(|progress| *progress != Progress::Waiting) {
+                return refuse("it has another number of commands");
+            }
+            rest.progress.resize(commands, Progress::Waiting);
         }
         let mut numbers = [0.0; 8];
         for x in &mut numbers {
@@ -240,21 +273,30 @@ impl<const D: usize> World<D> {
         Ok(rest)
     }
 
-    /// The commands of the scene, then those that were given, with how far they had come.
-    fn commands_then(&self, given: &[CommandBlueprint<D>], progress: Vec<Progress<D>>) -> Vec<Running<D>> {
-        let commands = self.blueprint.commands.iter().chain(given).cloned();
-        commands.zip(progress).map(|(command, progress)| Running { command, progress }).collect()
+    /// Commands with how far they had come, as far as that is known.
+    fn commands_then(commands: &[CommandBlueprint<D>], rest: &Rest<D>) -> Vec<Running<D>> {
+        let running = |(command, progress): (&CommandBlueprint<D>, &Progress<D>)| {
+            let gone = command.action.body().is_some_and(|body| rest.alive.get(body) == Some(&false));
+            let progress =
+                if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
+            Running { progress, ..Running::waiting(command.clone()) }
+        };
+        commands.iter().zip(&rest.progress).map(running).collect()
     }
 
     /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
-    fn go_to_alike(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<bool, WorldError> {
+    fn go_to_alike(
+        &mut self,
+        bytes: &[u8],
+        commands: &[CommandBlueprint<D>],
+        other_future: bool,
+    ) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
         let (frames, changes) = Self::read_head(&mut reader)?;
         if changes != self.changes.iter().map(Change::told).collect::<Vec<_>>() {
             return Ok(false);
         }
-        let of_scene = self.blueprint.commands.len();
-        let rest = self.read_rest(&mut reader, [of_scene, of_scene + given.len()])?;
+        let rest = self.read_rest(&mut reader, (commands.len(), other_future))?;
         let fits = |number: &usize| {
             let (island, lane) = self.place[*number];
             let (state, system) = (&rest.states[number], &self.islands[island].system);
@@ -265,8 +307,9 @@ impl<const D: usize> World<D> {
         if rest.alive != self.alive || self.islands.is_empty() || !rest.states.keys().all(fits) {
             return Ok(false);
         }
-        let running = self.commands_then(given, rest.progress);
-        if running != self.running {
+        let running = Self::commands_then(commands, &rest);
+        let alike = |(a, b): (&Running<D>, &Running<D>)| a.command == b.command && a.progress == b.progress;
+        if running.len() != self.running.len() || !running.iter().zip(&self.running).all(alike) {
             return Ok(false);
         }
         self.frames = frames;
@@ -305,21 +348,24 @@ impl<const D: usize> World<D> {
         Ok(true)
     }
 
-    fn go_to(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
+    fn go_to(
+        &mut self,
+        bytes: &[u8],
+        commands: &[CommandBlueprint<D>],
+        other_future: bool,
+    ) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
         let (frames, changes) = Self::read_head(&mut reader)?;
         let changed = !changes.is_empty() || !self.changes.is_empty();
-        let of_scene = self.blueprint.commands.len();
         // Bodies that commands add are found by the numbers of those.
-        let all = vec![Progress::Waiting; of_scene + given.len()];
-        self.running = self.commands_then(given, all);
+        self.running = commands.iter().cloned().map(Running::waiting).collect();
         self.replay(changes)?;
-        let rest = self.read_rest(&mut reader, [of_scene, of_scene + given.len()])?;
+        let rest = self.read_rest(&mut reader, (commands.len(), other_future))?;
+        self.running = Self::commands_then(commands, &rest);
         self.alive = rest.alive;
         self.generation.resize(self.alive.len(), 0);
         self.frames = frames;
         self.looks.fresh = false;
-        self.running = self.commands_then(given, rest.progress);
         self.regroup(&Touched::All, &rest.states)?;
         if changed {
             self.check_stability()?;

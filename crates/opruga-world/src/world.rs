@@ -3,7 +3,7 @@
 use crate::blueprint::{Blueprint, BodyBlueprint};
 use crate::build::{build_colliders, build_integrator, initial_state};
 use crate::changes::Change;
-use crate::commands::{Progress, Running};
+use crate::commands::Running;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::island::{FramePlan, Island};
@@ -146,11 +146,7 @@ impl<const D: usize> World<D> {
         let bodies = blueprint.bodies.len();
         let states = blueprint.bodies.iter().map(initial_state).enumerate().collect();
         let mut world = World {
-            running: blueprint
-                .commands
-                .iter()
-                .map(|c| Running { command: c.clone(), progress: Progress::Waiting })
-                .collect(),
+            running: blueprint.commands.iter().map(|c| Running::waiting(c.clone())).collect(),
             simd: options.simd.unwrap_or_else(Simd::best),
             blueprint,
             registry,

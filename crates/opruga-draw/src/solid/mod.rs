@@ -1,6 +1,6 @@
 //! Pictures in three dimensions, drawn by a rasteriser of its own.
 
-mod camera;
+pub(crate) mod camera;
 mod ground;
 mod raster;
 mod shade;

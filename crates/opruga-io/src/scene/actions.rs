@@ -76,7 +76,7 @@ pub(crate) fn commands<const D: usize>(
             reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time from {at}")));
         }
         for action in actions {
-            if let Action::Drag { body, .. } | Action::Push { body, .. } | Action::Pin { body, .. } = &action
+            if let Some(body) = &action.body()
                 && let Some((_, added)) = bodies.later.values().find(|(k, added)| k == body && *added > at)
             {
                 let name = bodies.list.get(*body).map_or(String::new(), |b| visible(&b.name));
@@ -137,6 +137,22 @@ fn actions<const D: usize>(
             let parameter = values.text("path")?.to_string();
             let value = parameters::check(reader, node, path, &parameter, value, known)?;
             vec![Action::Set { path: parameter, value }]
+        }
+        "change" => {
+            let targets = bodies.targets(reader, node, path);
+            let kinds = reader.catalogue.models.clone();
+            let before = reader.count();
+            let models = node.get("models").map(|_| {
+                let list = reader.list(node, path, "models");
+                list.into_iter().filter_map(|(item, here)| reader.kind_table(item, &here, "model", &kinds)).collect()
+            });
+            let integrator = reader.integrator(node, path);
+            if reader.count() == before && models.is_none() && integrator.is_none() {
+                let error = SceneError::new("scene.missing", "the command changes nothing").path(path);
+                reader.report(node.place, error.allowed("`models`, `integrator` or both"));
+            }
+            let change = |body| Action::Change { body, models: models.clone(), integrator: integrator.clone() };
+            targets?.into_iter().map(|(body, _)| change(body)).collect()
         }
         "add" => {
             let (body, _) = bodies.later.get(&number)?;

@@ -152,6 +152,24 @@ pub const COMMANDS: &[Section] = &[
         children: &[child("value", Holds::AnyValue, true, "Its new value.")],
     },
     Section {
+        spec: &section(
+            "change",
+            "Give a body other models or another integrator while it moves",
+            "Positions and velocities stay. What a model remembers, such as the amount of its gas, stays with the first of its kind; a kind that the body did not have begins as at the start of a scene. What is silent stays as it was.",
+            &[AT],
+        ),
+        children: &[
+            child(
+                "body",
+                Holds::BodyReference,
+                true,
+                "The body; the name of a body with copies means all of them, `NAME[i]` one.",
+            ),
+            child("models", Holds::Models, false, "Its models from now on, as in `[[body]]`."),
+            child("integrator", Holds::Integrator, false, "Its own integrator from now on."),
+        ],
+    },
+    Section {
         spec: &section("add", "Add a body", "", &[AT]),
         children: &[child("body", Holds::Table(&BODY), true, "The body, as in `[[body]]`, without copies.")],
     },

@@ -1,0 +1,119 @@
+//! The window: a program of its own beside this one, so that whoever needs no window builds none.
+
+use crate::arguments::Run;
+use crate::failure::Failure;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The exit code of a studio that found no screen.
+const NO_WINDOW: i32 = 5;
+
+/// What `opruga` without a command does: it opens the window where there is a screen, and runs without one otherwise.
+pub(crate) fn first() -> Result<u8, Failure> {
+    let headless = |why: &str| {
+        eprintln!("{why}: running the scene `ball` without a window (`opruga --help` tells what else there is)");
+        crate::watch::run(&Run::default_scene())
+    };
+    if !has_screen(|name| std::env::var_os(name)) {
+        return headless("there is no screen here");
+    }
+    match start(None) {
+        Ok(code) if i32::from(code) == NO_WINDOW => headless("no window could be opened"),
+        Ok(code) => Ok(code),
+        Err(Failure::Call { message, .. }) => headless(&message),
+        Err(other) => Err(other),
+    }
+}
+
+/// `opruga studio [SCENE]`.
+pub(crate) fn studio(scene: Option<&str>) -> Result<u8, Failure> {
+    if !has_screen(|name| std::env::var_os(name)) {
+        let hint = format!("`opruga run {}` runs without a window and writes pictures", scene.unwrap_or("ball"));
+        return Err(Failure::Call { message: "there is no screen here to open a window on".into(), hint: Some(hint) });
+    }
+    start(scene)
+}
+
+/// Whether there is a screen to open a window on.
+fn has_screen(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    ["DISPLAY", "WAYLAND_DISPLAY"].into_iter().any(|name| variable(name).is_some_and(|value| !value.is_empty()))
+}
+
+/// Starts the studio and waits for its end.
+fn start(scene: Option<&str>) -> Result<u8, Failure> {
+    let mut command = match source_tree(|name| std::env::var_os(name)) {
+        Some((cargo, root)) => {
+            eprintln!("starting the studio; cargo builds it where it has changed, which takes minutes the first time");
+            let mut command = Command::new(cargo);
+            command.arg("run").arg("--quiet").arg("--manifest-path").arg(root.join("Cargo.toml"));
+            command.args(["--package", "opruga-studio"]);
+            if !cfg!(debug_assertions) {
+                command.arg("--release");
+            }
+            command.arg("--");
+            command
+        }
+        None => {
+            let beside = std::env::current_exe().ok().map(|own| beside(&own)).filter(|path| path.is_file());
+            let beside = beside.ok_or_else(|| Failure::Call {
+                message: "the program `opruga-studio` does not lie beside this one".into(),
+                hint: Some("cargo install --path crates/opruga-studio".into()),
+            })?;
+            Command::new(beside)
+        }
+    };
+    command.args(scene);
+    let failed =
+        |e: std::io::Error| Failure::Call { message: format!("the studio cannot be started: {e}"), hint: None };
+    let status = command.status().map_err(failed)?;
+    match status.code() {
+        Some(code) => Ok(u8::try_from(code).unwrap_or(1)),
+        None => Err(Failure::Interrupted),
+    }
+}
+
+/// The cargo that runs this program and the root of the source tree, where it is one of the studio too.
+fn source_tree(variable: impl Fn(&str) -> Option<OsString>) -> Option<(OsString, PathBuf)> {
+    let own = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
+    let root = own.parent()?.parent()?.to_path_buf();
+    root.join("crates/opruga-studio/Cargo.toml").is_file().then_some((variable("CARGO")?, root))
+}
+
+/// Where the studio lies that was installed with this program.
+fn beside(own: &Path) -> PathBuf {
+    own.with_file_name(format!("opruga-studio{}", std::env::consts::EXE_SUFFIX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_screen_is_one_that_the_environment_names() {
+        let with =
+            |name: &'static str, value: &'static str| move |asked: &str| (asked == name).then(|| OsString::from(value));
+        if cfg!(target_os = "linux") {
+            assert!(has_screen(with("DISPLAY", ":0")) && has_screen(with("WAYLAND_DISPLAY", "wayland-0")));
+            assert!(!has_screen(with("DISPLAY", "")) && !has_screen(with("HOME", "/")));
+        }
+    }
+
+    #[test]
+    fn the_studio_is_built_from_the_source_tree_that_cargo_runs_in() {
+        let own = env!("CARGO_MANIFEST_DIR");
+        let cargo = |asked: &str| match asked {
+            "CARGO" => Some(OsString::from("cargo")),
+            "CARGO_MANIFEST_DIR" => Some(OsString::from(own)),
+            _ => None,
+        };
+        let (_, root) = source_tree(cargo).expect("this is the source tree");
+        assert!(root.join("crates/opruga-studio").is_dir());
+        assert!(source_tree(|_| None).is_none(), "an installed program");
+        assert!(source_tree(|asked| (asked != "CARGO_MANIFEST_DIR").then(|| OsString::from("x"))).is_none());
+        assert!(beside(Path::new("/usr/bin/opruga")).starts_with("/usr/bin"));
+    }
+}

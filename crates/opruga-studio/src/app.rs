@@ -1,0 +1,360 @@
+//! The window: what is where, shortcuts, messages.
+
+use crate::canvas::{Canvas, Tool};
+use crate::panels::gallery::Gallery;
+use crate::panels::keeping::Keeping;
+use crate::panels::plots::Plots;
+use crate::panels::properties::Properties;
+use crate::panels::{bars, palette};
+use crate::runner::Link;
+use crate::session::{Edit, Placed, Request, Session};
+use crate::shown::{Offer, Severity, Show, Shown};
+use crate::words::Language;
+use egui::{Align2, Color32, CornerRadius, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Stroke, Ui};
+use std::sync::Arc;
+
+/// The scene that comes first.
+pub const FIRST_SCENE: &str = "ball";
+
+/// The whole window.
+#[derive(Debug)]
+pub struct Studio {
+    link: Link,
+    canvas: Canvas,
+    properties: Properties,
+    plots: Plots,
+    gallery: Gallery,
+    keeping: Keeping,
+    /// The language of the interface.
+    pub language: Language,
+    show: Show,
+    plots_open: bool,
+    help_open: bool,
+    /// The message that was closed.
+    closed: u64,
+    /// Seconds of the interface for a frame, without the time of the graphics card.
+    rate: f64,
+}
+
+impl Studio {
+    /// The window on a session.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn new(session: Session, context: &egui::Context) -> std::io::Result<Studio> {
+        crate::theme::apply(context);
+        let waker = context.clone();
+        let link = Link::start(session, move || waker.request_repaint())?;
+        Ok(Studio {
+            link,
+            canvas: Canvas::default(),
+            properties: Properties::default(),
+            plots: Plots::default(),
+            gallery: Gallery::default(),
+            keeping: Keeping::default(),
+            language: Language::default(),
+            show: Show::default(),
+            plots_open: false,
+            help_open: false,
+            closed: 0,
+            rate: 60.0,
+        })
+    }
+
+    /// What is shown now.
+    pub fn shown(&self) -> Arc<Shown> {
+        self.link.shown()
+    }
+
+    /// Asks the session for something.
+    pub fn ask(&self, request: Request) {
+        self.link.ask(request);
+    }
+
+    /// Where a point of the scene is in the window.
+    pub fn on_screen(&self, point: [f64; 3]) -> Option<egui::Pos2> {
+        self.canvas.on_screen(&self.link.shown(), point)
+    }
+
+    /// Whether a picture of space is still being drawn.
+    pub fn is_drawing(&self) -> bool {
+        self.canvas.is_drawing() || self.gallery.is_drawing() || self.keeping.is_working()
+    }
+
+    /// Shows the window for one frame.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let shown = self.link.shown();
+        let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
+        self.rate += 0.05 * (1.0 / seconds - self.rate);
+        let mut asks = Vec::new();
+        self.shortcuts(ui, &shown, &mut asks);
+        self.dropped(ui, &mut asks);
+        let words = self.language;
+        let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
+        Panel::top("tools").frame(bar).show(ui, |ui| {
+            let chosen = bars::tools(ui, &shown, words, self.keeping.is_working(), &mut asks);
+            self.choose(ui, chosen);
+        });
+        Panel::bottom("time").frame(bar).show(ui, |ui| {
+            bars::time(ui, &shown, words, &mut asks);
+            bars::status(ui, &shown, words, self.rate);
+        });
+        let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));
+        let wide = ui.available_width() > 700.0;
+        if wide {
+            Panel::right("properties").frame(side).resizable(false).exact_size(304.0).show(ui, |ui| {
+                self.properties.show(ui, &shown, words, &mut self.canvas.selected, &mut asks);
+            });
+        }
+        if self.plots_open {
+            Panel::bottom("plots")
+                .frame(side)
+                .resizable(true)
+                .default_size(190.0)
+                .size_range(120.0..=420.0)
+                .show(ui, |ui| self.plots.show(ui, &shown, words, self.canvas.selected.as_deref()));
+        }
+        self.plots.remember(&shown, self.canvas.selected.as_deref());
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            let rect = ui.max_rect();
+            asks.extend(self.canvas.show(ui, &shown, words));
+            self.on_canvas(ui, rect, &shown, &mut asks);
+        });
+        self.windows(ui, &shown, &mut asks);
+        self.keeping.poll();
+        for ask in asks {
+            if let Request::Show(show) = &ask {
+                if show.quantity != self.show.quantity {
+                    self.canvas.forget_colours();
+                }
+                self.show = *show;
+            }
+            self.link.ask(ask);
+        }
+        if self.gallery.is_drawing() || self.keeping.is_working() {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+        }
+    }
+
+    fn choose(&mut self, ui: &Ui, chosen: bars::Chosen) {
+        use bars::Chosen;
+        match chosen {
+            Chosen::Nothing => {}
+            Chosen::Gallery => self.gallery.open = !self.gallery.open,
+            Chosen::Plots => self.plots_open = !self.plots_open,
+            Chosen::Help => self.help_open = !self.help_open,
+            Chosen::Language => {
+                self.language = match self.language {
+                    Language::English => Language::Croatian,
+                    Language::Croatian => Language::English,
+                };
+            }
+            Chosen::Theme => {
+                let dark = ui.visuals().dark_mode;
+                ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+            Chosen::Keep(what) => self.keeping.begin(what, &self.link, self.show),
+        }
+    }
+
+    /// The toolbar, the palette and the colours, over the scene.
+    fn on_canvas(&mut self, ui: &mut Ui, rect: egui::Rect, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
+        let words = self.language;
+        let spot = rect.min + egui::vec2(10.0, 10.0);
+        egui::Area::new(egui::Id::unique("tools of the canvas")).fixed_pos(spot).order(egui::Order::Middle).show(
+            ui.ctx(),
+            |ui| {
+                Frame::popup(ui.style()).inner_margin(Margin::same(5)).show(ui, |ui| {
+                    ui.set_max_width((rect.width() - 32.0).max(40.0));
+                    ui.horizontal_wrapped(|ui| {
+                        for (number, tool) in Tool::ALL.into_iter().enumerate() {
+                            let (name, about) = tool.words(words);
+                            let about = format!("{about}  ({})", number + 1);
+                            if ui.selectable_label(self.canvas.tool == tool, name).on_hover_text(about).clicked() {
+                                self.canvas.tool = tool;
+                            }
+                        }
+                        ui.separator();
+                        palette::menu(ui, shown, words, self.canvas.middle(shown), asks);
+                        if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
+                            self.canvas.fit();
+                        }
+                        bars::view_menu(ui, words, self.show, asks);
+                    });
+                });
+            },
+        );
+        self.message(ui, rect, shown, asks);
+        if ui.input(|i| !i.raw.hovered_files.is_empty()) {
+            let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
+            painter.rect_filled(rect, 0.0, Color32::from_black_alpha(150));
+            let font = FontId::proportional(22.0);
+            painter.text(rect.center(), Align2::CENTER_CENTER, words.drop_here(), font, Color32::WHITE);
+        }
+    }
+
+    /// The last message, at the bottom of the scene, with what would help.
+    fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
+        let words = self.language;
+        let own = self.canvas.refused.map(|why| match why {
+            "crossing" => words.crossing(),
+            "only_plane" => words.only_plane(),
+            _ => words.too_small(),
+        });
+        let message = shown.message.as_ref().filter(|message| message.number != self.closed);
+        let (text, severity, offer) = match (own, message, self.keeping.message()) {
+            (Some(text), ..) => (text.to_string(), Severity::Refused, None),
+            (None, Some(message), _) => (message.text.clone(), message.severity, message.offer.clone()),
+            (None, None, Some((text, severity))) => {
+                let head = if severity == Severity::Told { format!("{} ", words.kept()) } else { String::new() };
+                (format!("{head}{text}"), severity, None)
+            }
+            _ => return,
+        };
+        let refused = severity == Severity::Refused;
+        egui::Area::new(egui::Id::unique("message"))
+            .pivot(Align2::CENTER_BOTTOM)
+            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, 40.0))
+            .order(egui::Order::Foreground)
+            .show(ui.ctx(), |ui| {
+                let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };
+                Frame::popup(ui.style()).stroke(Stroke::new(1.5, edge)).corner_radius(CornerRadius::same(6)).show(
+                    ui,
+                    |ui| {
+                        ui.set_max_width((rect.width() - 120.0).clamp(120.0, 620.0));
+                        let lines: Vec<&str> = text.lines().collect();
+                        let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
+                        let monospaced = lines.len() > 1;
+                        let text = RichText::new(short);
+                        ui.label(if monospaced { text.monospace().size(11.5) } else { text });
+                        ui.horizontal(|ui| {
+                            if let Some(offer) = &offer {
+                                let name = match offer {
+                                    Offer::HalveStep => words.halve_step().to_string(),
+                                    Offer::Substeps(n) => format!("{} ({n})", words.use_substeps()),
+                                };
+                                if ui.button(name).clicked() {
+                                    asks.push(Request::Accept(offer.clone()));
+                                    self.closed = message.map_or(self.closed, |m| m.number);
+                                }
+                            }
+                            if ui.button(words.close()).clicked() {
+                                if own.is_some() {
+                                    self.canvas.refused = None;
+                                } else if let Some(message) = message {
+                                    self.closed = message.number;
+                                } else {
+                                    self.keeping.forget_message();
+                                }
+                            }
+                        });
+                    },
+                );
+            });
+    }
+
+    fn windows(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
+        let words = self.language;
+        if let Some(name) = self.gallery.show(ui, words, &shown.name)
+            && let Some(text) = opruga::scenes::find(name)
+        {
+            let files = opruga::scenes::files();
+            asks.push(Request::Open { name: name.into(), text: text.into(), files });
+        }
+        let mut open = self.help_open;
+        egui::Window::new(words.help())
+            .open(&mut open)
+            .resizable(false)
+            .collapsible(false)
+            .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
+            .show(ui.ctx(), |ui| {
+                ui.label(RichText::new(words.shortcuts()).size(14.0).line_height(Some(22.0)));
+            });
+        self.help_open = open;
+    }
+
+    fn shortcuts(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
+        if ui.ctx().memory(|m| m.focused().is_some()) {
+            return;
+        }
+        let pressed = |modifiers: Modifiers, key: Key| ui.input_mut(|i| i.consume_key(modifiers, key));
+        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+            asks.push(Request::Redo);
+        }
+        if pressed(Modifiers::COMMAND, Key::Z) {
+            asks.push(Request::Undo);
+        }
+        if pressed(Modifiers::COMMAND, Key::S) {
+            self.keeping.begin(crate::panels::keeping::What::Scene, &self.link, self.show);
+        }
+        let selected = self.canvas.selected.clone();
+        if let Some(name) = selected {
+            let place = |turned: f64, scaled: f64| {
+                Request::Edit(Edit::Place(name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
+            };
+            let fifteen = 15f64.to_radians();
+            if pressed(Modifiers::COMMAND, Key::D) {
+                asks.push(Request::Edit(Edit::Duplicate(name.clone())));
+            }
+            if pressed(Modifiers::NONE, Key::Delete) {
+                asks.push(Request::Edit(Edit::Delete(name.clone())));
+                self.canvas.selected = None;
+            }
+            for (key, request) in [
+                (Key::OpenBracket, place(fifteen, 1.0)),
+                (Key::CloseBracket, place(-fifteen, 1.0)),
+                (Key::Plus, place(0.0, 1.1)),
+                (Key::Minus, place(0.0, 1.0 / 1.1)),
+            ] {
+                if pressed(Modifiers::NONE, key) {
+                    asks.push(request);
+                }
+            }
+        }
+        // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along.
+        if ui.input(|i| i.key_released(Key::Space) && !i.pointer.any_down()) && !std::mem::take(&mut self.canvas.panned)
+        {
+            asks.push(Request::Play(!shown.playing));
+        }
+        if pressed(Modifiers::NONE, Key::ArrowRight) {
+            asks.push(Request::Step);
+        }
+        if pressed(Modifiers::NONE, Key::Home) {
+            asks.push(Request::Reset);
+        }
+        let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+        for (key, tool) in keys.into_iter().zip(Tool::ALL) {
+            if pressed(Modifiers::NONE, key) {
+                self.canvas.tool = tool;
+            }
+        }
+        if pressed(Modifiers::NONE, Key::F) {
+            self.canvas.fit();
+        }
+        if pressed(Modifiers::NONE, Key::P) {
+            self.plots_open = !self.plots_open;
+        }
+        if pressed(Modifiers::NONE, Key::G) {
+            self.gallery.open = !self.gallery.open;
+        }
+        if pressed(Modifiers::NONE, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Questionmark) {
+            self.help_open = !self.help_open;
+        }
+    }
+
+    /// Files that were dropped on the window: scenes are opened, shapes become bodies.
+    fn dropped(&mut self, ui: &Ui, asks: &mut Vec<Request>) {
+        for file in ui.input(|i| i.raw.dropped_files.clone()) {
+            match crate::dropping::take(file.path()) {
+                Ok(request) => asks.push(request),
+                Err(message) => self.keeping.tell(Severity::Refused, message),
+            }
+        }
+    }
+}
+
+impl eframe::App for Studio {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

@@ -1,0 +1,94 @@
+//! How a scene of the plane lies in the window.
+
+use egui::{Pos2, Rect, Vec2};
+use opruga::draw::View;
+
+/// The room beside and above the scene that the tools and numbers take [points].
+const BORDER: f32 = 46.0;
+
+/// The point in the middle and the scale.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flat {
+    center: [f64; 2],
+    /// Points of the screen in a metre.
+    pub(crate) scale: f64,
+}
+
+impl Default for Flat {
+    fn default() -> Flat {
+        Flat { center: [0.0; 2], scale: 100.0 }
+    }
+}
+
+impl Flat {
+    /// Shows the whole of a view.
+    pub(crate) fn fit(&mut self, view: &View, rect: Rect) {
+        // Bodies move: there is room around them for that.
+        let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
+        let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
+        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER).max(8.0))];
+        self.scale = (room[0] / wide).min(room[1] / tall);
+        self.center = [view.center()[0], view.center()[1]];
+    }
+
+    pub(crate) fn to_screen(self, rect: Rect, point: [f64; 3], y_down: bool) -> Pos2 {
+        let sign = if y_down { 1.0 } else { -1.0 };
+        let x = self.scale * (point[0] - self.center[0]);
+        let y = sign * self.scale * (point[1] - self.center[1]);
+        // Far outside nothing is seen, and larger numbers, or none, would break the painter.
+        let sane = |x: f64| if x.is_nan() { 1e5 } else { x.clamp(-1e5, 1e5) } as f32;
+        rect.center() + Vec2::new(sane(x), sane(y))
+    }
+
+    pub(crate) fn to_world(self, rect: Rect, at: Pos2, y_down: bool) -> [f64; 2] {
+        let sign = if y_down { 1.0 } else { -1.0 };
+        let from = at - rect.center();
+        [self.center[0] + f64::from(from.x) / self.scale, self.center[1] + sign * f64::from(from.y) / self.scale]
+    }
+
+    /// Takes the view along with the pointer.
+    pub(crate) fn pan(&mut self, delta: Vec2, y_down: bool) {
+        let sign = if y_down { 1.0 } else { -1.0 };
+        self.center[0] -= f64::from(delta.x) / self.scale;
+        self.center[1] -= sign * f64::from(delta.y) / self.scale;
+    }
+
+    /// Comes nearer; what is under the pointer stays there.
+    pub(crate) fn zoom(&mut self, factor: f64, rect: Rect, at: Pos2, y_down: bool) {
+        let before = self.to_world(rect, at, y_down);
+        self.scale = (self.scale * factor).clamp(1e-6, 1e9);
+        let after = self.to_world(rect, at, y_down);
+        self.center = [self.center[0] + before[0] - after[0], self.center[1] + before[1] - after[1]];
+    }
+
+    /// The point in the middle [m].
+    pub(crate) fn middle(&self) -> [f64; 3] {
+        [self.center[0], self.center[1], 0.0]
+    }
+
+    /// The length of so many points of the screen [m].
+    pub(crate) fn metres(&self, points: f64) -> f64 {
+        points / self.scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_under_the_pointer_stays_there_while_zooming() {
+        let rect = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(640.0, 480.0));
+        for y_down in [false, true] {
+            let mut flat = Flat { center: [1.0, 2.0], scale: 100.0 };
+            let at = Pos2::new(200.0, 300.0);
+            let [x, y] = flat.to_world(rect, at, y_down);
+            flat.zoom(3.7, rect, at, y_down);
+            let back = flat.to_screen(rect, [x, y, 0.0], y_down);
+            assert!((back - at).length() < 1e-3, "{back:?}");
+            flat.pan(Vec2::new(5.0, -7.0), y_down);
+            let moved = flat.to_screen(rect, [x, y, 0.0], y_down);
+            assert!((moved - at - Vec2::new(5.0, -7.0)).length() < 1e-3, "{moved:?}");
+        }
+    }
+}

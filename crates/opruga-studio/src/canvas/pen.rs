@@ -1,0 +1,118 @@
+//! From a line drawn by hand to a body: closed, resampled, refused where it crosses itself.
+
+use toml_edit::InlineTable;
+
+/// The fewest and the most vertices of a drawn body.
+const VERTICES: [usize; 2] = [24, 160];
+
+/// The table of the body that a line encloses; `finest` is the length that a hand can still draw [m].
+///
+/// # Errors
+/// The word for why not.
+pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'static str> {
+    let length: f64 = sides(line).map(|(a, b)| far(a, b)).sum();
+    if line.len() < 3 || length < 16.0 * finest {
+        return Err("too_small");
+    }
+    let count = ((length / finest) as usize / 2).clamp(VERTICES[0], VERTICES[1]);
+    let points = smooth(&resample(line, length, count));
+    if crosses(&points) {
+        return Err("crossing");
+    }
+    let area = 0.5 * sides(&points).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs();
+    if area < 30.0 * finest * finest {
+        return Err("too_small");
+    }
+    // A skin as stiff for its vertices as that of the ball of the thesis, and gas that holds its area against the air.
+    let stiffness = 57_600.0 / count as f64;
+    let pressure = 120.0;
+    let rows: Vec<String> = points.iter().map(|p| format!("[{:.5}, {:.5}]", p[0], p[1])).collect();
+    let text = format!(
+        "{{ name = \"drawn\", shape = {{ kind = \"polygon\", points = [{}] }}, mass = 1.0, models = [\
+         {{ kind = \"mass_spring\", stiffness = {stiffness:.1}, damping = 0.5 }}, \
+         {{ kind = \"bending\", stiffness = {:.4} }}, \
+         {{ kind = \"pressure\", nRT = {:.4}, ambient = {pressure:.1} }}] }}",
+        rows.join(", "),
+        0.02 * (length / 3.14),
+        pressure * area
+    );
+    let value = text.parse::<toml_edit::Value>().map_err(|_| "too_small")?;
+    value.as_inline_table().cloned().ok_or("too_small")
+}
+
+fn far(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The sides of the closed line.
+fn sides(line: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
+    (0..line.len()).map(|k| (line[k], line[(k + 1) % line.len()]))
+}
+
+/// So many points at equal distances along the closed line.
+fn resample(line: &[[f64; 2]], length: f64, count: usize) -> Vec<[f64; 2]> {
+    let step = length / count as f64;
+    let (mut out, mut gone) = (Vec::with_capacity(count), 0.0);
+    for (a, b) in sides(line) {
+        let side = far(a, b);
+        while out.len() < count && out.len() as f64 * step < gone + side {
+            let share = (out.len() as f64 * step - gone) / side;
+            out.push([a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]);
+        }
+        gone += side;
+    }
+    out
+}
+
+/// Takes the trembling of the hand out: every point moves to the mean of itself and its neighbours.
+fn smooth(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let n = points.len();
+    (0..n)
+        .map(|k| {
+            let (a, b, c) = (points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
+            [0.25 * (a[0] + 2.0 * b[0] + c[0]), 0.25 * (a[1] + 2.0 * b[1] + c[1])]
+        })
+        .collect()
+}
+
+/// Whether two sides that are no neighbours meet.
+fn crosses(points: &[[f64; 2]]) -> bool {
+    let n = points.len();
+    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    for i in 0..n {
+        let (a, b) = (points[i], points[(i + 1) % n]);
+        for j in i + 2..n {
+            if (j + 1) % n == i {
+                continue;
+            }
+            let (c, d) = (points[j], points[(j + 1) % n]);
+            if turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0 {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(point: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+        (0..300).map(|k| point(f64::from(k) / 300.0 * core::f64::consts::TAU)).collect()
+    }
+
+    #[test]
+    fn a_drawn_circle_becomes_a_body_and_an_eight_is_refused() {
+        let table = body(&line(|t| [t.cos(), 1.5 + t.sin()]), 0.02).expect("a body");
+        let text = format!(
+            "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.0166\nsubsteps = 32\n[integrator]\nkind = \"verlet\"\n[[body]]\n"
+        );
+        let whole = format!("{text}{}", table.into_table());
+        let read = opruga::io::scene::read(whole.as_bytes(), "drawn.toml", &opruga::catalogue(), &Default::default());
+        assert!(read.is_ok(), "{:?}", read.err());
+        assert_eq!(body(&line(|t| [t.sin(), (2.0 * t).sin()]), 0.02).err(), Some("crossing"));
+        assert_eq!(body(&line(|t| [0.01 * t.cos(), 0.01 * t.sin()]), 0.02).err(), Some("too_small"));
+        assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0]], 0.02).err(), Some("too_small"));
+    }
+}

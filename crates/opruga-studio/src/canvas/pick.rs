@@ -1,0 +1,101 @@
+//! What lies under the pointer.
+
+use super::camera::Flat;
+use crate::shown::Shown;
+use egui::{Pos2, Rect, Vec2};
+use opruga::draw::{Facets, Lens};
+
+/// How near the pointer must come to a node [points].
+const NEAR: f64 = 18.0;
+
+/// The body under the pointer.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Under {
+    /// Its number in the world.
+    pub(crate) body: usize,
+    /// Its name.
+    pub(crate) name: String,
+    /// The point of the body that is nearest to the pointer [m].
+    pub(crate) point: [f64; 3],
+    /// Its distance along the axis of the camera; 0 in the plane [m].
+    pub(crate) distance: f64,
+    /// The size of a point of the screen there [m].
+    pub(crate) pixel: f64,
+}
+
+/// The body of the plane under the pointer: the nearest node within reach, or the body around the pointer.
+pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Option<Under> {
+    let [x, y] = flat.to_world(rect, at, shown.picture.y_down);
+    let pixel = flat.metres(1.0);
+    let reach = NEAR * pixel;
+    let mut best: Option<(f64, usize, [f64; 3])> = None;
+    for (place, body) in shown.picture.bodies.iter().enumerate() {
+        let far = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
+        let nearest = body.positions.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        let Some(nearest) = nearest else { continue };
+        let distance = far(nearest);
+        if distance > reach && !around(body, x, y) {
+            continue;
+        }
+        if best.is_none_or(|(least, ..)| distance < least) {
+            best = Some((distance, place, *nearest));
+        }
+    }
+    let (_, place, point) = best?;
+    let body = shown.bodies.get(place)?;
+    Some(Under { body: body.number, name: body.name.clone(), point, distance: 0.0, pixel })
+}
+
+/// Whether the outlines of a body go around a point an odd number of times.
+fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
+    let Facets::Edges(edges) = &body.facets else { return false };
+    let crosses = |edge: &&[u32; 2]| {
+        let [a, b] = edge.map(|node| body.positions[node as usize]);
+        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    };
+    edges.iter().filter(crosses).count() % 2 == 1
+}
+
+/// The body of space under the pointer: of the nodes within reach the one in front, or a triangle under the pointer.
+pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Option<Under> {
+    let at = at - rect.min;
+    let mut best: Option<(f64, usize, [f64; 3])> = None;
+    let mut offer = |distance: f64, place: usize, point: [f64; 3]| {
+        if best.is_none_or(|(least, ..)| distance < least) {
+            best = Some((distance, place, point));
+        }
+    };
+    for (place, body) in shown.picture.bodies.iter().enumerate() {
+        let seen: Vec<Option<([f64; 2], f64)>> = body.positions.iter().map(|p| lens.see(*p)).collect();
+        for (point, seen) in body.positions.iter().zip(&seen) {
+            if let Some((pixel, distance)) = seen
+                && (pixel[0] - f64::from(at.x)).hypot(pixel[1] - f64::from(at.y)) < 0.5 * NEAR
+            {
+                offer(*distance, place, *point);
+            }
+        }
+        let Facets::Triangles(triangles) = &body.facets else { continue };
+        for triangle in triangles {
+            let corners = triangle.map(|node| seen[node as usize]);
+            let [Some(a), Some(b), Some(c)] = corners else { continue };
+            if let Some(shares) = inside([a.0, b.0, c.0], at) {
+                let distance = shares[0] * a.1 + shares[1] * b.1 + shares[2] * c.1;
+                offer(distance, place, lens.point([f64::from(at.x), f64::from(at.y)], distance));
+            }
+        }
+    }
+    let (distance, place, point) = best?;
+    let body = shown.bodies.get(place)?;
+    let [a, b] = [0.0, 1.0].map(|dx| lens.point([f64::from(at.x) + dx, f64::from(at.y)], distance));
+    let pixel = a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+    Some(Under { body: body.number, name: body.name.clone(), point, distance, pixel })
+}
+
+/// The shares of the corners of a triangle in a point within it.
+fn inside([a, b, c]: [[f64; 2]; 3], at: Vec2) -> Option<[f64; 3]> {
+    let p = [f64::from(at.x), f64::from(at.y)];
+    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let whole = area(a, b, c);
+    let shares = [area(p, b, c) / whole, area(a, p, c) / whole, area(a, b, p) / whole];
+    (whole != 0.0 && shares.iter().all(|s| *s >= 0.0)).then_some(shares)
+}

@@ -1,0 +1,386 @@
+//! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
+
+use super::Paper;
+use super::camera::Flat;
+use super::triangles::Fills;
+use crate::shown::Shown;
+use egui::epaint::Vertex;
+use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
+use opruga::draw::{
+    ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length, nice_ticks,
+};
+
+/// The rubber line of a pull.
+pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
+/// Edges up to which lines are drawn with soft borders.
+const SOFT_EDGES: usize = 6_000;
+
+fn colour([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// The colours of a map, found once for a picture.
+struct Colours([Color32; 256]);
+
+impl Colours {
+    fn new(map: ColourMap) -> Colours {
+        Colours(std::array::from_fn(|k| colour(map.colour(k as f64 / 255.0))))
+    }
+    fn at(&self, scalar: f64, range: [f64; 2]) -> Color32 {
+        let place = (scalar - range[0]) / (range[1] - range[0]).max(1e-300);
+        if place.is_nan() { Color32::GRAY } else { self.0[(place.clamp(0.0, 1.0) * 255.0) as usize] }
+    }
+}
+
+/// Draws obstacles, bodies and arrows.
+pub(crate) fn paint(
+    painter: &Painter,
+    shown: &Shown,
+    flat: &Flat,
+    rect: Rect,
+    paper: &Paper,
+    range: [f64; 2],
+    fills: &mut Fills,
+    selected: Option<&str>,
+) {
+    let picture = &shown.picture;
+    let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
+    grid(painter, flat, rect, paper, &picture.length_unit, picture.y_down);
+    picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
+    let edges: usize = picture.bodies.iter().map(|b| b.segments.len()).sum();
+    let soft = edges <= SOFT_EDGES;
+    let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map));
+    let (mut filled, mut lines) = (Mesh::default(), Mesh::default());
+    for (place, body) in picture.bodies.iter().enumerate() {
+        let base = colour(body.colour.unwrap_or(BODIES[place % BODIES.len()]));
+        let at: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
+        let colours: Vec<Color32> = if body.scalar.is_empty() {
+            vec![base; at.len()]
+        } else {
+            body.scalar.iter().map(|s| map.at(*s, range)).collect()
+        };
+        let triangles = if body.cells.is_empty() { fills.of(place, body) } else { &body.cells };
+        let strength = if body.cells.is_empty() { 0.30 } else { 0.62 };
+        let first = filled.vertices.len() as u32;
+        filled.vertices.extend(at.iter().zip(&colours).map(|(pos, c)| Vertex {
+            pos: *pos,
+            uv: egui::epaint::WHITE_UV,
+            color: c.gamma_multiply(strength),
+        }));
+        filled.indices.extend(triangles.iter().flatten().map(|node| first + node));
+        let outline: &[[u32; 2]] = match &body.facets {
+            Facets::Edges(edges) => edges,
+            Facets::Triangles(_) => &[],
+        };
+        let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
+        let inner = if outline.is_empty() { 1.8 } else { 0.9 };
+        for (list, width) in [(body.segments.as_slice(), inner), (outline, if wide { 3.2 } else { 2.2 })] {
+            for [a, b] in list {
+                let (from, to) = (at[*a as usize], at[*b as usize]);
+                let shade = mix(colours[*a as usize], colours[*b as usize]);
+                let shade = if paper.dark { shade } else { darker(shade) };
+                if soft {
+                    painter.add(Shape::line_segment([from, to], Stroke::new(width, shade)));
+                } else {
+                    segment(&mut lines, from, to, width.min(1.4), shade);
+                }
+            }
+        }
+        if soft {
+            // The fill goes below the lines, body by body, so that bodies lie on one another as a whole.
+            flush_below(painter, &mut filled);
+        }
+        if body.nodes_drawn && at.len() <= 20_000 {
+            let radius = if at.len() > 400 { 1.6 } else { 2.6 };
+            for (pos, c) in at.iter().zip(&colours) {
+                painter.circle_filled(*pos, radius, if paper.dark { *c } else { darker(*c) });
+            }
+        }
+        for node in &body.pinned {
+            pin(painter, at[*node as usize], paper);
+        }
+        label(painter, &body.label, &at, paper);
+    }
+    flush_below(painter, &mut filled);
+    if !lines.is_empty() {
+        painter.add(Shape::mesh(lines));
+    }
+    arrows(painter, shown, flat, &project);
+}
+
+/// The name of a body, below it.
+pub(crate) fn label(painter: &Painter, text: &str, spots: &[Pos2], paper: &Paper) {
+    let Some(low) = spots.iter().max_by(|a, b| a.y.total_cmp(&b.y)).filter(|_| !text.is_empty()) else { return };
+    let middle = spots.iter().map(|p| p.x).sum::<f32>() / spots.len() as f32;
+    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), paper.ink);
+    let place = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, low.y + 6.0), galley.size());
+    painter.rect_filled(place.expand2(Vec2::new(4.0, 1.0)), 3.0, paper.background.gamma_multiply(0.6));
+    painter.galley(place.min, galley, paper.ink);
+}
+
+fn flush_below(painter: &Painter, mesh: &mut Mesh) {
+    if !mesh.indices.is_empty() {
+        painter.add(Shape::mesh(std::mem::take(mesh)));
+    }
+    mesh.clear();
+}
+
+fn mix(a: Color32, b: Color32) -> Color32 {
+    let half = |x: u8, y: u8| ((u16::from(x) + u16::from(y)) / 2) as u8;
+    Color32::from_rgb(half(a.r(), b.r()), half(a.g(), b.g()), half(a.b(), b.b()))
+}
+
+fn darker(c: Color32) -> Color32 {
+    let scale = |x: u8| (f32::from(x) * 0.78) as u8;
+    Color32::from_rgb(scale(c.r()), scale(c.g()), scale(c.b()))
+}
+
+/// A line as two triangles, for crowds.
+fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, width: f32, c: Color32) {
+    let along = (to - from).normalized();
+    let side = Vec2::new(-along.y, along.x) * (0.5 * width);
+    let first = mesh.vertices.len() as u32;
+    for pos in [from + side, from - side, to - side, to + side] {
+        mesh.vertices.push(Vertex { pos, uv: egui::epaint::WHITE_UV, color: c });
+    }
+    mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+}
+
+/// Squares of a round length, and that length.
+fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, unit: &str, y_down: bool) {
+    let length = nice_length(flat.metres(110.0));
+    let [left, top] = flat.to_world(rect, rect.min, y_down);
+    let [right, bottom] = flat.to_world(rect, rect.max, y_down);
+    let (low, high) = (top.min(bottom), top.max(bottom));
+    let stroke = Stroke::new(1.0, paper.grid);
+    for k in (left / length).ceil() as i64..=(right / length).floor() as i64 {
+        painter.vline(flat.to_screen(rect, [k as f64 * length, 0.0, 0.0], y_down).x, rect.y_range(), stroke);
+    }
+    for k in (low / length).ceil() as i64..=(high / length).floor() as i64 {
+        painter.hline(rect.x_range(), flat.to_screen(rect, [0.0, k as f64 * length, 0.0], y_down).y, stroke);
+    }
+    let from = Pos2::new(rect.left() + 14.0, rect.bottom() - 14.0);
+    let to = from + Vec2::new((length * flat.scale) as f32, 0.0);
+    painter.line_segment([from, to], Stroke::new(2.0, paper.soft));
+    for end in [from, to] {
+        painter.line_segment([end - Vec2::new(0.0, 4.0), end + Vec2::new(0.0, 4.0)], Stroke::new(1.5, paper.soft));
+    }
+    let text = format!("{} {unit}", format_value(length));
+    painter.text(from + Vec2::new(0.0, -6.0), Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), paper.soft);
+}
+
+fn obstacle(
+    painter: &Painter,
+    collider: &ColliderPicture,
+    flat: &Flat,
+    rect: Rect,
+    paper: &Paper,
+    project: &dyn Fn([f64; 3]) -> Pos2,
+) {
+    let edge = Stroke::new(2.0, paper.solid_edge);
+    let polygon = |points: Vec<Pos2>| {
+        painter.add(Shape::convex_polygon(points, paper.solid, edge));
+    };
+    match collider {
+        ColliderPicture::HalfSpace { point, normal } => {
+            let size = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
+            if size == 0.0 {
+                return;
+            }
+            // As far as the window reaches, wherever the point of the plane lies.
+            let n = [normal[0] / size, normal[1] / size];
+            let t = [-n[1], n[0]];
+            let middle = flat.middle();
+            let ahead = (middle[0] - point[0]) * t[0] + (middle[1] - point[1]) * t[1];
+            let far = flat.metres(f64::from(rect.width() + rect.height()));
+            let spot = |along: f64, depth: f64| {
+                let at = |d: usize| point[d] + (ahead + along) * t[d] - depth * n[d];
+                project([at(0), at(1), 0.0])
+            };
+            let corners = vec![spot(-far, 0.0), spot(far, 0.0), spot(far, 2.0 * far), spot(-far, 2.0 * far)];
+            painter.add(Shape::convex_polygon(corners, paper.solid, Stroke::NONE));
+            painter.line_segment([spot(-far, 0.0), spot(far, 0.0)], edge);
+        }
+        ColliderPicture::Ball { center, radius } => {
+            let radius = (radius * flat.scale).min(1e5) as f32;
+            painter.circle(project(*center), radius, paper.solid, edge);
+        }
+        ColliderPicture::Capsule { a, b, radius } => {
+            let (from, to) = (project(*a), project(*b));
+            let width = (2.0 * radius * flat.scale).min(1e5) as f32;
+            for (width, shade) in [(width + 4.0, paper.solid_edge), (width, paper.solid)] {
+                painter.line_segment([from, to], Stroke::new(width, shade));
+                for end in [from, to] {
+                    painter.circle_filled(end, 0.5 * width, shade);
+                }
+            }
+        }
+        ColliderPicture::Box { min, max, inside } => {
+            let corners = vec![
+                project([min[0], min[1], 0.0]),
+                project([max[0], min[1], 0.0]),
+                project([max[0], max[1], 0.0]),
+                project([min[0], max[1], 0.0]),
+            ];
+            if *inside {
+                painter.add(Shape::closed_line(corners, edge));
+            } else {
+                polygon(corners);
+            }
+        }
+        ColliderPicture::Polygon(points) => polygon(points.iter().map(|p| project(*p)).collect()),
+        ColliderPicture::Polyline(points) => {
+            painter.line(points.iter().map(|p| project(*p)).collect(), edge);
+        }
+        ColliderPicture::Mesh { positions, triangles } => {
+            let mut mesh = Mesh::default();
+            positions.iter().for_each(|p| mesh.colored_vertex(project(*p), paper.solid));
+            triangles.iter().for_each(|[a, b, c]| mesh.add_triangle(*a, *b, *c));
+            painter.add(Shape::mesh(mesh));
+        }
+    }
+}
+
+/// The colour of a kind of arrow.
+pub(crate) fn arrow_colour(kind: ArrowKind) -> Color32 {
+    match kind {
+        ArrowKind::Pressure => Color32::from_rgb(86, 160, 230),
+        ArrowKind::Velocity => Color32::from_rgb(0, 158, 115),
+        ArrowKind::Pull => RUBBER,
+        _ => Color32::from_rgb(230, 140, 20),
+    }
+}
+
+/// Arrows, each kind in a scale of its own: the longest takes sixty points of the screen.
+fn arrows(painter: &Painter, shown: &Shown, flat: &Flat, project: &dyn Fn([f64; 3]) -> Pos2) {
+    let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let mut longest: std::collections::BTreeMap<ArrowKind, f64> = std::collections::BTreeMap::new();
+    for arrow in &shown.picture.arrows {
+        let entry = longest.entry(arrow.kind).or_insert(0.0);
+        *entry = entry.max(size(arrow.vector));
+    }
+    for arrow in &shown.picture.arrows {
+        let most = longest.get(&arrow.kind).copied().unwrap_or(0.0);
+        if most <= 0.0 || arrow.kind == ArrowKind::Pull {
+            continue;
+        }
+        let scale = flat.metres(60.0) / most;
+        let from = project(arrow.from);
+        let to = project([0, 1, 2].map(|d| arrow.from[d] + scale * arrow.vector[d]));
+        let way = to - from;
+        if way.length() < 2.0 {
+            continue;
+        }
+        let stroke = Stroke::new(1.5, arrow_colour(arrow.kind));
+        painter.line_segment([from, to], stroke);
+        let back = way.normalized() * 6.0_f32.min(0.5 * way.length());
+        let side = Vec2::new(-back.y, back.x) * 0.45;
+        let head = vec![to, to - back + side, to - back - side];
+        painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+    }
+}
+
+/// The mark of a pinned node.
+pub(crate) fn pin(painter: &Painter, at: Pos2, paper: &Paper) {
+    painter.circle(at, 4.5, Color32::from_rgb(238, 178, 40), Stroke::new(1.5, paper.ink));
+}
+
+/// The rubber line of a pull and its force in newtons.
+pub(crate) fn rubber(painter: &Painter, from: Pos2, to: Pos2, force: &[f64; 3], paper: &Paper) {
+    painter.line_segment([from, to], Stroke::new(2.5, RUBBER));
+    painter.circle_filled(from, 4.0, RUBBER);
+    painter.circle(to, 6.0, paper.background, Stroke::new(2.0, RUBBER));
+    let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    let text = format!("{} N", format_value(round(newtons)));
+    let spot = to + Vec2::new(12.0, -10.0);
+    let size = FontId::proportional(14.0);
+    let galley = painter.layout_no_wrap(text, size, RUBBER);
+    let place = Align2::LEFT_BOTTOM.anchor_size(spot, galley.size());
+    painter.rect_filled(place.expand(3.0), 4.0, paper.background.gamma_multiply(0.85));
+    painter.galley(place.min, galley, RUBBER);
+}
+
+/// Three digits: more of them tremble.
+pub(crate) fn round(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 2);
+    (x / unit).round() * unit
+}
+
+/// Where a body would be set down.
+pub(crate) fn ghost(
+    painter: &Painter,
+    body: &BodyPicture,
+    moved: [f64; 3],
+    project: &dyn Fn([f64; 3]) -> Option<Pos2>,
+    paper: &Paper,
+) {
+    let lines: &[[u32; 2]] = match &body.facets {
+        Facets::Edges(edges) if !edges.is_empty() => edges,
+        _ => &body.segments,
+    };
+    let at = |node: u32| project([0, 1, 2].map(|d| body.positions[node as usize][d] + moved[d]));
+    for [a, b] in lines.iter().take(4_000) {
+        if let (Some(from), Some(to)) = (at(*a), at(*b)) {
+            painter.line_segment([from, to], Stroke::new(1.2, paper.soft));
+        }
+    }
+}
+
+/// The hint for the first pull, above a body.
+pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str, paper: &Paper) {
+    // Below the toolbar, and where the body is out of sight, at the border next to it.
+    let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
+    let tip = Pos2::new(across, top.y.clamp(rect.top() + 96.0, rect.bottom().max(rect.top() + 96.0)) - 8.0);
+    let beat = (painter.ctx().input(|i| i.time) * 3.0).sin() as f32 * 3.0;
+    let middle = tip - Vec2::new(0.0, 26.0 - beat);
+    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), paper.background);
+    let bubble = Rect::from_center_size(middle, galley.size() + Vec2::new(22.0, 12.0));
+    painter.rect_filled(bubble, 8.0, RUBBER);
+    let foot = bubble.center_bottom();
+    let arrow = vec![foot + Vec2::new(-7.0, -1.0), foot + Vec2::new(7.0, -1.0), foot + Vec2::new(0.0, 9.0)];
+    painter.add(Shape::convex_polygon(arrow, RUBBER, Stroke::NONE));
+    painter.galley(middle - 0.5 * galley.size(), galley, Color32::WHITE);
+}
+
+/// What the colours mean.
+pub(crate) fn legend(painter: &Painter, shown: &Shown, rect: Rect, paper: &Paper, range: [f64; 2]) {
+    let Some(legend) = &shown.picture.legend else { return };
+    if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
+        return;
+    }
+    let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
+    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, rect.top() + 44.0), Vec2::new(12.0, tall));
+    let mut mesh = Mesh::default();
+    let steps = 32;
+    for k in 0..=steps {
+        let share = k as f32 / steps as f32;
+        let c = colour(legend.map.colour(f64::from(1.0 - share)));
+        let y = bar.top() + share * bar.height();
+        mesh.colored_vertex(Pos2::new(bar.left(), y), c);
+        mesh.colored_vertex(Pos2::new(bar.right(), y), c);
+        if k < steps {
+            let first = 2 * k as u32;
+            mesh.add_triangle(first, first + 1, first + 2);
+            mesh.add_triangle(first + 1, first + 3, first + 2);
+        }
+    }
+    painter.add(Shape::mesh(mesh));
+    let font = FontId::proportional(11.5);
+    let name = format!("{} [{}]", legend.label, legend.unit);
+    let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
+    painter.text(spot, Align2::RIGHT_BOTTOM, name, FontId::proportional(12.0), paper.ink);
+    for tick in nice_ticks(range[0], range[1], 4) {
+        let share = ((tick - range[0]) / (range[1] - range[0])) as f32;
+        if !(0.0..=1.0).contains(&share) {
+            continue;
+        }
+        let y = bar.bottom() - share * bar.height();
+        painter
+            .line_segment([Pos2::new(bar.right(), y), Pos2::new(bar.right() + 4.0, y)], Stroke::new(1.0, paper.soft));
+        let spot = Pos2::new(bar.right() + 7.0, y);
+        painter.text(spot, Align2::LEFT_CENTER, format_value(tick), font.clone(), paper.ink);
+    }
+}

@@ -1,0 +1,162 @@
+//! A scene of space: drawn by the same renderer as the pictures of the command line, on a thread of its own, into a
+//! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
+
+use super::Paper;
+use crate::shown::Shown;
+use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, TextureOptions, Ui, Vec2};
+use opruga::draw::{Eye, Image, Lens, View, draw_scene};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The longest side of a picture in pixels: finer screens are served by stretching.
+const MOST_PIXELS: f64 = 1400.0;
+
+struct Order {
+    shown: Arc<Shown>,
+    view: View,
+    background: [u8; 3],
+    size: [u32; 2],
+    range: [f64; 2],
+}
+
+/// The eye, and the thread that draws what it sees.
+#[derive(Default)]
+pub(crate) struct Space {
+    eye: Option<Eye>,
+    orders: Option<Sender<Order>>,
+    done: Arc<Mutex<Option<Image>>>,
+    busy: Arc<AtomicBool>,
+    texture: Option<TextureHandle>,
+    /// What the last order was for, so that the same is not drawn twice.
+    last: Option<(u64, u64, Eye, [u32; 2], bool, u64)>,
+}
+
+impl core::fmt::Debug for Space {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Space").field("eye", &self.eye).finish_non_exhaustive()
+    }
+}
+
+impl Space {
+    pub(crate) fn eye(&self) -> Option<&Eye> {
+        self.eye.as_ref()
+    }
+
+    pub(crate) fn fit(&mut self, view: &View) {
+        self.eye = Some(Eye::of(view));
+        self.last = None;
+    }
+
+    /// Whether a picture is being drawn or waits to be shown.
+    pub(crate) fn is_drawing(&self) -> bool {
+        self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// Looks at a point from the same side.
+    pub(crate) fn look_at(&mut self, point: [f64; 3]) {
+        if let Some(eye) = &mut self.eye {
+            eye.target = point;
+        }
+    }
+
+    pub(crate) fn zoom(&mut self, factor: f64) {
+        if let Some(eye) = &mut self.eye {
+            eye.radius = (eye.radius / factor).clamp(1e-6, 1e6);
+        }
+    }
+
+    pub(crate) fn turn(&mut self, delta: Vec2) {
+        if let Some(eye) = &mut self.eye {
+            eye.azimuth -= f64::from(delta.x) * 0.4;
+            eye.elevation = (eye.elevation + f64::from(delta.y) * 0.4).clamp(-85.0, 85.0);
+        }
+    }
+
+    pub(crate) fn pan(&mut self, scales: &View, rect: Rect, delta: Vec2) {
+        if let Some(eye) = &mut self.eye {
+            let [right, up, _] = eye.axes(scales);
+            let metres = 2.0 * eye.radius / f64::from(rect.height().min(rect.width()).max(1.0));
+            for d in 0..3 {
+                eye.target[d] += metres * (f64::from(delta.y) * up[d] - f64::from(delta.x) * right[d]);
+            }
+        }
+    }
+
+    /// What turns points of space into points of the rectangle.
+    pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
+        Some(self.eye?.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
+    }
+
+    /// Shows the last picture and orders the next one.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        painter: &Painter,
+        shown: &Arc<Shown>,
+        scales: &View,
+        rect: Rect,
+        range: [f64; 2],
+        paper: &Paper,
+    ) {
+        let Some(eye) = self.eye else { return };
+        if let Some(image) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            let size = [image.width() as usize, image.height() as usize];
+            let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
+            match &mut self.texture {
+                Some(texture) => texture.set(picture, TextureOptions::LINEAR),
+                None => self.texture = Some(ui.ctx().load_texture("space", picture, TextureOptions::LINEAR)),
+            }
+        }
+        let fine = f64::from(ui.ctx().pixels_per_point());
+        let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
+        let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);
+        let size = [side(rect.width()), side(rect.height())];
+        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown));
+        if self.last != Some(wanted) && !self.busy.swap(true, Ordering::AcqRel) {
+            self.last = Some(wanted);
+            let [r, g, b, _] = paper.background.to_array();
+            let order = Order { shown: Arc::clone(shown), view: eye.view(scales), background: [r, g, b], size, range };
+            let orders = self.orders.get_or_insert_with(|| artist(&self.done, &self.busy, ui.ctx().clone()));
+            if orders.send(order).is_err() {
+                self.busy.store(false, Ordering::Release);
+            }
+        }
+        if let Some(texture) = &self.texture {
+            let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+            painter.image(texture.id(), rect, all, Color32::WHITE);
+        }
+    }
+}
+
+/// What else changes a picture of the same frame: what is shown of it.
+fn fingerprint(shown: &Shown) -> u64 {
+    let picture = &shown.picture;
+    let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
+    let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
+    label * 1_000_003 + lines as u64 * 1_009 + picture.arrows.len() as u64 * 7 + picture.bodies.len() as u64
+}
+
+/// Starts the thread that draws.
+fn artist(done: &Arc<Mutex<Option<Image>>>, busy: &Arc<AtomicBool>, context: egui::Context) -> Sender<Order> {
+    let (sender, orders): (Sender<Order>, Receiver<Order>) = channel();
+    let (done, busy) = (Arc::clone(done), Arc::clone(busy));
+    std::thread::spawn(move || {
+        while let Ok(order) = orders.recv() {
+            let mut picture = order.shown.picture.clone();
+            if let Some(legend) = &mut picture.legend {
+                legend.range = Some(order.range);
+            }
+            // Labels and pulls are drawn by the interface, sharper than in the picture.
+            picture.pulls.clear();
+            picture.bodies.iter_mut().for_each(|body| body.label.clear());
+            // A picture that cannot be drawn leaves the last one on the screen.
+            if let Ok(image) = draw_scene(&picture, &order.view, order.background, order.size) {
+                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
+            }
+            busy.store(false, Ordering::Release);
+            context.request_repaint();
+        }
+    });
+    sender
+}

@@ -1,0 +1,394 @@
+//! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
+//! runs what was done here.
+
+use opruga::blueprint::{Action, CommandBlueprint, Selector};
+use opruga::core::spec::{Value, Values};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
+
+/// A scene's text with its comments, and where it came from.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// The name of the scene: that of its file, without the ending.
+    pub name: String,
+    text: DocumentMut,
+}
+
+/// The time of the last moment that a command without an end names [s].
+pub const FOR_EVER: f64 = 1e9;
+
+impl Document {
+    /// Takes a text that the reader of scenes has accepted.
+    ///
+    /// # Errors
+    /// A sentence of the TOML parser.
+    pub fn new(name: impl Into<String>, text: &str) -> Result<Document, String> {
+        Ok(Document { name: name.into(), text: text.parse::<DocumentMut>().map_err(|e| e.to_string())? })
+    }
+
+    /// The text, fit for `opruga run`.
+    pub fn text(&self) -> String {
+        self.text.to_string()
+    }
+
+    /// The number of commands.
+    pub fn commands(&self) -> usize {
+        self.text.get("command").and_then(Item::as_array_of_tables).map_or(0, ArrayOfTables::len)
+    }
+
+    /// Writes a command behind the others; its number, for [`Document::end_command`].
+    pub fn push_command(&mut self, table: Table) -> usize {
+        let item = self.text.entry("command").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
+        if let Some(inline) = item.as_array().cloned() {
+            // `command = [{ … }]` becomes `[[command]]`, which can be added to.
+            let tables = inline.iter().filter_map(Toml::as_inline_table).map(|t| t.clone().into_table());
+            *item = Item::ArrayOfTables(tables.collect());
+        }
+        match item.as_array_of_tables_mut() {
+            Some(tables) => {
+                tables.push(table);
+                tables.len() - 1
+            }
+            None => 0,
+        }
+    }
+
+    /// Takes the last command back.
+    pub fn pop_command(&mut self) {
+        if let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut)
+            && !tables.is_empty()
+        {
+            tables.remove(tables.len() - 1);
+        }
+    }
+
+    /// The last command, if it sets this parameter at this time: a slider writes one value and not every one on its way.
+    pub fn last_set(&mut self, at: f64, path: &str) -> Option<&mut Table> {
+        let tables = self.text.get_mut("command")?.as_array_of_tables_mut()?;
+        let last = tables.len().checked_sub(1)?;
+        let table = tables.get_mut(last)?;
+        let said = |key: &str| table.get(key).and_then(Item::as_str);
+        let same = said("do") == Some("set")
+            && said("path") == Some(path)
+            && table.get("at").and_then(Item::as_float) == Some(at);
+        same.then_some(table)
+    }
+
+    /// Adds a row to the path of a drag.
+    pub fn lead_command(&mut self, number: usize, row: &[f64]) {
+        if let Some(path) = self.command(number).and_then(|table| table.get_mut("path")?.as_array_mut()) {
+            path.push(numbers(row));
+        }
+    }
+
+    /// Writes when a command ends [s].
+    pub fn end_command(&mut self, number: usize, until: f64) {
+        if let Some(table) = self.command(number) {
+            table["until"] = toml_edit::value(until);
+        }
+    }
+
+    fn command(&mut self, number: usize) -> Option<&mut Table> {
+        self.text.get_mut("command")?.as_array_of_tables_mut()?.get_mut(number)
+    }
+
+    /// Takes back what was recorded from a time on [s]: commands behind the first `kept` that begin then or later go,
+    /// and those that act then end.
+    pub fn cut(&mut self, kept: usize, time: f64) {
+        let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut) else { return };
+        for number in (kept..tables.len()).rev() {
+            let Some(table) = tables.get_mut(number) else { continue };
+            let number_of = |table: &Table, key: &str| {
+                table.get(key).and_then(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)))
+            };
+            if number_of(table, "at").is_some_and(|at| at >= time) {
+                tables.remove(number);
+            } else if number_of(table, "until").is_some_and(|until| until > time) {
+                table["until"] = toml_edit::value(time);
+            }
+        }
+    }
+
+    /// Takes commands back behind the first `kept`.
+    pub fn keep_commands(&mut self, kept: usize) {
+        while self.commands() > kept {
+            self.pop_command();
+        }
+    }
+
+    /// How long the scene lasts [s].
+    pub fn set_seconds(&mut self, seconds: f64) {
+        if let Some(time) = self.text.get_mut("time") {
+            time["seconds"] = toml_edit::value(seconds);
+        }
+    }
+
+    /// The names of all bodies, those that commands add included.
+    pub fn body_names(&self) -> Vec<String> {
+        let name = |item: Option<&Item>| item.and_then(Item::as_str).map(String::from);
+        let tables = |key: &str| self.text.get(key).and_then(Item::as_array_of_tables).into_iter().flatten();
+        let present = tables("body").filter_map(|table| name(table.get("name")));
+        let added = tables("command").filter_map(|table| {
+            table.get("body").and_then(Item::as_table_like).and_then(|body| name(body.get("name")))
+        });
+        present.chain(added).collect()
+    }
+
+    /// A name like this one that no body has: `ball`, `ball-2`, `ball-3` …
+    pub fn free_name(&self, like: &str) -> String {
+        let taken = self.body_names();
+        let stem = like.split('[').next().unwrap_or(like);
+        let stem = match stem.rsplit_once('-') {
+            Some((front, back)) if !front.is_empty() && back.bytes().all(|b| b.is_ascii_digit()) => front,
+            _ => stem,
+        };
+        if !taken.iter().any(|name| name == stem) {
+            return stem.to_string();
+        }
+        (2..).map(|n| format!("{stem}-{n}")).find(|name| !taken.contains(name)).unwrap_or_default()
+    }
+
+    /// The table of a body, of the scene or of a command that adds it; none for one of several copies.
+    pub fn body(&self, name: &str) -> Option<InlineTable> {
+        let tables = |key: &str| self.text.get(key).and_then(Item::as_array_of_tables).into_iter().flatten();
+        let named = |table: &dyn toml_edit::TableLike| table.get("name").and_then(Item::as_str) == Some(name);
+        if let Some(table) = tables("body").find(|table| named(*table)) {
+            return (!table.contains_key("copies")).then(|| table.clone().into_inline_table());
+        }
+        tables("command").find_map(|table| {
+            let body = table.get("body")?;
+            named(body.as_table_like()?).then(|| body.clone().into_value().ok()?.as_inline_table().cloned())?
+        })
+    }
+
+    /// The shape of a body, as far as its fields are plain values.
+    pub fn shape(&self, name: &str, dimension: usize) -> Option<Values> {
+        let body = self.body(name)?;
+        let shape = body.get("shape")?.as_inline_table()?;
+        let kind = shape.get("kind")?.as_str()?;
+        let spec = opruga::shapes::all().into_iter().find(|spec| spec.kind == kind)?;
+        let mut values = Values::defaults(spec, dimension);
+        for (field, value) in shape.iter().filter(|(field, _)| *field != "kind") {
+            if let Some(value) = plain(value) {
+                // What the reader has taken is allowed; a list of another kind stays unseen.
+                let _ = values.set(spec, field, value, dimension);
+            }
+        }
+        Some(values)
+    }
+
+    /// Replaces the table of a body of the scene; `false` where there is none of its own.
+    pub fn replace_body(&mut self, name: &str, body: &InlineTable) -> bool {
+        let Some(table) = self.own_body(name) else { return false };
+        let decor = table.decor().clone();
+        *table = body.clone().into_table();
+        *table.decor_mut() = decor;
+        true
+    }
+
+    /// Adds a body to the scene.
+    pub fn push_body(&mut self, body: &InlineTable) {
+        let mut table = body.clone().into_table();
+        table.decor_mut().set_prefix("\n");
+        let item = self.text.entry("body").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
+        if let Some(tables) = item.as_array_of_tables_mut() {
+            tables.push(table);
+        }
+    }
+
+    /// Takes a body out of the scene with all that names it; `false` where it has no table of its own.
+    pub fn remove_body(&mut self, name: &str) -> bool {
+        if self.own_body(name).is_none() {
+            return false;
+        }
+        for key in ["body", "command", "load", "probe"] {
+            let field = if key == "body" { "name" } else { "body" };
+            if let Some(tables) = self.text.get_mut(key).and_then(Item::as_array_of_tables_mut) {
+                tables.retain(|table| table.get(field).and_then(Item::as_str) != Some(name));
+            }
+        }
+        true
+    }
+
+    fn own_body(&mut self, name: &str) -> Option<&mut Table> {
+        let tables = self.text.get_mut("body")?.as_array_of_tables_mut()?;
+        let found = |table: &&mut Table| table.get("name").and_then(Item::as_str) == Some(name);
+        tables.iter_mut().find(found).filter(|table| !table.contains_key("copies"))
+    }
+
+    /// Writes a parameter into the scene itself; `false` where the path leads to nothing that is written there.
+    pub fn set(&mut self, path: &str, value: &Value) -> bool {
+        let parts: Vec<&str> = path.split('.').collect();
+        let put = |table: &mut dyn toml_edit::TableLike, field: &str| {
+            table.insert(field, Item::Value(toml(value)));
+            true
+        };
+        match parts.as_slice() {
+            ["world" | "time", field] => {
+                match self.text.entry(parts[0]).or_insert_with(toml_edit::table).as_table_like_mut() {
+                    Some(table) => put(table, field),
+                    None => false,
+                }
+            }
+            ["integrator", field] => match self.text.get_mut("integrator") {
+                Some(item) if item.is_str() => {
+                    let kind = item.as_str().unwrap_or_default().to_string();
+                    let mut table = InlineTable::new();
+                    table.insert("kind", kind.into());
+                    table.insert(*field, toml(value));
+                    *item = Item::Value(Toml::InlineTable(table));
+                    true
+                }
+                Some(item) => item.as_table_like_mut().is_some_and(|table| put(table, field)),
+                None => false,
+            },
+            ["collider", number, field] => {
+                let number = number.parse::<usize>().ok();
+                let tables = self.text.get_mut("collider").and_then(Item::as_array_of_tables_mut);
+                let table = number.and_then(|number| tables?.get_mut(number));
+                table.is_some_and(|table| put(table, field))
+            }
+            ["body", name, "models", model, field] => {
+                let Some(body) = self.own_body(name) else { return false };
+                let models = body.get_mut("models").and_then(Item::as_array_mut);
+                let kind = |value: &&mut Toml| {
+                    value.as_inline_table().and_then(|t| t.get("kind")).and_then(Toml::as_str) == Some(model)
+                };
+                let table = models.and_then(|models| match model.parse::<usize>() {
+                    Ok(number) => models.get_mut(number),
+                    Err(_) => models.iter_mut().find(kind),
+                });
+                table.and_then(Toml::as_inline_table_mut).is_some_and(|table| put(table, field))
+            }
+            _ => false,
+        }
+    }
+
+    /// Gives the scene another integrator.
+    pub fn set_integrator(&mut self, values: &Values) {
+        let mut table = kind_table(values, None).into_table();
+        if let Some(old) = self.text.get("integrator").and_then(Item::as_table) {
+            *table.decor_mut() = old.decor().clone();
+        } else {
+            table.decor_mut().set_prefix("\n");
+        }
+        self.text.insert("integrator", Item::Table(table));
+    }
+}
+
+/// A value of TOML that is one value of a parameter; points and paths are none.
+fn plain(value: &Toml) -> Option<Value> {
+    match value {
+        Toml::Float(x) => Some(Value::Number(*x.value())),
+        Toml::Integer(x) => Some(Value::Integer(*x.value())),
+        Toml::Boolean(x) => Some(Value::Boolean(*x.value())),
+        Toml::String(x) => Some(Value::Text(x.value().clone())),
+        Toml::Array(list) => {
+            let number = |x: &Toml| x.as_float().or_else(|| x.as_integer().map(|i| i as f64));
+            list.iter().map(number).collect::<Option<Vec<f64>>>().map(Value::Numbers)
+        }
+        _ => None,
+    }
+}
+
+/// A number or several, as a list.
+pub fn numbers(of: &[f64]) -> Array {
+    of.iter().copied().collect()
+}
+
+/// A value of a parameter as TOML.
+pub fn toml(value: &Value) -> Toml {
+    match value {
+        Value::Number(x) => Toml::from(*x),
+        Value::Integer(x) => Toml::from(*x),
+        Value::Boolean(x) => Toml::from(*x),
+        Value::Text(x) => Toml::from(x.as_str()),
+        Value::Numbers(x) => Toml::Array(numbers(x)),
+        Value::Integers(x) => Toml::Array(x.iter().map(|n| i64::from(*n)).collect()),
+        Value::Rows(rows) => Toml::Array(rows.iter().map(|row| Toml::Array(numbers(row))).collect()),
+    }
+}
+
+/// A model or an integrator as a table; with its defaults only what differs from them.
+pub fn kind_table(values: &Values, defaults: Option<&Values>) -> InlineTable {
+    let mut table = InlineTable::new();
+    table.insert("kind", values.kind().into());
+    for (name, value) in values.iter() {
+        if defaults.and_then(|defaults| defaults.get(name)) != Some(value) {
+            table.insert(name, toml(value));
+        }
+    }
+    table
+}
+
+/// A command as the scene file writes it, on the body of this name; none for what has no such form.
+pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) -> Option<Table> {
+    let mut table = Table::new();
+    table.decor_mut().set_prefix("\n");
+    let word = match &command.action {
+        Action::Drag { .. } => "drag",
+        Action::Push { .. } => "push",
+        Action::Pin { .. } => "pin",
+        Action::Set { .. } => "set",
+        Action::Remove { .. } => "remove",
+        Action::Change { .. } => "change",
+        Action::Add(_) => return None,
+    };
+    table["do"] = toml_edit::value(word);
+    table["at"] = toml_edit::value(command.at);
+    if matches!(word, "drag" | "push" | "pin") {
+        table["until"] = toml_edit::value(command.until);
+    }
+    let select = |select: &Selector<D>| match select {
+        Selector::Nodes(nodes) => {
+            let mut inline = InlineTable::new();
+            inline.insert("nodes", Toml::Array(nodes.iter().map(|n| i64::from(*n)).collect()));
+            Some(inline)
+        }
+        _ => None,
+    };
+    if !matches!(word, "set") {
+        table["body"] = toml_edit::value(body);
+    }
+    match &command.action {
+        Action::Drag { node, path, stiffness, .. } => {
+            match node {
+                Some(node) => table["node"] = toml_edit::value(i64::from(*node)),
+                None => table["node"] = toml_edit::value("nearest"),
+            }
+            if let Some(stiffness) = stiffness {
+                table["stiffness"] = toml_edit::value(*stiffness);
+            }
+            table["path"] = Item::Value(toml(&Value::Rows(path.clone())));
+        }
+        Action::Push { select: nodes, force, .. } => {
+            table["select"] = toml_edit::value(select(nodes)?);
+            table["force"] = toml_edit::value(numbers(force));
+        }
+        Action::Pin { select: nodes, .. } => table["select"] = toml_edit::value(select(nodes)?),
+        Action::Set { path, value } => {
+            table["path"] = toml_edit::value(path.as_str());
+            table["value"] = Item::Value(toml(value));
+        }
+        Action::Change { models, integrator, .. } => {
+            if let Some(models) = models {
+                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, None))).collect();
+                table["models"] = toml_edit::value(list);
+            }
+            if let Some(integrator) = integrator {
+                table["integrator"] = toml_edit::value(kind_table(integrator, None));
+            }
+        }
+        Action::Remove { .. } | Action::Add(_) => {}
+    }
+    Some(table)
+}
+
+/// A command that adds a body.
+pub fn add_table(at: f64, body: &InlineTable) -> Table {
+    let mut table = Table::new();
+    table.decor_mut().set_prefix("\n");
+    table["do"] = toml_edit::value("add");
+    table["at"] = toml_edit::value(at);
+    table["body"] = toml_edit::value(body.clone());
+    table
+}

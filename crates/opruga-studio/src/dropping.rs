@@ -1,0 +1,63 @@
+//! What becomes of a file that is dropped on the window.
+
+use crate::session::Request;
+use opruga::io::{Files, scene};
+use std::path::Path;
+
+/// Endings of files that become bodies, with the fields of their shape.
+const SHAPES: [(&str, &str, bool); 6] = [
+    ("svg", "spacing = 0.05, size = 1.0, filling = \"triangles\"", false),
+    ("obj", "size = 1.0", true),
+    ("stl", "size = 1.0", true),
+    ("ply", "size = 1.0", true),
+    ("gltf", "size = 1.0", true),
+    ("glb", "size = 1.0", true),
+];
+
+/// What is asked for: a scene to open, or a scene with the shape of the file in it. A file that is no scene and no shape,
+/// or too large to be one, is refused before it is read.
+///
+/// # Errors
+/// A sentence for the person.
+pub fn take(path: &Path) -> Result<Request, String> {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let name = path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned());
+    let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
+    if ending == "toml" {
+        let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|e| format!("{file}: {e}"))?;
+        let text = String::from_utf8(bytes).map_err(|_| format!("{file} is no text in UTF-8"))?;
+        return Ok(Request::Open { name, text, files: Files::beside(path) });
+    }
+    let Some((_, fields, space)) = SHAPES.iter().find(|(known, ..)| *known == ending) else {
+        let known: Vec<&str> = SHAPES.iter().map(|(known, ..)| *known).collect();
+        return Err(format!("{file} is neither a scene nor a shape; allowed: .toml, .{}", known.join(", .")));
+    };
+    if file.contains(['"', '\\']) {
+        return Err(format!("{file}: a scene cannot name this file; rename it without quotes and backslashes"));
+    }
+    Ok(Request::Open { name: name.clone(), text: around(&file, fields, *space, &ending), files: Files::beside(path) })
+}
+
+/// A scene with one shape over a floor.
+fn around(file: &str, fields: &str, space: bool, ending: &str) -> String {
+    let (dimension, gravity, up, normal) = if space {
+        (3, "[0.0, -9.81, 0.0]", "[0.0, 1.2, 0.0]", "[0.0, 1.0, 0.0]")
+    } else {
+        (2, "[0.0, -9.81]", "[0.0, 1.2]", "[0.0, 1.0]")
+    };
+    let kind = if ending == "svg" { "svg" } else { "surface" };
+    let models = if space {
+        "{ kind = \"mass_spring\", modulus = 300.0, damping = 0.02 }, { kind = \"pressure\", nRT = 20.0, ambient = 40.0 }"
+    } else {
+        "{ kind = \"mass_spring\", stiffness = 1500.0, damping = 0.6 }"
+    };
+    let floor = if space { "[0.0, 0.0, 0.0]" } else { "[0.0, 0.0]" };
+    format!(
+        "# A shape from a file, dropped on the studio.\nformat = \"opruga-1\"\ntitle = \"{title}\"\ndimension = {dimension}\n\n\
+         [time]\nseconds = 6.0\nframe = 0.016666666666666666\nsubsteps = 96\n\n[world]\ngravity = {gravity}\n\n\
+         [integrator]\nkind = \"symplectic_euler\"\n\n[[body]]\nname = \"shape\"\n\
+         shape = {{ kind = \"{kind}\", file = \"{file}\", {fields} }}\nposition = {up}\nmass = 1.0\nmodels = [{models}]\n\n\
+         [[collider]]\nkind = \"half_space\"\npoint = {floor}\nnormal = {normal}\nrestitution = 0.2\nfriction = 0.5\n",
+        title = file.chars().filter(|c| c.is_alphanumeric() || " ._-".contains(*c)).take(60).collect::<String>(),
+    )
+}

@@ -1,0 +1,377 @@
+//! A world of either dimension behind one face: what a person does to it, as commands of the scene file.
+
+use crate::document::{FOR_EVER, command_table};
+use crate::shown::{BodyShown, EnergyShown, ObstacleShown, Show, Shown};
+use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
+use opruga::core::spec::{Value, Values};
+use opruga::draw::{ArrowKind, ArrowPicture};
+use opruga::pictures::Scenery;
+use opruga::{Options, World, WorldError};
+use toml_edit::Table;
+
+/// A command that was given: its number in the world, and how the scene file writes it.
+pub struct Given {
+    /// Its number in the world.
+    pub number: usize,
+    /// Its table.
+    pub table: Table,
+}
+
+/// A running world.
+pub trait Engine: Send {
+    /// Steps through one frame.
+    fn frame(&mut self) -> Result<(), WorldError>;
+    /// Frames since the start.
+    fn frames(&self) -> u64;
+    /// The length of a frame [s].
+    fn frame_seconds(&self) -> f64;
+    /// The time [s].
+    fn time(&self) -> f64;
+    /// The whole state.
+    fn snapshot(&self) -> Vec<u8>;
+    /// Back to a state of the same past.
+    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
+    /// The hash of the state.
+    fn hash(&self) -> u64;
+    /// Pulls the nearest node of a body toward a pointer that is led.
+    fn pull(&mut self, body: usize, pointer: [f64; 3]) -> Result<Given, WorldError>;
+    /// Leads the pointer of a pull two frames ahead; the row of its path.
+    fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError>;
+    /// Ends a command now; the time of its end [s].
+    fn finish(&mut self, number: usize) -> Result<f64, WorldError>;
+    /// Pushes a node until it is told otherwise.
+    fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError>;
+    /// Pins a node.
+    fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
+    /// Sets a parameter.
+    fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError>;
+    /// Takes a body away.
+    fn remove(&mut self, name: &str) -> Result<Given, WorldError>;
+    /// Gives a body other models or another integrator.
+    fn change(
+        &mut self,
+        body: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Result<Given, WorldError>;
+    /// Gives the last command of a scene that begins now and adds a body.
+    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError>;
+    /// The node of a body nearest to a point.
+    fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
+    /// The position of a node [m].
+    fn position(&self, body: usize, node: u32) -> Option<[f64; 3]>;
+    /// The name of a body.
+    fn name(&self, body: usize) -> Option<String>;
+    /// The middle of a body's mesh as its shape was turned and scaled, and where that is moved to [m].
+    fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])>;
+    /// All there is to see.
+    fn shown(&mut self, show: &Show) -> Shown;
+    /// The columns and the row of a table for the present state.
+    fn row(&mut self) -> Vec<(String, f64)>;
+    /// What a film needs.
+    fn moment(&mut self, show: &Show) -> opruga::draw::Picture;
+}
+
+/// A world and what stays the same from picture to picture.
+struct Living<const D: usize> {
+    world: World<D>,
+    scenery: Scenery,
+    /// How many bodies the scenery knows.
+    known: usize,
+}
+
+/// Builds the world of a scene.
+///
+/// # Errors
+/// What the world refuses.
+pub fn build(blueprint: AnyBlueprint, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
+    fn living<const D: usize>(blueprint: Blueprint<D>, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
+        let world = World::new(blueprint, options.clone())?;
+        let (scenery, known) = (Scenery::new(&world), world.blueprint().bodies.len());
+        Ok(Box::new(Living { world, scenery, known }))
+    }
+    match blueprint {
+        AnyBlueprint::Plane(blueprint) => living(blueprint, options),
+        AnyBlueprint::Space(blueprint) => living(blueprint, options),
+    }
+}
+
+fn cut<const D: usize>(point: [f64; 3]) -> [f64; D] {
+    core::array::from_fn(|d| point[d])
+}
+
+fn three<const D: usize>(point: [f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(&point);
+    out
+}
+
+fn no_body(body: usize) -> WorldError {
+    WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() }
+}
+
+impl<const D: usize> Living<D> {
+    fn give(&mut self, until: f64, action: Action<D>, body: &str) -> Result<Given, WorldError> {
+        let at = self.world.time();
+        let command = CommandBlueprint { at, until: until.max(at), action };
+        let refused = || WorldError::Path { path: "command".into(), message: "it has no form in a scene".into() };
+        let table = command_table(&command, body).ok_or_else(refused)?;
+        let number = self.world.act(command)?;
+        Ok(Given { number, table })
+    }
+
+    fn body_name(&self, body: usize) -> Result<String, WorldError> {
+        self.world.handle(body).ok_or_else(|| no_body(body))?;
+        Ok(self.world.blueprint().bodies[body].name.clone())
+    }
+
+    /// The time of a coming frame [s], as the world counts it.
+    fn time_of(&self, frames: u64) -> f64 {
+        frames as f64 * self.world.blueprint().time.frame
+    }
+
+    fn row_of(&self, frames: u64, pointer: [f64; 3]) -> Vec<f64> {
+        let mut row = vec![self.time_of(frames)];
+        row.extend(cut::<D>(pointer));
+        row
+    }
+
+    fn picture(&mut self, show: &Show) -> opruga::draw::Picture {
+        let bodies = self.world.blueprint().bodies.len();
+        if bodies != self.known {
+            (self.scenery, self.known) = (Scenery::new(&self.world), bodies);
+        }
+        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, show.quantity);
+        let mut picture = self.scenery.picture(&moment);
+        if !show.springs {
+            picture.bodies.iter_mut().for_each(|body| {
+                if D == 2 && !body.cells.is_empty()
+                    || !matches!(&body.facets, opruga::draw::Facets::Edges(e) if e.is_empty())
+                {
+                    body.segments.clear();
+                }
+            });
+        }
+        if show.vertices {
+            picture.bodies.iter_mut().for_each(|body| body.nodes_drawn = body.positions.len() <= 20_000);
+        }
+        if show.velocities {
+            let living: Vec<usize> = self.world.bodies().collect();
+            for body in living.into_iter().take(64) {
+                let nodes = self.world.node_count(body) as u32;
+                for node in (0..nodes).step_by((nodes / 40).max(1) as usize) {
+                    picture.arrows.push(ArrowPicture {
+                        kind: ArrowKind::Velocity,
+                        from: three(self.world.position(body, node)),
+                        vector: three(self.world.velocity(body, node)),
+                    });
+                }
+            }
+        }
+        picture
+    }
+}
+
+impl<const D: usize> Engine for Living<D> {
+    fn frame(&mut self) -> Result<(), WorldError> {
+        self.world.frame()
+    }
+    fn frames(&self) -> u64 {
+        self.world.frames()
+    }
+    fn frame_seconds(&self) -> f64 {
+        self.world.blueprint().time.frame
+    }
+    fn time(&self) -> f64 {
+        self.world.time()
+    }
+    fn snapshot(&self) -> Vec<u8> {
+        self.world.snapshot()
+    }
+    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        self.world.rewind(bytes)
+    }
+    fn hash(&self) -> u64 {
+        self.world.state_hash()
+    }
+
+    fn pull(&mut self, body: usize, pointer: [f64; 3]) -> Result<Given, WorldError> {
+        let name = self.body_name(body)?;
+        let now = self.world.frames();
+        let path = vec![self.row_of(now, pointer), self.row_of(now + 1, pointer)];
+        let node = self.nearest(body, pointer);
+        let action = Action::Drag { body, node, facet: false, stiffness: None, path, largest_force: None };
+        self.give(FOR_EVER, action, &name)
+    }
+
+    fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
+        // Stages at the end of the coming frame look behind it: the path is known a frame farther.
+        let row = self.row_of(self.world.frames() + 2, pointer);
+        self.world.lead(number, row.clone())?;
+        Ok(row)
+    }
+
+    fn finish(&mut self, number: usize) -> Result<f64, WorldError> {
+        let until = self.world.time();
+        if self.world.finish(number, until).is_ok() {
+            return Ok(until);
+        }
+        // It has just begun: it acts for one frame.
+        let until = self.time_of(self.world.frames() + 1);
+        self.world.finish(number, until).map(|()| until)
+    }
+
+    fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError> {
+        let name = self.body_name(body)?;
+        let action = Action::Push { body, select: Selector::Nodes(vec![node]), force: cut(force) };
+        self.give(FOR_EVER, action, &name)
+    }
+
+    fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
+        let name = self.body_name(body)?;
+        self.give(FOR_EVER, Action::Pin { body, select: Selector::Nodes(vec![node]), axes: [true; D] }, &name)
+    }
+
+    fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError> {
+        self.give(0.0, Action::Set { path: path.into(), value }, "")
+    }
+
+    fn remove(&mut self, name: &str) -> Result<Given, WorldError> {
+        self.give(0.0, Action::Remove { name: name.into() }, name)
+    }
+
+    fn change(
+        &mut self,
+        body: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Result<Given, WorldError> {
+        let name = self.body_name(body)?;
+        self.give(0.0, Action::Change { body, models, integrator }, &name)
+    }
+
+    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError> {
+        let any: Box<dyn core::any::Any> = match scene {
+            AnyBlueprint::Plane(blueprint) => Box::new(blueprint),
+            AnyBlueprint::Space(blueprint) => Box::new(blueprint),
+        };
+        let refuse = |message: &str| WorldError::Path { path: "add".into(), message: message.into() };
+        let blueprint = any.downcast::<Blueprint<D>>().map_err(|_| refuse("the scene has another dimension"))?;
+        let now = self.world.time();
+        let due = blueprint.commands.into_iter().rfind(|c| c.at <= now && matches!(c.action, Action::Add(_)));
+        self.world.act(due.ok_or_else(|| refuse("the scene adds nothing now"))?).map(|_| ())
+    }
+
+    fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {
+        self.world.handle(body)?;
+        let point = cut::<D>(point);
+        let far = |node: &u32| -> f64 {
+            self.world.position(body, *node).iter().zip(&point).map(|(a, b)| (a - b) * (a - b)).sum()
+        };
+        (0..self.world.node_count(body) as u32).min_by(|a, b| far(a).total_cmp(&far(b)))
+    }
+
+    fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
+        self.world.handle(body)?;
+        ((node as usize) < self.world.node_count(body)).then(|| three(self.world.position(body, node)))
+    }
+
+    fn name(&self, body: usize) -> Option<String> {
+        self.body_name(body).ok()
+    }
+
+    fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])> {
+        self.world.handle(body)?;
+        let body = &self.world.blueprint().bodies[body];
+        let mut middle = [0.0; D];
+        for point in &body.mesh.positions {
+            for d in 0..D {
+                middle[d] += point[d] / body.mesh.positions.len() as f64;
+            }
+        }
+        Some((three(middle), three(body.translation)))
+    }
+
+    fn shown(&mut self, show: &Show) -> Shown {
+        let picture = self.picture(show);
+        let numbers: Vec<usize> = self.world.bodies().collect();
+        let mut bodies = Vec::with_capacity(numbers.len());
+        for &number in &numbers {
+            // What a crowd says of itself is read by nobody.
+            let readings = if numbers.len() <= 64 { self.world.readings(number) } else { Vec::new() };
+            let blueprint = &self.world.blueprint().bodies[number];
+            bodies.push(BodyShown {
+                number,
+                name: blueprint.name.clone(),
+                nodes: blueprint.mesh.nodes(),
+                models: if numbers.len() <= 64 { blueprint.models.clone() } else { Vec::new() },
+                integrator: blueprint.integrator.clone(),
+                shape: None,
+                readings,
+            });
+        }
+        let blueprint = self.world.blueprint();
+        let obstacles =
+            blueprint.colliders.iter().map(|collider| ObstacleShown { values: collider.values.clone() }).collect();
+        let estimates = self.world.stability();
+        let limit = estimates.iter().filter_map(|(_, s)| s.largest_stable_step).fold(f64::INFINITY, f64::min);
+        let (e, m) = (self.world.energy(), self.world.momentum());
+        Shown {
+            dimension: D as u8,
+            title: blueprint.title.clone(),
+            time: self.world.time(),
+            frames: self.world.frames(),
+            frame: blueprint.time.frame,
+            seconds: blueprint.time.seconds,
+            substeps: blueprint.time.substeps,
+            stable_step: limit,
+            gravity: three(blueprint.surroundings.gravity),
+            drag: blueprint.surroundings.drag,
+            integrator: Some(blueprint.integrator.clone()),
+            pulls: self.world.pulls().into_iter().map(|(a, b, f)| [three(a), three(b), three(f)]).collect(),
+            energy: EnergyShown {
+                kinetic: e.kinetic,
+                elastic: e.elastic,
+                gas: e.gas,
+                gravity: e.gravity,
+                work: e.work_user,
+                losses: e.loss_damping + e.loss_friction + e.loss_contact,
+                error: e.loss_integrator,
+            },
+            momentum: three(m.linear.0),
+            warnings: self.world.warnings(),
+            bodies,
+            obstacles,
+            picture,
+            ..Shown::default()
+        }
+    }
+
+    fn row(&mut self) -> Vec<(String, f64)> {
+        let e = self.world.energy();
+        let mut row: Vec<(String, f64)> = [
+            ("time", self.world.time()),
+            ("kinetic", e.kinetic),
+            ("elastic", e.elastic),
+            ("gas", e.gas),
+            ("gravity", e.gravity),
+            ("work_user", e.work_user),
+            ("loss_damping", e.loss_damping),
+            ("loss_friction", e.loss_friction),
+            ("loss_contact", e.loss_contact),
+            ("loss_integrator", e.loss_integrator),
+        ]
+        .map(|(name, x)| (name.to_string(), x))
+        .to_vec();
+        let bodies: Vec<usize> = self.world.bodies().take(64).collect();
+        for body in bodies {
+            let name = self.world.blueprint().bodies[body].name.clone();
+            row.extend(self.world.readings(body).into_iter().map(|(what, x)| (format!("{name}.{what}"), x)));
+        }
+        row
+    }
+
+    fn moment(&mut self, show: &Show) -> opruga::draw::Picture {
+        self.picture(show)
+    }
+}

@@ -1,0 +1,20 @@
+//! Opruga Studio: a window on a scene that runs while a person pulls its bodies, draws new ones and changes their physics.
+//!
+//! [`session`] is the whole of it without a window; the rest shows it and asks of it.
+// No physics here: pictures and clocks may differ in a last bit.
+#![allow(clippy::disallowed_methods)]
+
+pub mod document;
+pub mod engine;
+pub mod keyframes;
+pub mod pacing;
+pub mod session;
+pub mod shown;
+
+pub mod app;
+pub mod canvas;
+pub mod dropping;
+pub mod panels;
+pub mod runner;
+pub mod theme;
+pub mod words;

@@ -1,0 +1,144 @@
+//! Simulated time follows the clock, and where it cannot it slows down and says by how much.
+
+use std::time::Duration;
+
+/// The longest real time that is made up for: after a pause of ten minutes nothing leaps.
+const LONGEST: f64 = 0.1;
+/// The share of the last moment in what is shown.
+const FRESH: f64 = 0.1;
+
+/// How much simulated time is owed.
+#[derive(Clone, Debug)]
+pub struct Pacing {
+    owed: f64,
+    /// Simulated time over real time that was asked for, and how it went of late.
+    ratio: f64,
+    cost: f64,
+}
+
+impl Default for Pacing {
+    fn default() -> Pacing {
+        Pacing { owed: 0.0, ratio: 1.0, cost: 0.0 }
+    }
+}
+
+impl Pacing {
+    /// Forgets what is owed: after a pause, or a leap in time.
+    pub fn rest(&mut self) {
+        self.owed = 0.0;
+    }
+
+    /// Frames to compute now, of a length [s], at so many simulated seconds a second, after so much real time; `frame`
+    /// computes one and says how long it took, or that it failed. At most `budget` is spent.
+    ///
+    /// # Errors
+    /// What `frame` returns: nothing is owed then.
+    pub fn run<E>(
+        &mut self,
+        elapsed: Duration,
+        speed: f64,
+        length: f64,
+        budget: Duration,
+        mut frame: impl FnMut() -> Result<Duration, E>,
+    ) -> Result<u32, E> {
+        let real = elapsed.as_secs_f64().min(LONGEST);
+        self.owed += real * speed;
+        let (mut done, mut spent) = (0, Duration::ZERO);
+        while self.owed >= length && (done == 0 || spent < budget) {
+            match frame() {
+                Ok(took) => {
+                    spent += took;
+                    self.cost += FRESH * (took.as_secs_f64() - self.cost);
+                }
+                Err(error) => {
+                    self.rest();
+                    return Err(error);
+                }
+            }
+            self.owed -= length;
+            done += 1;
+        }
+        // What cannot be made up for is given up: time goes more slowly.
+        let lost = (self.owed - length).max(0.0);
+        self.owed -= lost;
+        if real > 0.0 && speed > 0.0 {
+            let now = ((real * speed - lost) / real).max(0.0);
+            self.ratio += FRESH * (now - self.ratio);
+        }
+        Ok(done)
+    }
+
+    /// Simulated time over real time of late.
+    pub fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// What a frame took of late [s].
+    pub fn cost(&self) -> f64 {
+        self.cost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn took(milliseconds: u64) -> impl FnMut() -> Result<Duration, ()> {
+        move || Ok(Duration::from_millis(milliseconds))
+    }
+
+    const FRAME: f64 = 1.0 / 60.0;
+
+    /// The number of frames in ten seconds, at a rate of calls, of frames that take so long.
+    fn ten_seconds(calls_per_second: u32, milliseconds: u64) -> (u32, Pacing) {
+        let (mut pacing, mut frames) = (Pacing::default(), 0);
+        let mut real = Duration::ZERO;
+        while real < Duration::from_secs(10) {
+            let step = Duration::from_secs_f64(1.0 / f64::from(calls_per_second));
+            let done = pacing.run(step, 1.0, FRAME, Duration::from_millis(12), took(milliseconds)).expect("frames");
+            frames += done;
+            // A call lasts as long as its frames.
+            real += step.max(Duration::from_millis(milliseconds * u64::from(done)));
+        }
+        (frames, pacing)
+    }
+
+    #[test]
+    fn simulated_time_follows_the_clock_at_every_rate_of_the_screen() {
+        for rate in [30, 60, 144, 1000] {
+            let (frames, pacing) = ten_seconds(rate, 0);
+            assert!((598..=602).contains(&frames), "{frames} frames at {rate} Hz");
+            assert!((pacing.ratio() - 1.0).abs() < 0.05);
+        }
+    }
+
+    #[test]
+    fn ten_hidden_minutes_are_not_made_up_for() {
+        let mut pacing = Pacing::default();
+        let done = pacing.run(Duration::from_secs(600), 1.0, FRAME, Duration::from_secs(9), took(0)).expect("frames");
+        assert!(done <= 6, "{done}");
+    }
+
+    #[test]
+    fn a_simulation_that_cannot_keep_up_slows_down_and_says_by_how_much() {
+        let mut pacing = Pacing::default();
+        for _ in 0..200 {
+            // Every call comes 50 ms after the last and has time for one frame of 60 ms: a third of real time.
+            let budget = Duration::from_millis(12);
+            let done = pacing.run(Duration::from_millis(50), 1.0, FRAME, budget, took(60)).expect("frames");
+            assert_eq!(done, 1, "no spiral");
+        }
+        assert!((pacing.ratio() - 1.0 / 3.0).abs() < 0.05, "{}", pacing.ratio());
+        assert!((pacing.cost() - 0.06).abs() < 1e-3);
+    }
+
+    #[test]
+    fn an_error_ends_the_frames_and_nothing_is_owed() {
+        let mut pacing = Pacing::default();
+        assert_eq!(
+            pacing.run(Duration::from_millis(100), 1.0, FRAME, Duration::from_secs(1), || Err("bad")),
+            Err("bad")
+        );
+        assert_eq!(pacing.run(Duration::ZERO, 1.0, FRAME, Duration::from_secs(1), took(1)), Ok(0));
+    }
+}

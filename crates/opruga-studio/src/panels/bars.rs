@@ -1,0 +1,194 @@
+//! The bars above and below: tools, time, numbers.
+
+use super::keeping::What;
+use crate::session::Request;
+use crate::shown::{Show, Shown};
+use crate::words::Language;
+use egui::{Align, Layout, RichText, Slider, Ui};
+use opruga::pictures::Quantity;
+
+/// What was chosen in the bar above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chosen {
+    /// Nothing that the window itself does.
+    Nothing,
+    /// The scenes.
+    Gallery,
+    /// The plots.
+    Plots,
+    /// The shortcuts.
+    Help,
+    /// The other language.
+    Language,
+    /// The other theme.
+    Theme,
+    /// A file.
+    Keep(What),
+}
+
+/// The bar above the scene.
+pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, working: bool, asks: &mut Vec<Request>) -> Chosen {
+    let mut chosen = Chosen::Nothing;
+    ui.horizontal_wrapped(|ui| {
+        if ui.button(words.scenes()).on_hover_text(format!("{}  (G)", words.scenes_hint())).clicked() {
+            chosen = Chosen::Gallery;
+        }
+        if ui.button(words.save()).on_hover_text(format!("{}  (Ctrl S)", words.save_scene())).clicked() {
+            chosen = Chosen::Keep(What::Scene);
+        }
+        ui.add_enabled_ui(!working, |ui| {
+            ui.menu_button(words.keep(), |ui| {
+                for (what, name) in [
+                    (What::Scene, words.save_scene()),
+                    (What::Picture, words.screenshot()),
+                    (What::Film, words.film()),
+                    (What::Animation, words.animation()),
+                    (What::Table, words.table()),
+                ] {
+                    if ui.button(name).clicked() {
+                        chosen = Chosen::Keep(what);
+                        ui.close();
+                    }
+                }
+            });
+        });
+        ui.separator();
+        ui.add_enabled_ui(shown.undo.is_some(), |ui| {
+            let about = format!("{} (Ctrl Z)", shown.undo.as_deref().unwrap_or_default());
+            if ui.button(words.undo()).on_hover_text(about).clicked() {
+                asks.push(Request::Undo);
+            }
+        });
+        ui.add_enabled_ui(shown.redo.is_some(), |ui| {
+            let about = format!("{} (Ctrl Y)", shown.redo.as_deref().unwrap_or_default());
+            if ui.button(words.redo()).on_hover_text(about).clicked() {
+                asks.push(Request::Redo);
+            }
+        });
+        ui.separator();
+        ui.label(RichText::new(&shown.name).strong());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("?").on_hover_text(words.help()).clicked() {
+                chosen = Chosen::Help;
+            }
+            if ui.button(words.language()).clicked() {
+                chosen = Chosen::Language;
+            }
+            if ui.button(if ui.visuals().dark_mode { words.light() } else { words.dark() }).clicked() {
+                chosen = Chosen::Theme;
+            }
+            if ui.button(words.plots()).on_hover_text("P").clicked() {
+                chosen = Chosen::Plots;
+            }
+        });
+    });
+    chosen
+}
+
+/// Play, step and the way through time.
+pub fn time(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
+    ui.horizontal(|ui| {
+        if ui.button(words.reset()).on_hover_text(format!("{}  (Home)", words.reset_hint())).clicked() {
+            asks.push(Request::Reset);
+        }
+        if ui.button(words.replay()).on_hover_text(words.replay_hint()).clicked() {
+            asks.push(Request::Replay);
+        }
+        let name = if shown.playing { words.pause() } else { words.play() };
+        let button = egui::Button::new(RichText::new(name).strong()).min_size(egui::vec2(72.0, 0.0));
+        if ui.add(button).clicked() {
+            asks.push(Request::Play(!shown.playing));
+        }
+        if ui.button(words.step()).on_hover_text(format!("{}  (→)", words.step_hint())).clicked() {
+            asks.push(Request::Step);
+        }
+        let speed = ui.label(words.speed());
+        let mut wanted = shown.speed;
+        ui.spacing_mut().slider_width = 84.0;
+        let slider = Slider::new(&mut wanted, 0.05..=4.0).logarithmic(true).max_decimals(2).suffix("×");
+        if ui.add(slider).labelled_by(speed.id).on_hover_text(words.speed_hint()).changed() {
+            asks.push(Request::Speed(wanted));
+        }
+        ui.separator();
+        let time = ui.label(words.time());
+        let mut frame = shown.frames;
+        let room = ui.available_width() - 96.0;
+        ui.spacing_mut().slider_width = room.max(40.0);
+        let slider = Slider::new(&mut frame, 0..=shown.latest.max(1)).show_value(false);
+        if ui.add(slider).labelled_by(time.id).on_hover_text(words.rewind_hint()).changed() {
+            asks.push(Request::Play(false));
+            asks.push(Request::Seek(frame));
+        }
+        ui.label(RichText::new(format!("{:.2} s", shown.time)).monospace());
+    });
+}
+
+/// The numbers of the machine.
+pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
+    let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
+    let h = shown.frame / f64::from(shown.substeps.max(1));
+    let cost = shown.pace.frame_cost;
+    let moving = if shown.playing { shown.pace.ratio * shown.speed } else { 0.0 };
+    let steps = if shown.frame > 0.0 { moving * f64::from(shown.substeps) / shown.frame } else { 0.0 };
+    let margin = if shown.stable_step.is_finite() && shown.stable_step > 0.0 {
+        format!("{:.0} %", 100.0 * h / shown.stable_step)
+    } else {
+        "–".into()
+    };
+    let small = |text: String| RichText::new(text).size(11.5);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 14.0;
+        ui.label(small(format!("{rate:.0} FPS")));
+        ui.label(small(format!("{:.2} ms", 1e3 * cost))).on_hover_text(words.step_time());
+        let pace = format!("{moving:.2} × {}", words.real_time());
+        if shown.playing && shown.pace.ratio < 0.95 {
+            let text = format!("{pace}: {:.1} × {}", 1.0 / shown.pace.ratio.max(1e-3), words.slower());
+            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20)));
+        } else {
+            ui.label(small(pace));
+        }
+        ui.label(small(format!("{nodes} {}", words.nodes())));
+        ui.label(small(format!("{steps:.0} {}", words.steps_a_second())));
+        ui.label(small(format!("{}: {margin}", words.margin()))).on_hover_text(words.substeps_hint());
+        if shown.recorded > 0 {
+            ui.label(small(format!("{} {}", shown.recorded, words.recorded())));
+        }
+        for warning in shown.warnings.iter().take(2) {
+            let text = format!("{} ({})", warning.code, warning.count);
+            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20))).on_hover_text(&warning.message);
+        }
+    });
+}
+
+/// What the colours tell, and what else is drawn.
+pub fn view_menu(ui: &mut Ui, words: Language, now: Show, asks: &mut Vec<Request>) {
+    let mut show = now;
+    let label = format!("{}: {}", words.colour(), quantity_name(words, now.quantity));
+    ui.menu_button(label, |ui| {
+        for quantity in Quantity::ALL {
+            if ui.radio_value(&mut show.quantity, quantity, quantity_name(words, quantity)).clicked() {
+                ui.close();
+            }
+        }
+    });
+    ui.menu_button(words.overlays(), |ui| {
+        ui.checkbox(&mut show.springs, words.springs());
+        ui.checkbox(&mut show.vertices, words.vertices());
+        ui.checkbox(&mut show.arrows, words.arrows());
+        ui.checkbox(&mut show.velocities, words.velocities());
+    });
+    if show != now {
+        asks.push(Request::Show(show));
+    }
+}
+
+/// The name of a quantity.
+fn quantity_name(words: Language, quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Strain => words.strain(),
+        Quantity::ElasticForce => words.elastic_force(),
+        Quantity::Pressure => words.pressure(),
+        Quantity::Speed => words.speed_of_nodes(),
+        Quantity::Plain => words.plain(),
+    }
+}

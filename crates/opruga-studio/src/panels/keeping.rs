@@ -1,0 +1,215 @@
+//! What is kept: the scene, pictures, films and tables. Films and tables are computed again from the scene, on a thread:
+//! what is kept is what the command line would make of it.
+
+use crate::document::Document;
+use crate::engine;
+use crate::runner::{Copied, Link};
+use crate::shown::{Severity, Show};
+use opruga::Options;
+use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
+use opruga::io::safe_write::safe_write;
+use opruga::io::scene;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, channel};
+
+/// Pictures of a film for a simulated second.
+const RATE: f64 = 30.0;
+/// The most frames of an animation as GIF: it would be too large.
+const MOST_GIF_FRAMES: usize = 300;
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    /// The scene with all that was done.
+    Scene,
+    /// The present moment.
+    Picture,
+    /// A film as MP4.
+    Film,
+    /// A film as GIF.
+    Animation,
+    /// A row for every frame.
+    Table,
+}
+
+/// Files that are being written.
+#[derive(Debug, Default)]
+pub struct Keeping {
+    asked: Option<(What, Show, Receiver<Copied>)>,
+    working: Option<Receiver<Result<String, String>>>,
+    message: Option<(String, Severity)>,
+}
+
+impl Keeping {
+    /// Whether a file is being written.
+    pub fn is_working(&self) -> bool {
+        self.asked.is_some() || self.working.is_some()
+    }
+
+    /// Begins to write a file; where one is being written, nothing happens.
+    pub fn begin(&mut self, what: What, link: &Link, show: Show) {
+        if !self.is_working() {
+            self.message = None;
+            self.asked = Some((what, show, link.copy()));
+        }
+    }
+
+    /// Looks whether something is done.
+    pub fn poll(&mut self) {
+        if let Some((what, show, copied)) = &self.asked
+            && let Ok(copied) = copied.try_recv()
+        {
+            let (what, show) = (*what, *show);
+            let (sender, receiver) = channel();
+            std::thread::spawn(move || {
+                let _ = sender.send(write(what, &copied, show));
+            });
+            (self.asked, self.working) = (None, Some(receiver));
+        }
+        if let Some(outcome) = self.working.as_ref().and_then(|working| working.try_recv().ok()) {
+            self.working = None;
+            self.message = Some(match outcome {
+                Ok(path) => (path, Severity::Told),
+                Err(error) => (error, Severity::Refused),
+            });
+        }
+    }
+
+    /// What there is to say about the last file.
+    pub fn message(&self) -> Option<(String, Severity)> {
+        self.message.clone()
+    }
+
+    /// Says something else in its place.
+    pub fn tell(&mut self, severity: Severity, text: String) {
+        self.message = Some((text, severity));
+    }
+
+    /// The message was read.
+    pub fn forget_message(&mut self) {
+        self.message = None;
+    }
+}
+
+/// A file in the folder `out/studio` that is not there yet.
+fn free_path(name: &str, ending: &str) -> Result<PathBuf, String> {
+    let folder = PathBuf::from("out").join("studio");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("the folder {} cannot be made: {e}", folder.display()))?;
+    let path = |number: u32| {
+        let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
+        folder.join(name)
+    };
+    (1..10_000).map(path).find(|path| !path.exists()).ok_or_else(|| format!("{} is full", folder.display()))
+}
+
+/// Writes a file; its path.
+///
+/// # Errors
+/// A sentence for the person.
+pub fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> {
+    let ending = match what {
+        What::Scene => "toml",
+        What::Picture => "png",
+        What::Film => "mp4",
+        What::Animation => "gif",
+        What::Table => "csv",
+    };
+    let bytes = content(what, copied, show)?;
+    let path = free_path(&copied.name, ending)?;
+    safe_write(&path, false, |file| file.write_all(&bytes)).map_err(|e| e.to_string())?;
+    Ok(path.display().to_string())
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// A sentence for the person.
+pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+    match what {
+        What::Scene => Ok(copied.text.clone().into_bytes()),
+        What::Table => table(copied),
+        What::Picture | What::Film | What::Animation => film(what, copied, show),
+    }
+}
+
+/// The engine of the scene, from its start.
+fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
+    let document = Document::new(&copied.name, &copied.text)?;
+    let options = scene::Options { files: copied.files.clone(), ..scene::Options::default() };
+    let together = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
+    let read = scene::read(document.text().as_bytes(), &copied.name, &opruga::catalogue(), &options);
+    let (blueprint, _) = read.map_err(together)?;
+    engine::build(blueprint, &Options::default()).map_err(|e| e.to_string())
+}
+
+fn table(copied: &Copied) -> Result<Vec<u8>, String> {
+    let mut engine = again(copied)?;
+    let mut rows = Vec::new();
+    rows.push(engine.row());
+    for _ in 0..copied.frames {
+        engine.frame().map_err(|e| e.to_string())?;
+        rows.push(engine.row());
+    }
+    // Bodies come and go: a column for everything that there ever was.
+    let mut names: Vec<String> = Vec::new();
+    for (name, _) in rows.iter().flatten() {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    let mut text = names.join(",") + "\n";
+    for row in rows {
+        let cell = |name: &String| row.iter().find(|(n, _)| n == name).map_or(String::new(), |(_, x)| x.to_string());
+        text += &(names.iter().map(cell).collect::<Vec<_>>().join(",") + "\n");
+    }
+    Ok(text.into_bytes())
+}
+
+fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+    let mut engine = again(copied)?;
+    let every = ((1.0 / RATE / engine.frame_seconds()).round() as u64).max(1);
+    let mut pictures: Vec<Picture> = Vec::new();
+    if what != What::Picture {
+        pictures.push(engine.moment(&show));
+    }
+    for _ in 0..copied.frames {
+        engine.frame().map_err(|e| e.to_string())?;
+        if what != What::Picture && engine.frames().is_multiple_of(every) {
+            pictures.push(engine.moment(&show));
+        }
+    }
+    if what == What::Picture {
+        pictures.push(engine.moment(&show));
+    }
+    let view = View::fit(pictures.iter()).map_err(|e| e.to_string())?;
+    let dimension = pictures.first().map_or(2, |picture| picture.dimension);
+    let style = Style::film(&view, dimension, if what == What::Picture { 1600 } else { 800 });
+    let image = |picture: &Picture| draw(picture, &view, &style).map_err(|e| e.to_string());
+    let rate = 1.0 / (every as f64 * engine.frame_seconds());
+    match what {
+        What::Picture => pictures.last().map_or_else(
+            || Err("there is nothing to draw".into()),
+            |picture| image(picture)?.to_png().map_err(|e| e.to_string()),
+        ),
+        What::Film => {
+            let mut writer =
+                Mp4Writer::new(Vec::new(), [style.width, style.height], rate).map_err(|e| e.to_string())?;
+            for picture in &pictures {
+                writer.push(&image(picture)?).map_err(|e| e.to_string())?;
+            }
+            writer.finish().map_err(|e| e.to_string())
+        }
+        _ => {
+            let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);
+            let images: Vec<Image> = pictures.iter().step_by(step).map(image).collect::<Result<_, _>>()?;
+            let samples: Vec<Image> = images.iter().step_by((images.len() / 8).max(1)).cloned().collect();
+            let mut bytes = Vec::new();
+            let mut writer = GifWriter::new(&mut bytes, rate / step as f64, &samples).map_err(|e| e.to_string())?;
+            for image in &images {
+                writer.push(image).map_err(|e| e.to_string())?;
+            }
+            drop(writer);
+            Ok(bytes)
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! One parameter: its slider, unit and sentence, made from what its model says of it.
+
+use egui::{ComboBox, DragValue, RichText, Slider, SliderClamping, Ui};
+use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Value};
+use std::collections::BTreeMap;
+
+/// What is being set: while a slider is held it shows what the hand wants and not what came back.
+#[derive(Debug, Default)]
+pub struct Hand {
+    held: Option<(String, Value)>,
+    /// The upper ends of open sliders, so that they do not run away from the hand.
+    ends: BTreeMap<String, f64>,
+}
+
+/// A starting value for a field that the scene leaves silent.
+pub fn starting(kind: &str, field: &Field) -> Option<Value> {
+    let known = match (kind, field.name) {
+        ("mass_spring", "stiffness") => 400.0,
+        ("mass_spring", "modulus") => 300.0,
+        ("bending", "stiffness") => 0.02,
+        ("pressure", "nRT") => 20.0,
+        ("pressure", "pressure") => 50.0,
+        _ => match field.range {
+            Allowed::Number { least, greatest } => {
+                let end = |bound: Bound| match bound {
+                    Bound::None => None,
+                    Bound::Closed(x) | Bound::Open(x) => Some(x),
+                };
+                match (end(least), end(greatest)) {
+                    (Some(a), Some(b)) => 0.5 * (a + b),
+                    (Some(a), None) => a + usual(field.unit),
+                    (None, Some(b)) => b - usual(field.unit),
+                    (None, None) => 0.0,
+                }
+            }
+            Allowed::Integer { least, .. } => return Some(Value::Integer(least.max(1))),
+            Allowed::Boolean => return Some(Value::Boolean(true)),
+            Allowed::Choice(words) => return words.first().map(|word| Value::Text((*word).into())),
+            _ => return None,
+        },
+    };
+    Some(Value::Number(known))
+}
+
+/// A usual size of a quantity.
+fn usual(unit: &str) -> f64 {
+    match unit {
+        "Pa" => 1e4,
+        "N/m" => 100.0,
+        "kg/m³" => 1000.0,
+        "m" => 0.1,
+        _ => 1.0,
+    }
+}
+
+/// Shows a parameter; its new value if it was changed. Values that no slider can hold are shown and not changed.
+pub fn show(ui: &mut Ui, hand: &mut Hand, path: &str, kind: &str, field: &Field, now: Option<&Value>) -> Option<Value> {
+    let held = hand.held.as_ref().filter(|(held, _)| held == path).map(|(_, value)| value.clone());
+    let now = held.or_else(|| now.cloned());
+    let unit = if field.unit.is_empty() { String::new() } else { format!(" [{}]", field.unit) };
+    let words = field.name.replace('_', " ");
+    let label = RichText::new(format!("{words}{unit}")).size(12.0);
+    let about = about(field);
+    ui.push_id(path, |ui| match (&field.range, now) {
+        (_, None) => ui.horizontal(|ui| absent(ui, label.weak(), &words, &about, kind, field)).inner,
+        (_, Some(Value::Number(x))) => number(ui, hand, path, field, label, &about, x, false).map(Value::Number),
+        (_, Some(Value::Integer(x))) => {
+            number(ui, hand, path, field, label, &about, x as f64, true).map(|x| Value::Integer(x.round() as i64))
+        }
+        (range, Some(now)) => {
+            ui.horizontal(|ui| {
+                let name = ui.label(label).on_hover_text(about).id;
+                other(ui, name, range, &now)
+            })
+            .inner
+        }
+    })
+    .inner
+}
+
+/// The sentence of a field, what it may be and what it is where nobody says.
+fn about(field: &Field) -> String {
+    let default = match field.default {
+        Unset::Number(x) => x.to_string(),
+        Unset::Integer(x) => x.to_string(),
+        Unset::Boolean(x) => x.to_string(),
+        Unset::Text(x) => x.to_string(),
+        _ => return format!("{}\n{}", field.documentation, field.range.describe(2)),
+    };
+    format!("{}\n{}, {default}", field.documentation, field.range.describe(2))
+}
+
+/// A field about which the scene is silent, and a button that gives it a value.
+fn absent(ui: &mut Ui, label: RichText, words: &str, about: &str, kind: &str, field: &Field) -> Option<Value> {
+    ui.label(label).on_hover_text(about);
+    let start = starting(kind, field);
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    ui.with_layout(layout, |ui| {
+        let button = ui.add_enabled(start.is_some(), egui::Button::new(format!("+ {words}")).small());
+        if button.on_hover_text(about).clicked() { start } else { None }
+    })
+    .inner
+}
+
+/// A slider below its name.
+#[allow(clippy::too_many_arguments, reason = "all of them describe one slider")]
+fn number(
+    ui: &mut Ui,
+    hand: &mut Hand,
+    path: &str,
+    field: &Field,
+    label: RichText,
+    about: &str,
+    now: f64,
+    whole: bool,
+) -> Option<f64> {
+    let name = ui.label(label).on_hover_text(about).id;
+    let (low, high, open) = ends(field, now, whole);
+    // An open end stays where it was when the slider was first seen, unless the value has gone beyond it.
+    let high = if open {
+        let end = hand.ends.entry(path.to_string()).or_insert(high);
+        if now > *end {
+            *end = high;
+        }
+        *end
+    } else {
+        high
+    };
+    let mut x = now;
+    let mut slider = Slider::new(&mut x, low..=high).clamping(SliderClamping::Never).max_decimals(6);
+    if open || whole && high > 1000.0 {
+        slider = slider.logarithmic(true).smallest_positive(if whole { 1.0 } else { high * 1e-6 });
+    }
+    if whole {
+        slider = slider.integer();
+    } else {
+        slider = slider.custom_formatter(|x, _| opruga::draw::format_value(three_digits(x)));
+    }
+    let response = ui.add(slider).labelled_by(name);
+    let changed = response.changed() && x != now && x.is_finite();
+    if response.dragged() || response.has_focus() && changed {
+        let value = if whole { Value::Integer(x.round() as i64) } else { Value::Number(x) };
+        hand.held = Some((path.to_string(), value));
+    } else if hand.held.as_ref().is_some_and(|(held, _)| held == path) {
+        hand.held = None;
+    }
+    changed.then_some(x)
+}
+
+fn three_digits(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 3);
+    (x / unit).round() * unit
+}
+
+/// The ends of a slider, and whether the upper one is open.
+fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
+    let default = match field.default {
+        Unset::Number(x) => x,
+        Unset::Integer(x) => x as f64,
+        _ => 0.0,
+    };
+    let size = now.abs().max(default.abs()).max(if now == 0.0 { usual(field.unit) } else { 0.0 });
+    let wide = 10f64.powf((20.0 * size).log10().ceil());
+    match field.range {
+        Allowed::Number { least, greatest } => {
+            let low = match least {
+                Bound::Closed(x) | Bound::Open(x) => x,
+                Bound::None if whole => 0.0,
+                Bound::None => -wide,
+            };
+            match greatest {
+                Bound::Closed(x) | Bound::Open(x) => (low, x, false),
+                Bound::None if low < 0.0 => (low, wide, false),
+                Bound::None => (low, wide, true),
+            }
+        }
+        Allowed::Integer { least, greatest } => (least as f64, (greatest as f64).min(wide.max(64.0)), false),
+        _ => (-wide, wide, false),
+    }
+}
+
+/// A value that is no number.
+fn other(ui: &mut Ui, name: egui::Id, range: &Allowed, now: &Value) -> Option<Value> {
+    match (range, now) {
+        (Allowed::Boolean, Value::Boolean(flag)) => {
+            let mut flag = *flag;
+            ui.checkbox(&mut flag, "").labelled_by(name).changed().then_some(Value::Boolean(flag))
+        }
+        (Allowed::Choice(choices), Value::Text(word)) => {
+            let mut chosen = word.clone();
+            let menu = ComboBox::from_id_salt("choice").selected_text(&chosen).show_ui(ui, |ui| {
+                for choice in *choices {
+                    ui.selectable_value(&mut chosen, (*choice).to_string(), *choice);
+                }
+            });
+            menu.response.labelled_by(name);
+            (chosen != *word).then_some(Value::Text(chosen))
+        }
+        (Allowed::Vector, Value::Numbers(list)) => {
+            let mut list = list.clone();
+            let before = list.clone();
+            for x in &mut list {
+                ui.add(DragValue::new(x).speed(0.02).max_decimals(3)).labelled_by(name);
+            }
+            (list != before).then_some(Value::Numbers(list))
+        }
+        _ => {
+            let text: String = now.to_string().chars().take(24).collect();
+            ui.label(RichText::new(text).weak().size(12.0));
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sliders_reach_around_their_value_and_stay_within_what_is_allowed() {
+        let field = |range| Field::new("x", range, "N/m", Unset::Absent, "");
+        let (low, high, open) = ends(&field(Allowed::NOT_NEGATIVE), 1600.0, false);
+        assert!(low == 0.0 && (16_000.0..=1e6).contains(&high) && open);
+        assert_eq!(ends(&field(Allowed::FRACTION), 0.3, false), (0.0, 1.0, false));
+        let (low, high, _) = ends(&field(Allowed::ANY), -3.0, false);
+        assert!(low <= -30.0 && high >= 30.0);
+        let (low, high, _) = ends(&field(Allowed::Integer { least: 3, greatest: 1 << 40 }), 36.0, true);
+        assert!(low == 3.0 && (200.0..1e6).contains(&high));
+    }
+
+    #[test]
+    fn every_model_of_the_program_has_starting_values_with_which_it_can_be_built() {
+        let registry = opruga::Registry::<2>::default();
+        for spec in registry.models() {
+            let mut values = opruga::core::spec::Values::defaults(spec, 2);
+            for field in spec.fields.iter().filter(|f| f.default == Unset::Required) {
+                let start = starting(spec.kind, field).expect("a starting value");
+                values.set(spec, field.name, start, 2).expect("an allowed one");
+            }
+            assert!(values.missing(spec).is_empty(), "{}", spec.kind);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Curves of the last moments: energy, gas, momentum, computing time.
+
+use crate::shown::Shown;
+use crate::words::Language;
+use egui::{Color32, RichText, Ui};
+use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
+use opruga::draw::OKABE_ITO;
+
+/// The most moments that are kept.
+const MOST: usize = 3_000;
+
+/// One moment.
+#[derive(Clone, Debug, Default)]
+struct Moment {
+    time: f64,
+    energy: [f64; 7],
+    momentum: [f64; 3],
+    cost: f64,
+    readings: Vec<(&'static str, f64)>,
+}
+
+/// What was seen.
+#[derive(Debug, Default)]
+pub struct Plots {
+    moments: Vec<Moment>,
+    opened: u64,
+    body: Option<String>,
+}
+
+impl Plots {
+    /// Keeps a moment; one that lies in the past takes those behind it away.
+    pub fn remember(&mut self, shown: &Shown, selected: Option<&str>) {
+        if self.opened != shown.opened || self.body.as_deref() != selected {
+            self.opened = shown.opened;
+            if self.body.as_deref() != selected {
+                self.moments.iter_mut().for_each(|moment| moment.readings.clear());
+            } else {
+                self.moments.clear();
+            }
+            self.body = selected.map(String::from);
+        }
+        if self.moments.last().is_some_and(|last| last.time == shown.time) {
+            return;
+        }
+        self.moments.retain(|moment| moment.time < shown.time);
+        if self.moments.len() >= MOST {
+            // Every second of the older half goes: long runs stay whole.
+            let half = MOST / 2;
+            let mut place = 0;
+            self.moments.retain(|_| {
+                place += 1;
+                place > half || place % 2 == 0
+            });
+        }
+        let e = &shown.energy;
+        let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
+        self.moments.push(Moment {
+            time: shown.time,
+            energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work, e.losses, e.error],
+            momentum: shown.momentum,
+            cost: 1e3 * shown.pace.frame_cost,
+            readings: body.map_or_else(Vec::new, |body| body.readings.clone()),
+        });
+    }
+
+    /// Shows the curves side by side.
+    pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>) {
+        let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
+        let count = if gas { 4 } else { 3 };
+        let size = egui::vec2(ui.available_width() / count as f32 - 10.0, ui.available_height() - 24.0);
+        ui.horizontal(|ui| {
+            let energies = [
+                (words.kinetic(), 0),
+                (words.elastic(), 1),
+                (words.of_gas(), 2),
+                (words.of_gravity(), 3),
+                (words.work(), 4),
+                (words.losses(), 5),
+                (words.integration_error(), 6),
+            ];
+            let curve = |of: &dyn Fn(&Moment) -> f64| -> Vec<[f64; 2]> {
+                self.moments.iter().map(|moment| [moment.time, of(moment)]).collect()
+            };
+            let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
+            plot(ui, "energy", words.energy(), size, lines);
+            if gas {
+                let names: Vec<&'static str> =
+                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| *name).collect());
+                // Volume and pressure differ in size: each is shown as a share of its largest value.
+                let share = |name: &str| {
+                    let values: Vec<[f64; 2]> = self
+                        .moments
+                        .iter()
+                        .filter_map(|m| m.readings.iter().find(|(n, _)| *n == name).map(|(_, x)| [m.time, *x]))
+                        .collect();
+                    let most = values.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
+                    values.into_iter().map(|[t, x]| [t, if most > 0.0 { 100.0 * x / most } else { 0.0 }]).collect()
+                };
+                let lines = names.iter().take(4).map(|name| (*name, share(name))).collect();
+                let title = format!("{}: {} [% max]", words.gas(), selected.unwrap_or_default());
+                plot(ui, "gas", &title, size, lines);
+            }
+            let axes = ["x", "y", "z"];
+            let lines = (0..usize::from(shown.dimension)).map(|d| (axes[d], curve(&|m| m.momentum[d]))).collect();
+            plot(ui, "momentum", words.momentum(), size, lines);
+            plot(ui, "cost", words.step_time(), size, vec![("", curve(&|m| m.cost))]);
+        });
+    }
+}
+
+fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, Vec<[f64; 2]>)>) {
+    ui.vertical(|ui| {
+        ui.label(RichText::new(title).size(12.0).strong());
+        let named = lines.iter().any(|(name, _)| !name.is_empty());
+        let mut plot = Plot::new(id)
+            .width(size.x)
+            .height(size.y)
+            .allow_scroll(false)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_boxed_zoom(false)
+            .y_axis_min_width(26.0);
+        if named {
+            plot = plot.legend(Legend::default().position(Corner::LeftTop).background_alpha(0.6));
+        }
+        let owned: Vec<(String, Vec<[f64; 2]>)> = lines.into_iter().map(|(n, l)| (n.to_string(), l)).collect();
+        let dark = ui.visuals().dark_mode;
+        plot.show(ui, move |plot| {
+            for (number, (name, points)) in owned.into_iter().enumerate() {
+                let [r, g, b] = OKABE_ITO[number % OKABE_ITO.len()];
+                // Black is the seventh of these colours.
+                let ink =
+                    if dark && (r, g, b) == (0, 0, 0) { Color32::from_gray(200) } else { Color32::from_rgb(r, g, b) };
+                plot.line(Line::new(name, PlotPoints::from(points)).color(ink).width(1.6));
+            }
+        });
+    });
+}

@@ -1,0 +1,365 @@
+//! The panel at the side: the body that was pressed, the world, the obstacles. All of it is made from what models,
+//! integrators, shapes and obstacles say of themselves, so that those that come later appear in it too.
+
+use super::parameter::{self, Hand};
+use crate::session::{Edit, Placed, Request};
+use crate::shown::{BodyShown, Shown};
+use crate::words::Language;
+use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
+use opruga::Registry;
+use opruga::core::spec::{Allowed, Default as Unset, Spec, Value, Values};
+
+/// The largest gravity of the arrow [m/s²].
+const MOST_GRAVITY: f64 = 20.0;
+
+/// The panel and what the hand holds in it.
+#[derive(Debug, Default)]
+pub struct Properties {
+    hand: Hand,
+    /// A field of a shape that waits until the hand lets go.
+    pending: Option<(String, &'static str, Value)>,
+}
+
+/// The specifications of a dimension.
+struct Kinds {
+    models: Vec<&'static Spec>,
+    integrators: Vec<&'static Spec>,
+    obstacles: Vec<&'static Spec>,
+    dimension: usize,
+}
+
+impl Kinds {
+    fn of(dimension: usize) -> Kinds {
+        let there = |list: Vec<&'static Spec>| list.into_iter().filter(|s| s.dimensions.contains(&dimension)).collect();
+        let registry = Registry::<2>::default();
+        Kinds {
+            models: there(registry.models()),
+            integrators: there(registry.integrators()),
+            obstacles: opruga::collide::all(dimension),
+            dimension,
+        }
+    }
+
+    /// The values of a kind with which it can begin.
+    fn begin(&self, spec: &'static Spec) -> Values {
+        let mut values = Values::defaults(spec, self.dimension);
+        let silent: Vec<_> = spec.fields.iter().filter(|f| f.default == Unset::Required).collect();
+        // Models whose law needs one of several fields take the first.
+        let first = spec.fields.first().filter(|f| f.default == Unset::Absent);
+        for field in silent.into_iter().chain(first) {
+            if let Some(value) = parameter::starting(spec.kind, field) {
+                // A starting value is an allowed one: a test goes through all of them.
+                let _ = values.set(spec, field.name, value, self.dimension);
+            }
+        }
+        values
+    }
+}
+
+impl Properties {
+    /// Shows the panel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        shown: &Shown,
+        words: Language,
+        selected: &mut Option<String>,
+        asks: &mut Vec<Request>,
+    ) {
+        if shown.dimension == 0 {
+            return;
+        }
+        let kinds = Kinds::of(usize::from(shown.dimension));
+        ui.spacing_mut().slider_width = 168.0;
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+            let body = selected.as_ref().and_then(|name| shown.bodies.iter().find(|body| body.name == *name));
+            let heading = |text: &str| RichText::new(text).heading();
+            CollapsingHeader::new(heading(words.body())).id_salt("body").default_open(true).show(ui, |ui| match body {
+                _ if shown.bodies.len() > 64 => {
+                    ui.label(words.crowd());
+                }
+                Some(body) => self.body(ui, body, &kinds, words, asks),
+                None => {
+                    ui.label(words.nothing_selected());
+                }
+            });
+            CollapsingHeader::new(heading(words.world())).id_salt("world").default_open(true).show(ui, |ui| {
+                self.world(ui, shown, &kinds, words, asks);
+            });
+            for (number, obstacle) in shown.obstacles.iter().enumerate().take(16) {
+                let spec = kinds.obstacles.iter().find(|spec| spec.kind == obstacle.values.kind());
+                let title = format!("{}: {}", words.obstacle(), obstacle.values.kind().replace('_', " "));
+                let header = CollapsingHeader::new(heading(&title)).id_salt(("obstacle", number));
+                header.default_open(false).show(ui, |ui| {
+                    for field in spec.map_or(&[][..], |spec| spec.fields) {
+                        let path = format!("collider.{number}.{}", field.name);
+                        self.set(ui, &path, obstacle.values.kind(), field, obstacle.values.get(field.name), asks);
+                    }
+                });
+            }
+        });
+    }
+
+    fn set(
+        &mut self,
+        ui: &mut Ui,
+        path: &str,
+        kind: &str,
+        field: &opruga::core::spec::Field,
+        now: Option<&Value>,
+        asks: &mut Vec<Request>,
+    ) {
+        if let Some(value) = parameter::show(ui, &mut self.hand, path, kind, field, now) {
+            asks.push(Request::Set(path.into(), value));
+        }
+    }
+
+    fn body(&mut self, ui: &mut Ui, body: &BodyShown, kinds: &Kinds, words: Language, asks: &mut Vec<Request>) {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(&body.name).strong().size(14.0));
+            ui.label(RichText::new(format!("{} {}", body.nodes, words.nodes())).weak());
+        });
+        if !body.readings.is_empty() {
+            let mut readings: Vec<String> = Vec::new();
+            for (name, x) in body.readings.iter().take(4) {
+                let unit = if *name == "pressure" {
+                    " Pa"
+                } else if *name == "volume" {
+                    " m³"
+                } else {
+                    ""
+                };
+                readings.push(format!("{} {}{unit}", name.replace('_', " "), opruga::draw::format_value(round(*x))));
+            }
+            ui.label(RichText::new(readings.join("   ")).weak().size(11.5));
+        }
+        self.integrator(ui, words, body.integrator.as_ref(), Some(body), kinds, asks);
+        for (number, model) in body.models.iter().enumerate() {
+            let Some(spec) = kinds.models.iter().copied().find(|spec| spec.kind == model.kind()) else { continue };
+            let title = RichText::new(spec.kind.replace('_', " ")).strong();
+            let header =
+                CollapsingHeader::new(title).id_salt(("model", &body.name, spec.kind)).default_open(number < 2);
+            let response = header.show(ui, |ui| {
+                for field in spec.fields {
+                    let path = format!("body.{}.models.{number}.{}", body.name, field.name);
+                    self.set(ui, &path, spec.kind, field, model.get(field.name), asks);
+                }
+                self.another_model(ui, words, body, number, kinds, asks);
+            });
+            response.header_response.on_hover_text(spec.summary);
+        }
+        let add = ComboBox::from_id_salt(("add", &body.name)).selected_text(words.add_model()).show_ui(ui, |ui| {
+            for spec in &kinds.models {
+                if ui.button(spec.kind.replace('_', " ")).on_hover_text(spec.summary).clicked() {
+                    let mut models = body.models.clone();
+                    models.push(kinds.begin(spec));
+                    asks.push(Request::Models(body.number, models));
+                    ui.close();
+                }
+            }
+        });
+        name(&add.response, words.add_model());
+        self.shape(ui, body, words, asks);
+        let place = |turned: f64, scaled: f64| {
+            Request::Edit(Edit::Place(body.name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
+        };
+        ui.horizontal_wrapped(|ui| {
+            let fifteen = 15f64.to_radians();
+            for (text, key, request) in [
+                (format!("{} +15°", words.turn()), "[", place(fifteen, 1.0)),
+                ("−15°".into(), "]", place(-fifteen, 1.0)),
+                (words.scale().into(), "+", place(0.0, 1.1)),
+                (words.smaller().into(), "−", place(0.0, 1.0 / 1.1)),
+                (words.duplicate().into(), "Ctrl D", Request::Edit(Edit::Duplicate(body.name.clone()))),
+                (words.delete().into(), "Del", Request::Edit(Edit::Delete(body.name.clone()))),
+            ] {
+                if ui.add(Button::new(RichText::new(text).size(12.0))).on_hover_text(key).clicked() {
+                    asks.push(request);
+                }
+            }
+        });
+    }
+
+    /// Another model instead of this one, or none.
+    fn another_model(
+        &mut self,
+        ui: &mut Ui,
+        words: Language,
+        body: &BodyShown,
+        number: usize,
+        kinds: &Kinds,
+        asks: &mut Vec<Request>,
+    ) {
+        ui.horizontal(|ui| {
+            let now = body.models[number].kind();
+            let menu =
+                ComboBox::from_id_salt(("kind", number)).selected_text(now.replace('_', " ")).show_ui(ui, |ui| {
+                    for spec in &kinds.models {
+                        let here = spec.kind == now;
+                        let choice = ui.selectable_label(here, spec.kind.replace('_', " ")).on_hover_text(spec.summary);
+                        if choice.clicked() && !here {
+                            let mut models = body.models.clone();
+                            models[number] = kinds.begin(spec);
+                            asks.push(Request::Models(body.number, models));
+                        }
+                    }
+                });
+            name(&menu.response, &format!("{} {now}", words.models()));
+            if ui.small_button("×").on_hover_text(words.remove_model()).clicked() {
+                let mut models = body.models.clone();
+                models.remove(number);
+                asks.push(Request::Models(body.number, models));
+            }
+        });
+    }
+
+    /// The integrator of the scene, or of a body.
+    fn integrator(
+        &mut self,
+        ui: &mut Ui,
+        words: Language,
+        own: Option<&Values>,
+        body: Option<&BodyShown>,
+        kinds: &Kinds,
+        asks: &mut Vec<Request>,
+    ) {
+        let now = own.map_or(words.of_the_scene(), |values| values.kind());
+        ui.horizontal(|ui| {
+            let label = ui.label(words.integrator());
+            let salt = ("integrator", body.map(|body| body.name.as_str()));
+            let menu = ComboBox::from_id_salt(salt).selected_text(now.replace('_', " ")).show_ui(ui, |ui| {
+                for spec in &kinds.integrators {
+                    let here = spec.kind == now;
+                    let choice = ui.selectable_label(here, spec.kind.replace('_', " ")).on_hover_text(spec.summary);
+                    if choice.clicked() && !here {
+                        asks.push(Request::Integrator(body.map(|body| body.number), kinds.begin(spec)));
+                    }
+                }
+            });
+            menu.response.labelled_by(label.id);
+        });
+        let Some(values) = own else { return };
+        let Some(spec) = kinds.integrators.iter().find(|spec| spec.kind == values.kind()) else { return };
+        for field in spec.fields {
+            let path = match body {
+                Some(body) => format!("body.{}.integrator.{}", body.name, field.name),
+                None => format!("integrator.{}", field.name),
+            };
+            self.set(ui, &path, spec.kind, field, values.get(field.name), asks);
+        }
+    }
+
+    /// The number of nodes of the body's shape.
+    fn shape(&mut self, ui: &mut Ui, body: &BodyShown, words: Language, asks: &mut Vec<Request>) {
+        let Some(shape) = &body.shape else { return };
+        let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == shape.kind()) else { return };
+        let title = RichText::new(format!("{}: {}", words.shape(), spec.kind.replace('_', " "))).strong();
+        CollapsingHeader::new(title).id_salt(("shape", &body.name)).default_open(false).show(ui, |ui| {
+            for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
+                let path = format!("shape.{}.{}", body.name, field.name);
+                let now = shape.get(field.name);
+                let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
+                let Some(value) = parameter::show(ui, &mut self.hand, &path, spec.kind, field, now) else { continue };
+                if slider && ui.input(|i| i.pointer.any_down()) {
+                    // A new mesh for every step of the hand would be too much: the last one counts.
+                    self.pending = Some((body.name.clone(), field.name, value));
+                } else {
+                    asks.push(Request::Edit(Edit::Shape(body.name.clone(), field.name, value)));
+                }
+            }
+        });
+        if !ui.input(|i| i.pointer.any_down())
+            && let Some((name, field, value)) = self.pending.take()
+        {
+            asks.push(Request::Edit(Edit::Shape(name, field, value)));
+        }
+    }
+
+    fn world(&mut self, ui: &mut Ui, shown: &Shown, kinds: &Kinds, words: Language, asks: &mut Vec<Request>) {
+        let dimension = kinds.dimension;
+        ui.horizontal(|ui| {
+            if let Some(gravity) = gravity_arrow(ui, shown.gravity, shown.picture.y_down, words) {
+                asks.push(Request::Set("world.gravity".into(), Value::Numbers(gravity[..dimension].to_vec())));
+            }
+            ui.vertical(|ui| {
+                let label = ui.label(format!("{} [m/s²]", words.gravity()));
+                let mut gravity = shown.gravity;
+                for (d, axis) in ["x", "y", "z"].iter().enumerate().take(dimension) {
+                    let value =
+                        egui::DragValue::new(&mut gravity[d]).speed(0.05).max_decimals(2).prefix(format!("{axis} "));
+                    ui.add(value).labelled_by(label.id);
+                }
+                if gravity != shown.gravity {
+                    asks.push(Request::Set("world.gravity".into(), Value::Numbers(gravity[..dimension].to_vec())));
+                }
+            });
+        });
+        let drag = ui.label(format!("{} [1/s]", words.drag()));
+        let mut rate = shown.drag;
+        let slider = Slider::new(&mut rate, 0.0..=20.0).logarithmic(true).smallest_positive(0.01).max_decimals(3);
+        if ui.add(slider).labelled_by(drag.id).changed() {
+            asks.push(Request::Set("world.drag".into(), Value::Number(rate)));
+        }
+        let own = shown.integrator.as_ref();
+        self.integrator(ui, words, own, None, kinds, asks);
+        let label = ui.label(words.substeps()).on_hover_text(words.substeps_hint());
+        let mut substeps = shown.substeps;
+        let most = (4 * shown.substeps.max(16)).next_power_of_two().min(4096);
+        let response = ui.add(Slider::new(&mut substeps, 1..=most).logarithmic(true)).labelled_by(label.id);
+        if response.changed() && substeps != shown.substeps {
+            asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));
+        }
+        if shown.stable_step.is_finite() && shown.stable_step > 0.0 {
+            let least = (shown.frame / shown.stable_step).ceil().max(1.0);
+            // Where the limit lies on the rail, which has small numbers as wide as large ones.
+            let rail = response.rect.left() + 6.0 + 156.0 * (least.ln() / f64::from(most).ln()).clamp(0.0, 1.0) as f32;
+            let y = response.rect.center().y;
+            let mark = [Pos2::new(rail, y - 8.0), Pos2::new(rail, y + 8.0)];
+            ui.painter().line_segment(mark, Stroke::new(2.0, Color32::from_rgb(230, 140, 20)));
+            ui.label(RichText::new(format!("{} {least}", words.stable())).weak().size(11.5));
+        }
+    }
+}
+
+/// Gives a control without a label beside it a name for those who cannot see it.
+fn name(response: &egui::Response, text: &str) {
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text));
+}
+
+fn round(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 3);
+    (x / unit).round() * unit
+}
+
+/// Gravity as an arrow whose end can be dragged; the new gravity if it was.
+fn gravity_arrow(ui: &mut Ui, now: [f64; 3], y_down: bool, words: Language) -> Option<[f64; 3]> {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(84.0), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, words.gravity()));
+    let sign = if y_down { 1.0 } else { -1.0 };
+    let radius = 0.46 * rect.width();
+    let scale = f64::from(radius) / MOST_GRAVITY;
+    let visuals = ui.visuals();
+    let painter = ui.painter();
+    painter.circle(rect.center(), radius, visuals.extreme_bg_color, Stroke::new(1.0, visuals.weak_text_color()));
+    let end = rect.center() + Vec2::new((now[0] * scale) as f32, (sign * now[1] * scale) as f32);
+    let ink = Color32::from_rgb(230, 140, 20);
+    painter.line_segment([rect.center(), end], Stroke::new(3.0, ink));
+    painter.circle_filled(end, 5.5, ink);
+    let response = response.on_hover_text(words.gravity_hint());
+    let at = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())?;
+    let from = (at - rect.center()) / radius;
+    let from = if from.length() > 1.0 { from.normalized() } else { from };
+    // Near the middle and near the earth's own gravity the end of the arrow holds on.
+    let mut gravity = [f64::from(from.x) * MOST_GRAVITY, sign * f64::from(from.y) * MOST_GRAVITY];
+    for x in &mut gravity {
+        *x = if x.abs() < 0.8 { 0.0 } else { (*x * 10.0).round() / 10.0 };
+    }
+    if gravity[0] == 0.0 && (gravity[1].abs() - 9.81).abs() < 0.8 {
+        gravity[1] = 9.81 * gravity[1].signum();
+    }
+    let new = [gravity[0], gravity[1], now[2]];
+    (new != now).then_some(new)
+}

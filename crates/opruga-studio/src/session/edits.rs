@@ -1,0 +1,339 @@
+//! What changes the scene: parameters, models, integrators, bodies that come, go and are moved.
+//!
+//! At the start an edit is written into the scene itself, and its world is built anew. Later it is a command: parameters,
+//! models and integrators change on the moving body; a body that is moved, turned, scaled or given another resolution is
+//! taken away and set down anew at rest in its new form.
+
+use super::{Refusal, Session, read};
+use crate::document::{add_table, kind_table, numbers, toml};
+use crate::shown::Severity;
+use opruga::core::spec::{Value, Values};
+use opruga::io::SceneError;
+use toml_edit::{InlineTable, Value as Toml};
+
+/// How a body is set down: moved, turned about its middle and scaled [m, rad].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// By how much it is moved [m].
+    pub moved: [f64; 3],
+    /// The angle by which it is turned about its middle, counter-clockwise; in space about the y axis [rad].
+    pub turned: f64,
+    /// The factor on its lengths.
+    pub scaled: f64,
+}
+
+/// A change of which bodies there are.
+#[derive(Clone, Debug)]
+pub enum Edit {
+    /// A new body; its table as in the scene file, with a name that others may have.
+    Add(InlineTable),
+    /// A copy of a body beside it.
+    Duplicate(String),
+    /// Moves, turns or scales a body.
+    Place(String, Placed),
+    /// Another value of a field of its shape, such as its number of vertices.
+    Shape(String, &'static str, Value),
+    /// Takes a body away.
+    Delete(String),
+}
+
+impl Session {
+    fn at_start(&self) -> bool {
+        self.engine.frames() == 0
+    }
+
+    /// Takes a document that differs at its start.
+    fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Refusal> {
+        let (pins, held) = (self.pins.clone(), self.held.is_some());
+        self.take(document, own_commands, 0)?;
+        if !pins.is_empty() || held {
+            self.tell(Severity::Told, "the scene begins anew: pins of the pointer were let go".into(), None);
+        }
+        Ok(())
+    }
+
+    pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Refusal> {
+        self.branch()?;
+        let past = self.past(&format!("{path} = {value}").split(" = ").next().unwrap_or_default().to_string());
+        if self.at_start() && self.document.commands() == self.own_commands {
+            let mut document = self.document.clone();
+            if document.set(path, &value) {
+                self.begin_with(document, self.own_commands)?;
+                self.remember(past);
+                return Ok(());
+            }
+        }
+        let given = self.engine.set(path, value.clone()).map_err(Refusal::World)?;
+        match self.document.last_set(self.engine.time(), path) {
+            Some(table) => table["value"] = toml_edit::Item::Value(toml(&value)),
+            None => {
+                self.write(given);
+            }
+        }
+        self.remember(past);
+        Ok(())
+    }
+
+    pub(super) fn change(
+        &mut self,
+        body: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Result<(), Refusal> {
+        self.branch()?;
+        let past = self.past(if models.is_some() { "models" } else { "integrator" });
+        let name = self.engine.name(body).unwrap_or_default();
+        let own =
+            self.document.body(&name).filter(|_| self.at_start() && self.document.commands() == self.own_commands);
+        let mut document = self.document.clone();
+        if let Some(mut table) = own {
+            if let Some(models) = &models {
+                let list: toml_edit::Array = models.iter().map(|m| Toml::InlineTable(kind_table(m, None))).collect();
+                table.insert("models", Toml::Array(list));
+            }
+            if let Some(integrator) = &integrator {
+                table.insert("integrator", Toml::InlineTable(kind_table(integrator, None)));
+            }
+            if document.replace_body(&name, &table) {
+                self.begin_with(document, self.own_commands)?;
+                self.remember(past);
+                return Ok(());
+            }
+        }
+        let given = self.engine.change(body, models, integrator).map_err(Refusal::World)?;
+        self.write(given);
+        self.remember(past);
+        let told = format!("`{name}` goes on as it moves: positions and velocities stay, models that it had remember");
+        self.tell(Severity::Told, told, None);
+        Ok(())
+    }
+
+    /// Another integrator for all bodies that have none of their own.
+    pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Refusal> {
+        self.branch()?;
+        let past = self.past("integrator");
+        if self.at_start() && self.document.commands() == self.own_commands {
+            let mut document = self.document.clone();
+            document.set_integrator(values);
+            self.begin_with(document, self.own_commands)?;
+            self.remember(past);
+            return Ok(());
+        }
+        // Every body gets it as its own: commands speak of bodies.
+        let shown = self.engine.shown(&self.show);
+        let (before, documents) = (self.engine.snapshot(), self.document.clone());
+        for body in &shown.bodies {
+            match self.engine.change(body.number, None, Some(values.clone())) {
+                Ok(given) => {
+                    self.write(given);
+                }
+                Err(error) => {
+                    // None of them, rather than some.
+                    self.document = documents;
+                    let text = read(&self.document, &self.files).map_err(Refusal::Scene)?;
+                    self.engine = crate::engine::build(text, &self.options).map_err(Refusal::World)?;
+                    self.engine.rewind(&before).map_err(Refusal::World)?;
+                    return Err(Refusal::World(error));
+                }
+            }
+        }
+        self.remember(past);
+        self.tell(Severity::Told, format!("every body goes on with `{}` from where it is", values.kind()), None);
+        Ok(())
+    }
+
+    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        self.branch()?;
+        match edit {
+            Edit::Add(table) => {
+                let mut table = table.clone();
+                let like = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
+                table.insert("name", self.document.free_name(&like).into());
+                self.exchange("add", None, Some(table))
+            }
+            Edit::Duplicate(name) => {
+                let mut table = self.table_of(name)?;
+                table.insert("name", self.document.free_name(name).into());
+                let size = self.size_of(name);
+                shift(&mut table, [1.15 * size, 0.0, 0.0], self.dimension());
+                self.exchange("duplicate", None, Some(table))
+            }
+            Edit::Place(name, placed) => {
+                let mut table = self.table_of(name)?;
+                self.place(name, &mut table, placed)?;
+                self.exchange("move", Some(name), Some(table))
+            }
+            Edit::Shape(name, field, value) => {
+                let mut table = self.table_of(name)?;
+                let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
+                let shape = shape.ok_or_else(|| Refusal::Scene(format!("body `{name}` has no shape to change")))?;
+                shape.insert(*field, toml(value));
+                self.exchange(field, Some(name), Some(table))
+            }
+            Edit::Delete(name) => self.exchange("delete", Some(name), None),
+        }
+    }
+
+    fn dimension(&mut self) -> usize {
+        usize::from(self.engine.shown(&self.show).dimension)
+    }
+
+    fn table_of(&self, name: &str) -> Result<InlineTable, Refusal> {
+        self.document.body(name).ok_or_else(|| {
+            let error = SceneError::new("studio.copies", format!("`{name}` is one of several copies"));
+            Refusal::Scene(error.hint("take `copies` out of the scene to change them one by one").to_string())
+        })
+    }
+
+    /// The width of a body [m].
+    fn size_of(&mut self, name: &str) -> f64 {
+        let shown = self.engine.shown(&self.show);
+        let place = shown.bodies.iter().position(|body| body.name == name);
+        let positions = place.map_or(&[][..], |place| &shown.picture.bodies[place].positions);
+        let (low, high) = positions.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[0]), b.max(p[0])));
+        if high > low { high - low } else { 1.0 }
+    }
+
+    /// Writes a move, a turn about the body's middle and a factor into its table.
+    fn place(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Refusal> {
+        let dimension = self.dimension();
+        let shown = self.engine.shown(&self.show);
+        let number = shown.bodies.iter().find(|body| body.name == name).map(|body| body.number);
+        let center = number.and_then(|number| self.engine.rest_center(number));
+        let (middle, at) = center.ok_or_else(|| Refusal::Scene(format!("there is no body `{name}`")))?;
+        if !(placed.scaled > 0.0 && placed.scaled.is_finite()) {
+            return Err(Refusal::Scene(format!("a body cannot be scaled by {}; allowed: above 0", placed.scaled)));
+        }
+        let (sin, cos) = placed.turned.sin_cos();
+        // The middle of the mesh after the turn; the position makes up for what it has moved.
+        let turned = match dimension {
+            2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
+            _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
+        };
+        let position = [0, 1, 2].map(|d| at[d] + middle[d] - placed.scaled * turned[d] + placed.moved[d]);
+        table.insert("position", Toml::Array(numbers(&position[..dimension])));
+        if placed.scaled != 1.0 {
+            let scale = number_of(table.get("scale")).unwrap_or(1.0) * placed.scaled;
+            table.insert("scale", scale.into());
+        }
+        if placed.turned != 0.0 {
+            let old: Vec<f64> = match table.get("rotation") {
+                Some(Toml::Array(list)) => list.iter().filter_map(|x| number_of(Some(x))).collect(),
+                value => number_of(value).into_iter().collect(),
+            };
+            let value = if dimension == 2 {
+                Toml::from(old.first().copied().unwrap_or(0.0) + placed.turned)
+            } else {
+                let old = <[f64; 3]>::try_from(old).unwrap_or([0.0; 3]);
+                Toml::Array(numbers(&turn_about_y(placed.turned, old)))
+            };
+            table.insert("rotation", value);
+        }
+        Ok(())
+    }
+
+    /// Takes a body away, sets one down, or both.
+    fn exchange(&mut self, label: &str, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Refusal> {
+        let past = self.past(label);
+        let mut document = self.document.clone();
+        if self.at_start() && document.commands() == self.own_commands {
+            let written = match (old, &new) {
+                (Some(name), Some(table)) => document.replace_body(name, table),
+                (Some(name), None) => document.remove_body(name),
+                (None, Some(table)) => {
+                    document.push_body(table);
+                    true
+                }
+                (None, None) => false,
+            };
+            if written {
+                let own = document.commands();
+                self.begin_with(document, own)?;
+                self.remember(past);
+                return Ok(());
+            }
+        }
+        self.release();
+        let now = self.engine.time();
+        if let Some(name) = old {
+            let given = self.engine.remove(name).map_err(Refusal::World)?;
+            self.write(given);
+        }
+        if let Some(mut table) = new {
+            if old.is_some() {
+                let name = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
+                table.insert("name", self.document.free_name(&name).into());
+            }
+            self.document.push_command(add_table(now, &table));
+            let added = match read(&self.document, &self.files) {
+                Ok(scene) => self.engine.add_from(scene).map_err(Refusal::World),
+                Err(errors) => Err(Refusal::Scene(errors)),
+            };
+            if let Err(refusal) = added {
+                self.back_to(past)?;
+                return Err(refusal);
+            }
+            if old.is_some() {
+                self.tell(Severity::Told, "the body is set down anew, at rest, in its new form".into(), None);
+            }
+        }
+        self.remember(past);
+        Ok(())
+    }
+
+    /// Undoes the first half of what was refused in its second.
+    fn back_to(&mut self, past: super::Past) -> Result<(), Refusal> {
+        let frame = past.frame;
+        self.take(past.document, past.own_commands, frame)?;
+        while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
+            self.frame().map_err(Refusal::World)?;
+        }
+        self.goal = None;
+        Ok(())
+    }
+}
+
+fn number_of(value: Option<&Toml>) -> Option<f64> {
+    value.and_then(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)))
+}
+
+/// Moves the place of a body in its table.
+fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
+    let old: Vec<f64> = table
+        .get("position")
+        .and_then(Toml::as_array)
+        .map(|list| list.iter().filter_map(|x| number_of(Some(x))).collect())
+        .unwrap_or_default();
+    let position: Vec<f64> = (0..dimension).map(|d| old.get(d).copied().unwrap_or(0.0) + by[d]).collect();
+    table.insert("position", Toml::Array(numbers(&position)));
+}
+
+/// The axis times its angle of a turn and then one about the y axis: the product of their quaternions.
+fn turn_about_y(angle: f64, first: [f64; 3]) -> [f64; 3] {
+    let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let half = 0.5 * size(first);
+    let unit = if half > 0.0 { half.sin() / (2.0 * half) } else { 0.5 };
+    let (w, [x, y, z]) = (half.cos(), first.map(|c| c * unit));
+    let (s, c) = (0.5 * angle).sin_cos();
+    // (c, 0, s, 0) · (w, x, y, z)
+    let (w, v) = (c * w - s * y, [c * x + s * z, c * y + s * w, c * z - s * x]);
+    let sine = size(v);
+    let angle = 2.0 * sine.atan2(w);
+    if sine > 0.0 { v.map(|component| component / sine * angle) } else { [0.0; 3] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turn_about_y;
+
+    #[test]
+    fn turns_about_one_axis_add_up() {
+        let [x, y, z] = turn_about_y(0.4, [0.0, 0.7, 0.0]);
+        assert!((y - 1.1).abs() < 1e-12 && x.abs() + z.abs() < 1e-12, "{x} {y} {z}");
+        let quarter = core::f64::consts::FRAC_PI_2;
+        // About x and then about y: a turn by 120° about (1, 1, −1)/√3.
+        let turn = turn_about_y(quarter, [quarter, 0.0, 0.0]);
+        let third = 2.0 * core::f64::consts::FRAC_PI_3 / 3.0_f64.sqrt();
+        assert!(turn.iter().zip([third, third, -third]).all(|(a, b)| (a - b).abs() < 1e-12), "{turn:?}");
+    }
+}

@@ -1,0 +1,542 @@
+//! A scene that runs while a person works on it, without any window: everything that is done is written into the text of
+//! the scene as a command, so that the command line computes the same bits from it.
+//!
+//! ```text
+//! text ─read→ world ─frames→ keyframes        a new command behind the present: `act`, and its table into the text
+//!   ↑ undo: an earlier text          ↑ rewind: the nearest keyframe before, then frame by frame
+//! ```
+
+mod edits;
+mod pointer;
+
+pub use edits::{Edit, Placed};
+pub use pointer::Grip;
+
+use crate::document::Document;
+use crate::engine::{self, Engine};
+use crate::keyframes::Keyframes;
+use crate::pacing::Pacing;
+use crate::shown::{Message, Offer, Pace, Severity, Show, Shown};
+use opruga::blueprint::AnyBlueprint;
+use opruga::core::spec::{Value, Values};
+use opruga::io::{Files, SceneError, scene};
+use opruga::{Options, WorldError};
+use pointer::Held;
+use std::time::Duration;
+
+/// What the keyframes may take [bytes].
+const KEYFRAME_BYTES: usize = 256 << 20;
+
+/// The most frames that are computed to go to a moment before the interface is served again.
+const SEEK_BUDGET: Duration = Duration::from_millis(40);
+
+/// What can be asked of a session.
+#[derive(Clone, Debug)]
+pub enum Request {
+    /// Open a scene.
+    Open {
+        /// Its name.
+        name: String,
+        /// Its text.
+        text: String,
+        /// Where the files are that it names.
+        files: Files,
+    },
+    /// Let time pass, or not.
+    Play(bool),
+    /// One frame.
+    Step,
+    /// To the start, without what was done since.
+    Reset,
+    /// To the start, with what was done since: it happens again.
+    Replay,
+    /// To a frame.
+    Seek(u64),
+    /// Simulated seconds in a real one.
+    Speed(f64),
+    /// Take hold of a body at a point.
+    Grab(Grip, usize, [f64; 3]),
+    /// The pointer has moved.
+    Lead([f64; 3]),
+    /// Let go.
+    Release,
+    /// Let go of a pinned point.
+    Unpin(usize, u32),
+    /// Set a parameter.
+    Set(String, Value),
+    /// Give a body other models.
+    Models(usize, Vec<Values>),
+    /// Give the scene (none) or a body another integrator.
+    Integrator(Option<usize>, Values),
+    /// Change which bodies there are, and where.
+    Edit(Edit),
+    /// Undo.
+    Undo,
+    /// Redo.
+    Redo,
+    /// Accept what a message offers.
+    Accept(Offer),
+    /// What shall be seen.
+    Show(Show),
+}
+
+/// A moment that can be gone back to.
+#[derive(Clone, Debug)]
+struct Past {
+    /// What was done after it.
+    label: String,
+    document: Document,
+    own_commands: usize,
+    frame: u64,
+}
+
+/// A scene that runs while a person works on it.
+pub struct Session {
+    document: Document,
+    files: Files,
+    options: Options,
+    engine: Box<dyn Engine>,
+    /// Commands that the scene had when it was opened; those behind them were recorded.
+    own_commands: usize,
+    keyframes: Keyframes,
+    /// The last frame of this course of things.
+    latest: u64,
+    /// Where to go, frame by frame.
+    goal: Option<u64>,
+    undo: Vec<Past>,
+    redo: Vec<Past>,
+    held: Option<Held>,
+    /// Points that are pinned: body, node, command of the world and of the document.
+    pins: Vec<pointer::Pinned>,
+    playing: bool,
+    speed: f64,
+    pacing: Pacing,
+    show: Show,
+    message: Option<Message>,
+    messages: u64,
+    opened: u64,
+    /// What was refused because its step was too long.
+    refused: Option<Request>,
+}
+
+impl core::fmt::Debug for Session {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Session").field("scene", &self.document.name).field("frame", &self.engine.frames()).finish()
+    }
+}
+
+/// All errors of a scene as one text.
+fn together(errors: &[SceneError]) -> String {
+    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+/// Reads the text of a document.
+fn read(document: &Document, files: &Files) -> Result<AnyBlueprint, String> {
+    let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
+    let file = format!("{}.toml", document.name);
+    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
+    read.map(|(blueprint, _)| blueprint).map_err(|errors| together(&errors))
+}
+
+/// Why a world is not the one that was wanted.
+enum Refusal {
+    Scene(String),
+    World(WorldError),
+}
+
+impl Session {
+    /// Opens a scene.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, as one text.
+    pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, String> {
+        let own = scene::Options { files: files.clone(), ..scene::Options::default() };
+        // The reader of scenes knows more of what can be wrong than the parser of documents.
+        let file = format!("{name}.toml");
+        let (blueprint, _) =
+            scene::read(text.as_bytes(), &file, &opruga::catalogue(), &own).map_err(|e| together(&e))?;
+        let document = Document::new(name, text)?;
+        let engine = engine::build(blueprint, &options).map_err(|error| error.to_string())?;
+        let mut session = Session {
+            own_commands: document.commands(),
+            document,
+            files,
+            options,
+            engine,
+            keyframes: Keyframes::new(KEYFRAME_BYTES),
+            latest: 0,
+            goal: None,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            held: None,
+            pins: Vec::new(),
+            playing: false,
+            speed: 1.0,
+            pacing: Pacing::default(),
+            show: Show::default(),
+            message: None,
+            messages: 0,
+            opened: 1,
+            refused: None,
+        };
+        session.keep();
+        Ok(session)
+    }
+
+    /// Does what is asked. What cannot be done is told by [`Shown::message`] and leaves everything as it was.
+    pub fn handle(&mut self, request: Request) {
+        let again = request.clone();
+        let outcome = match request {
+            Request::Open { name, text, files } => self.open_another(&name, &text, files),
+            Request::Play(playing) => {
+                self.playing = playing;
+                self.pacing.rest();
+                Ok(())
+            }
+            Request::Step => {
+                self.playing = false;
+                self.frame().map_err(Refusal::World)
+            }
+            Request::Reset => self.reset(),
+            Request::Replay => {
+                self.release();
+                self.seek(0);
+                self.playing = true;
+                Ok(())
+            }
+            Request::Seek(frame) => {
+                self.release();
+                self.seek(frame);
+                Ok(())
+            }
+            Request::Speed(speed) => {
+                self.speed = speed.clamp(0.01, 10.0);
+                self.pacing.rest();
+                Ok(())
+            }
+            Request::Grab(grip, body, point) => self.grab(grip, body, point).map_err(Refusal::World),
+            Request::Lead(point) => {
+                self.lead(point);
+                Ok(())
+            }
+            Request::Release => {
+                self.release();
+                Ok(())
+            }
+            Request::Unpin(body, node) => self.unpin(body, node).map_err(Refusal::World),
+            Request::Set(path, value) => self.set(&path, value),
+            Request::Models(body, models) => self.change(body, Some(models), None),
+            Request::Integrator(Some(body), values) => self.change(body, None, Some(values)),
+            Request::Integrator(None, values) => self.integrator(&values),
+            Request::Edit(edit) => self.edit(&edit),
+            Request::Undo => self.step_back(),
+            Request::Redo => self.step_forward(),
+            Request::Accept(offer) => self.accept(&offer),
+            Request::Show(show) => {
+                self.show = show;
+                Ok(())
+            }
+        };
+        match outcome {
+            Ok(()) => {}
+            Err(Refusal::Scene(text)) => self.tell(Severity::Refused, text, None),
+            Err(Refusal::World(error)) => self.refuse(&error, Some(again)),
+        }
+    }
+
+    /// Lets real time pass; at most `budget` is spent on frames, as `clock` measures them.
+    pub fn tick(&mut self, elapsed: Duration, budget: Duration, clock: &dyn Fn() -> Duration) {
+        if self.goal.is_some() {
+            let start = clock();
+            while let Some(goal) = self.goal
+                && clock().saturating_sub(start) < SEEK_BUDGET
+            {
+                if self.engine.frames() >= goal {
+                    self.goal = None;
+                    self.pacing.rest();
+                } else if let Err(error) = self.frame() {
+                    self.goal = None;
+                    self.refuse(&error, None);
+                }
+            }
+            return;
+        }
+        if !self.playing {
+            return;
+        }
+        let (length, speed) = (self.engine.frame_seconds(), self.speed);
+        let mut pacing = std::mem::take(&mut self.pacing);
+        let outcome = pacing.run(elapsed, speed, length, budget, || {
+            let start = clock();
+            self.frame().map(|()| clock().saturating_sub(start))
+        });
+        self.pacing = pacing;
+        if let Err(error) = outcome {
+            self.playing = false;
+            self.refuse(&error, None);
+        }
+    }
+
+    /// One frame, with the pointer led before it and a keyframe behind it.
+    fn frame(&mut self) -> Result<(), WorldError> {
+        self.lead_held();
+        self.engine.frame()?;
+        self.latest = self.latest.max(self.engine.frames());
+        self.keep();
+        Ok(())
+    }
+
+    fn keep(&mut self) {
+        let frame = self.engine.frames();
+        if self.keyframes.wants(frame) {
+            self.keyframes.keep(frame, self.engine.snapshot());
+        }
+    }
+
+    /// Goes to a frame: to the nearest keyframe before it, and from there frame by frame in the coming ticks.
+    fn seek(&mut self, frame: u64) {
+        let frame = frame.min(self.latest);
+        let now = self.engine.frames();
+        if let Some((kept, state)) = self.keyframes.before(frame)
+            && (frame < now || kept > now)
+            && let Err(error) = self.engine.rewind(state)
+        {
+            self.refuse(&error, None);
+            return;
+        }
+        self.goal = (frame > self.engine.frames()).then_some(frame);
+        self.pacing.rest();
+    }
+
+    /// What is done now replaces what was recorded later: the future is written anew from here.
+    fn branch(&mut self) -> Result<(), Refusal> {
+        let now = self.engine.frames();
+        if now >= self.latest {
+            return Ok(());
+        }
+        let mut document = self.document.clone();
+        document.cut(self.own_commands, self.engine.time());
+        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
+        let mut engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Refusal::World)?;
+        (self.document, self.engine) = (document, engine);
+        self.pins.retain(|pin| pin.at < now);
+        self.keyframes.forget_after(now);
+        self.latest = now;
+        self.goal = None;
+        Ok(())
+    }
+
+    /// A point to come back to.
+    fn past(&self, label: &str) -> Past {
+        Past {
+            label: label.into(),
+            document: self.document.clone(),
+            own_commands: self.own_commands,
+            frame: self.engine.frames(),
+        }
+    }
+
+    /// Remembers the moment before something was done.
+    fn remember(&mut self, past: Past) {
+        // A slider that is drawn is one edit.
+        let same = |last: &Past| last.label == past.label && last.frame == past.frame;
+        if !self.undo.last().is_some_and(same) {
+            self.undo.push(past);
+        }
+        self.redo.clear();
+        if self.undo.len() > 100 {
+            self.undo.remove(0);
+        }
+    }
+
+    /// Builds the world of a document and goes to a frame that it shares with the present course of things.
+    fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Refusal> {
+        self.release();
+        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
+        let engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        let shared = frame.min(self.engine.frames().max(self.latest));
+        let state = self.keyframes.before(shared).map(|(_, state)| state.to_vec());
+        let mut engine = engine;
+        // Where the start itself was changed there is no common past, and the way goes from the start.
+        let common = frame > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
+        (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
+        if common {
+            self.keyframes.forget_after(self.engine.frames());
+        } else {
+            self.keyframes = Keyframes::new(KEYFRAME_BYTES);
+            self.keep();
+        }
+        self.pins.clear();
+        self.latest = frame;
+        self.goal = (frame > self.engine.frames()).then_some(frame);
+        self.pacing.rest();
+        Ok(())
+    }
+
+    fn step_back(&mut self) -> Result<(), Refusal> {
+        let Some(past) = self.undo.last().cloned() else { return Ok(()) };
+        let present = Past { label: past.label.clone(), ..self.past("") };
+        self.take(past.document, past.own_commands, past.frame)?;
+        self.undo.pop();
+        // What is redone begins where it was done.
+        self.redo.push(Past { frame: present.frame, ..present });
+        self.tell(Severity::Told, format!("undo: {}, t = {:.2} s", past.label, self.time_of(past.frame)), None);
+        Ok(())
+    }
+
+    fn step_forward(&mut self) -> Result<(), Refusal> {
+        let Some(future) = self.redo.last().cloned() else { return Ok(()) };
+        let present = Past { label: future.label.clone(), ..self.past("") };
+        self.take(future.document, future.own_commands, future.frame)?;
+        self.redo.pop();
+        self.undo.push(present);
+        self.tell(Severity::Told, format!("redo: {}, t = {:.2} s", future.label, self.time_of(future.frame)), None);
+        Ok(())
+    }
+
+    fn time_of(&self, frame: u64) -> f64 {
+        frame as f64 * self.engine.frame_seconds()
+    }
+
+    fn reset(&mut self) -> Result<(), Refusal> {
+        let past = self.past("reset");
+        let mut document = self.document.clone();
+        let recorded = document.commands() > self.own_commands;
+        document.keep_commands(self.own_commands);
+        self.take(document, self.own_commands, 0)?;
+        if recorded {
+            self.remember(past);
+        }
+        Ok(())
+    }
+
+    fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Refusal> {
+        let mut next = Session::open(name, text, files, self.options.clone()).map_err(Refusal::Scene)?;
+        (next.show, next.speed, next.playing) = (self.show, self.speed, true);
+        (next.opened, next.messages) = (self.opened + 1, self.messages);
+        *self = next;
+        Ok(())
+    }
+
+    fn accept(&mut self, offer: &Offer) -> Result<(), Refusal> {
+        self.message = None;
+        match offer {
+            Offer::HalveStep => {
+                let second = (1.0 / self.engine.frame_seconds()).round() as u64;
+                let goal = self.engine.frames().saturating_sub(second);
+                self.release();
+                self.seek(goal);
+                while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
+                    self.frame().map_err(Refusal::World)?;
+                }
+                self.goal = None;
+                let substeps = self.engine.shown(&self.show).substeps;
+                self.set("time.substeps", Value::Integer(i64::from(substeps) * 2))?;
+                self.playing = true;
+                Ok(())
+            }
+            Offer::Substeps(substeps) => {
+                let refused = self.refused.take();
+                self.set("time.substeps", Value::Integer(i64::from(*substeps)))?;
+                if let Some(request) = refused {
+                    self.handle(request);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn tell(&mut self, severity: Severity, text: String, offer: Option<Offer>) {
+        self.messages += 1;
+        self.message = Some(Message { number: self.messages, severity, text, offer });
+    }
+
+    fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
+        let offer = match error {
+            WorldError::Diverged { .. } | WorldError::Step { .. } => Some(Offer::HalveStep),
+            WorldError::UnstableStep { substeps, .. } => {
+                self.refused = request;
+                // A little more than the least, so that the next change does not fail at once.
+                Some(Offer::Substeps(substeps.saturating_add(substeps / 8 + 1)))
+            }
+            _ => None,
+        };
+        self.tell(Severity::Refused, error.to_string(), offer);
+    }
+
+    /// Everything that there is to see now.
+    pub fn shown(&mut self) -> Shown {
+        let mut shown = self.engine.shown(&self.show);
+        shown.name.clone_from(&self.document.name);
+        shown.latest = self.latest;
+        shown.playing = self.playing;
+        shown.speed = self.speed;
+        shown.pace = Pace { ratio: self.pacing.ratio(), frame_cost: self.pacing.cost() };
+        shown.undo = self.undo.last().map(|past| past.label.clone());
+        shown.redo = self.redo.last().map(|past| past.label.clone());
+        shown.message.clone_from(&self.message);
+        shown.opened = self.opened;
+        shown.recorded = self.document.commands().saturating_sub(self.own_commands);
+        shown.kept_bytes = self.keyframes.bytes();
+        shown.pins = self.pins_shown();
+        if shown.bodies.len() <= 64 {
+            for body in &mut shown.bodies {
+                body.shape = self.document.shape(&body.name, usize::from(shown.dimension));
+            }
+        }
+        shown
+    }
+
+    /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
+    pub fn saved(&self) -> String {
+        let mut document = self.document.clone();
+        document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
+        document.text()
+    }
+
+    /// The text of the scene as it stands.
+    pub fn text(&self) -> String {
+        self.document.text()
+    }
+
+    /// Where the files are that the scene names.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// The hash of the state.
+    pub fn hash(&self) -> u64 {
+        self.engine.hash()
+    }
+
+    /// Frames since the start.
+    pub fn frames(&self) -> u64 {
+        self.engine.frames()
+    }
+
+    /// The columns and the row of a table for the present state.
+    pub fn row(&mut self) -> Vec<(String, f64)> {
+        self.engine.row()
+    }
+
+    /// The name of the scene.
+    pub fn name(&self) -> &str {
+        &self.document.name
+    }
+
+    /// The last frame of this course of things.
+    pub fn latest(&self) -> u64 {
+        self.latest
+    }
+
+    /// Whether it goes to another moment.
+    pub fn is_seeking(&self) -> bool {
+        self.goal.is_some()
+    }
+
+    /// Whether anything moves: time passes, or another moment is gone to.
+    pub fn is_moving(&self) -> bool {
+        self.playing || self.goal.is_some()
+    }
+}

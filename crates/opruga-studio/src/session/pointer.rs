@@ -1,0 +1,166 @@
+//! What the pointer does to bodies: it pulls, pushes and pins.
+
+use super::{Refusal, Session};
+use crate::engine::Given;
+use opruga::WorldError;
+
+/// Newtons for each metre between a node and the pointer that pushes it, for each kilogram … see [`Session::push_now`].
+const PUSH_STIFFNESS: f64 = 20.0;
+
+/// What a press of the pointer does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// Pull the nearest node by a spring.
+    Pull,
+    /// Push the nearest node by a force that grows with the way.
+    Push,
+    /// Pin the nearest node, or take a pinned one elsewhere.
+    Pin,
+}
+
+/// What the pointer holds.
+#[derive(Clone, Debug)]
+pub(super) struct Held {
+    grip: Grip,
+    body: usize,
+    node: u32,
+    /// Command of the world and of the document; none while a push has no force.
+    command: Option<[usize; 2]>,
+    pointer: [f64; 3],
+    /// Whether the pointer has moved since the last push began.
+    moved: bool,
+    /// The frame up to which the path is known.
+    led: u64,
+}
+
+/// A point that a person has pinned.
+#[derive(Clone, Debug)]
+pub(super) struct Pinned {
+    body: usize,
+    node: u32,
+    command: [usize; 2],
+    /// The frame at which it was pinned.
+    pub(super) at: u64,
+}
+
+impl Session {
+    /// Writes a command down; its number in the document.
+    pub(super) fn write(&mut self, given: Given) -> [usize; 2] {
+        [given.number, self.document.push_command(given.table)]
+    }
+
+    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3]) -> Result<(), WorldError> {
+        self.release();
+        if let Err(refusal) = self.branch() {
+            return match refusal {
+                Refusal::World(error) => Err(error),
+                Refusal::Scene(message) => Err(WorldError::Path { path: "scene".into(), message }),
+            };
+        }
+        let missing = || WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() };
+        let node = self.engine.nearest(body, point).ok_or_else(missing)?;
+        let now = self.engine.frames();
+        let mut held = Held { grip, body, node, command: None, pointer: point, moved: false, led: now + 1 };
+        match grip {
+            Grip::Pull => {
+                let given = self.engine.pull(body, point)?;
+                held.command = Some(self.write(given));
+            }
+            Grip::Push => {}
+            Grip::Pin => {
+                if self.pins.iter().any(|pin| (pin.body, pin.node) == (body, node)) {
+                    // A pinned point goes with the pointer and is pinned where that lets go.
+                    self.unpin(body, node)?;
+                    let given = self.engine.pull(body, point)?;
+                    held.command = Some(self.write(given));
+                } else {
+                    self.pin(body, node)?;
+                    return Ok(());
+                }
+            }
+        }
+        self.held = Some(held);
+        Ok(())
+    }
+
+    fn pin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
+        let given = self.engine.pin(body, node)?;
+        let command = self.write(given);
+        self.pins.push(Pinned { body, node, command, at: self.engine.frames() });
+        Ok(())
+    }
+
+    pub(super) fn unpin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
+        if let Some(place) = self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node)) {
+            let pin = self.pins.remove(place);
+            self.end(pin.command)?;
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, [number, written]: [usize; 2]) -> Result<(), WorldError> {
+        let until = self.engine.finish(number)?;
+        self.document.end_command(written, until);
+        Ok(())
+    }
+
+    pub(super) fn lead(&mut self, point: [f64; 3]) {
+        if let Some(held) = &mut self.held
+            && point.iter().all(|x| x.is_finite())
+        {
+            held.moved |= held.pointer != point;
+            held.pointer = point;
+        }
+    }
+
+    /// Before a frame: the path of a pull grows by a row, a push takes its new force.
+    pub(super) fn lead_held(&mut self) {
+        let Some(mut held) = self.held.take() else { return };
+        match (held.grip, held.command) {
+            (Grip::Push, command) => {
+                if held.moved {
+                    if let Some(command) = command {
+                        let _ = self.end(command);
+                    }
+                    held.command = self.push_now(&held);
+                    held.moved = false;
+                }
+            }
+            (_, Some([number, written])) if held.led <= self.engine.frames() + 1 => {
+                if let Ok(row) = self.engine.lead(number, held.pointer) {
+                    self.document.lead_command(written, &row);
+                    held.led = self.engine.frames() + 2;
+                }
+            }
+            _ => {}
+        }
+        self.held = Some(held);
+    }
+
+    /// A force toward the pointer, in proportion to the way.
+    fn push_now(&mut self, held: &Held) -> Option<[usize; 2]> {
+        let at = self.engine.position(held.body, held.node)?;
+        let force = [0, 1, 2].map(|d| PUSH_STIFFNESS * (held.pointer[d] - at[d]));
+        let given = self.engine.push(held.body, held.node, force).ok()?;
+        Some(self.write(given))
+    }
+
+    pub(super) fn release(&mut self) {
+        let Some(held) = self.held.take() else { return };
+        if let Some(command) = held.command
+            && let Err(error) = self.end(command)
+        {
+            self.refuse(&error, None);
+        }
+        if held.grip == Grip::Pin
+            && let Err(error) = self.pin(held.body, held.node)
+        {
+            self.refuse(&error, None);
+        }
+    }
+
+    pub(super) fn pins_shown(&self) -> Vec<(usize, u32, [f64; 3])> {
+        let at = |pin: &Pinned| Some((pin.body, pin.node, self.engine.position(pin.body, pin.node)?));
+        self.pins.iter().filter_map(at).collect()
+    }
+}

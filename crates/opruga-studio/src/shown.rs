@@ -1,0 +1,177 @@
+//! What the interface sees of a session: one picture and the numbers beside it, made by the thread of the simulation.
+
+use opruga::Warning;
+use opruga::core::spec::Values;
+use opruga::draw::Picture;
+use opruga::pictures::Quantity;
+
+/// What a person wants to see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Show {
+    /// What the colours tell.
+    pub quantity: Quantity,
+    /// Arrows of pressure or force, and of pulls.
+    pub arrows: bool,
+    /// The springs of bodies that have a surface too.
+    pub springs: bool,
+    /// The vertices.
+    pub vertices: bool,
+    /// Arrows of velocity.
+    pub velocities: bool,
+}
+
+impl Default for Show {
+    fn default() -> Show {
+        Show { quantity: Quantity::Strain, arrows: false, springs: true, vertices: false, velocities: false }
+    }
+}
+
+/// The energy ledger [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyShown {
+    /// ½ Σ m v².
+    pub kinetic: f64,
+    /// Stored by the models.
+    pub elastic: f64,
+    /// Of the gas.
+    pub gas: f64,
+    /// Of the weight.
+    pub gravity: f64,
+    /// Work of pulls, pushes and loads.
+    pub work: f64,
+    /// Damping, friction and impacts together.
+    pub losses: f64,
+    /// The error of the integrator.
+    pub error: f64,
+}
+
+/// One body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyShown {
+    /// Its number in the world.
+    pub number: usize,
+    /// Its name.
+    pub name: String,
+    /// How many nodes it has.
+    pub nodes: usize,
+    /// Its models; empty in a crowd.
+    pub models: Vec<Values>,
+    /// Its own integrator.
+    pub integrator: Option<Values>,
+    /// Its shape as the scene tells it, where it has a table of its own.
+    pub shape: Option<Values>,
+    /// What its models say: volume, pressure.
+    pub readings: Vec<(&'static str, f64)>,
+}
+
+/// One obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObstacleShown {
+    /// Its kind and parameters.
+    pub values: Values,
+}
+
+/// How the simulation keeps up with the clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// Simulated time over real time; 1 keeps up.
+    pub ratio: f64,
+    /// What a frame of the scene takes [s].
+    pub frame_cost: f64,
+}
+
+/// How grave a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// What was done.
+    Told,
+    /// What could not be done; all is as it was before.
+    Refused,
+}
+
+/// What a button beside a message does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Offer {
+    /// Go back a second and take half the step.
+    HalveStep,
+    /// Take so many substeps and try again what was refused.
+    Substeps(u32),
+}
+
+/// A message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    /// Counts messages, so that a new one is told from an old one of the same words.
+    pub number: u64,
+    /// How grave it is.
+    pub severity: Severity,
+    /// What it says.
+    pub text: String,
+    /// What would help.
+    pub offer: Option<Offer>,
+}
+
+/// Everything that the interface shows of one moment.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// The name of the scene.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// 2 or 3; 0 before the first scene.
+    pub dimension: u8,
+    /// The time [s].
+    pub time: f64,
+    /// Frames since the start.
+    pub frames: u64,
+    /// The last frame that was computed in this course of things.
+    pub latest: u64,
+    /// The length of a frame [s].
+    pub frame: f64,
+    /// How long the scene lasts for the command line [s].
+    pub seconds: f64,
+    /// Substeps of a frame.
+    pub substeps: u32,
+    /// The largest stable substep [s]; infinite where nothing limits it.
+    pub stable_step: f64,
+    /// Gravity [m/s²].
+    pub gravity: [f64; 3],
+    /// Drag [1/s].
+    pub drag: f64,
+    /// The integrator of the scene.
+    pub integrator: Option<Values>,
+    /// The bodies, in the order of those of the picture.
+    pub bodies: Vec<BodyShown>,
+    /// The obstacles.
+    pub obstacles: Vec<ObstacleShown>,
+    /// Pulls: node, pointer, force [m, m, N].
+    pub pulls: Vec<[[f64; 3]; 3]>,
+    /// Points that a person has pinned: body, node, place [m].
+    pub pins: Vec<(usize, u32, [f64; 3])>,
+    /// The energy ledger.
+    pub energy: EnergyShown,
+    /// The momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// What attracted attention.
+    pub warnings: Vec<Warning>,
+    /// The picture.
+    pub picture: Picture,
+    /// Whether time passes.
+    pub playing: bool,
+    /// Simulated seconds for every real one that are wanted.
+    pub speed: f64,
+    /// How the simulation keeps up.
+    pub pace: Pace,
+    /// What can be undone and redone.
+    pub undo: Option<String>,
+    /// What can be redone.
+    pub redo: Option<String>,
+    /// The last message.
+    pub message: Option<Message>,
+    /// How many scenes were opened or built anew: a view is fitted once for each.
+    pub opened: u64,
+    /// How many commands of a person the scene holds.
+    pub recorded: usize,
+    /// The last moment that can be gone back to without computing from the start [bytes kept].
+    pub kept_bytes: usize,
+}

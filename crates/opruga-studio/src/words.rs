@@ -1,0 +1,150 @@
+//! Every word of the interface, in every language, in one place.
+
+/// A language of the interface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Croatian.
+    Croatian,
+}
+
+macro_rules! words {
+    ($($(#[$about:meta])* $name:ident: $english:literal, $croatian:literal;)*) => {
+        impl Language {
+            $(
+                #[doc = $english]
+                pub fn $name(self) -> &'static str {
+                    match self {
+                        Language::English => $english,
+                        Language::Croatian => $croatian,
+                    }
+                }
+            )*
+        }
+        /// Every word in every language, for tests.
+        pub const ALL: &[(&str, &str, &str)] = &[$((stringify!($name), $english, $croatian)),*];
+    };
+}
+
+words! {
+    scenes: "Scenes", "Prizori";
+    scenes_hint: "Open one of the scenes that come with the program", "Otvori jedan od prizora iz programa";
+    save: "Save", "Spremi";
+    undo: "Undo", "Poništi";
+    redo: "Redo", "Ponovi";
+    play: "Play", "Pokreni";
+    pause: "Pause", "Zaustavi";
+    step: "Step", "Korak";
+    step_hint: "One frame", "Jedna sličica";
+    reset: "Reset", "Na početak";
+    reset_hint: "To the start, without what was done since", "Na početak, bez svega što je u međuvremenu učinjeno";
+    replay: "Replay", "Ponovi snimku";
+    replay_hint: "To the start: what was done since happens again", "Na početak: sve se učinjeno događa opet";
+    speed: "Speed", "Brzina";
+    speed_hint: "Simulated seconds in a real one", "Simuliranih sekundi u stvarnoj sekundi";
+    time: "Time", "Vrijeme";
+    rewind_hint: "Go back and forth in time", "Kretanje kroz vrijeme";
+    keep: "Export", "Izvezi";
+    save_scene: "Scene with all that was done (.toml)", "Prizor sa svime što je učinjeno (.toml)";
+    screenshot: "Picture (.png)", "Slika (.png)";
+    film: "Film (.mp4)", "Film (.mp4)";
+    animation: "Animation (.gif)", "Animacija (.gif)";
+    table: "Table of all frames (.csv)", "Tablica svih sličica (.csv)";
+    kept: "Written:", "Zapisano:";
+    working: "Computing the scene again for the file …", "Prizor se računa ponovno za datoteku …";
+    language: "Hrvatski", "English";
+    dark: "Dark", "Tamno";
+    light: "Light", "Svijetlo";
+    help: "Help", "Pomoć";
+    close: "Close", "Zatvori";
+    pull: "Pull", "Vuci";
+    pull_hint: "Press on a body and drag it", "Pritisni tijelo i povuci ga";
+    push: "Push", "Guraj";
+    push_hint: "Press on a body: the force grows with the way of the pointer", "Pritisni tijelo: sila raste s pomakom pokazivača";
+    pin: "Pin", "Pribodi";
+    pin_hint: "Press on a body to hold a point; on a held point to move it, double-click to free it", "Pritisni tijelo da se točka drži; pridržanu točku pomakni, dvostrukim klikom oslobodi";
+    shift: "Move", "Pomakni";
+    shift_hint: "Drag a body elsewhere: it is set down there, at rest", "Odvuci tijelo drugamo: ondje se postavlja u mirovanju";
+    draw: "Draw", "Crtaj";
+    draw_hint: "Draw a closed outline: it becomes a body", "Nacrtaj zatvoreni obris: postaje tijelo";
+    add: "Add", "Dodaj";
+    add_hint: "Shapes that become bodies", "Oblici koji postaju tijela";
+    fit: "Fit", "Sve u kadar";
+    fit_hint: "Show everything", "Prikaži sve";
+    colour: "Colour", "Boja";
+    overlays: "Show", "Prikaz";
+    arrows: "Pressure and forces", "Tlak i sile";
+    springs: "Springs", "Opruge";
+    vertices: "Vertices", "Vrhovi";
+    velocities: "Velocities", "Brzine";
+    strain: "Strain", "Deformacija";
+    elastic_force: "Elastic force", "Elastična sila";
+    pressure: "Pressure", "Tlak";
+    speed_of_nodes: "Speed of nodes", "Brzina čvorova";
+    plain: "Plain", "Jednobojno";
+    body: "Body", "Tijelo";
+    world: "World", "Svijet";
+    obstacle: "Obstacle", "Prepreka";
+    models: "Models", "Modeli";
+    integrator: "Integrator", "Integrator";
+    of_the_scene: "that of the scene", "kao u prizoru";
+    add_model: "Add a model", "Dodaj model";
+    remove_model: "Remove this model", "Ukloni ovaj model";
+    shape: "Shape", "Oblik";
+    turn: "Turn", "Zakreni";
+    scale: "Scale", "Povećaj";
+    smaller: "Smaller", "Smanji";
+    duplicate: "Duplicate", "Udvostruči";
+    delete: "Delete", "Izbriši";
+    gravity: "Gravity", "Gravitacija";
+    gravity_hint: "Drag the end of the arrow", "Povuci vrh strelice";
+    drag: "Drag of the air", "Otpor zraka";
+    substeps: "Substeps", "Podkoraci";
+    substeps_hint: "Steps of the integrator in a frame: fewer are faster, too few are unstable", "Koraka integratora u sličici: manje je brže, premalo je nestabilno";
+    stable: "stable from", "stabilno od";
+    nodes: "nodes", "čvorova";
+    nothing_selected: "Press on a body to see and change its physics", "Pritisni tijelo da vidiš i promijeniš njegovu fiziku";
+    crowd: "In a crowd of more than 64 bodies they are not listed one by one", "Kad ih je više od 64, tijela se ne navode pojedinačno";
+    plots: "Plots", "Grafovi";
+    energy: "Energy [J]", "Energija [J]";
+    gas: "Volume and pressure", "Obujam i tlak";
+    momentum: "Momentum [kg m/s]", "Količina gibanja [kg m/s]";
+    step_time: "Computing time [ms]", "Vrijeme računanja [ms]";
+    kinetic: "kinetic", "kinetička";
+    elastic: "elastic", "elastična";
+    of_gas: "gas", "plin";
+    of_gravity: "gravity", "gravitacijska";
+    work: "work put in", "uloženi rad";
+    losses: "losses", "gubici";
+    integration_error: "error of integration", "pogreška integracije";
+    drag_me: "drag me", "povuci me";
+    drop_here: "Drop a scene, SVG, OBJ, STL or PLY here", "Ispusti ovdje prizor, SVG, OBJ, STL ili PLY";
+    slower: "slower than real time", "sporije od stvarnog vremena";
+    real_time: "real time", "stvarno vrijeme";
+    steps_a_second: "steps/s", "koraka/s";
+    margin: "step / stable limit", "korak / granica stabilnosti";
+    halve_step: "Go back a second and halve the step", "Vrati se sekundu i prepolovi korak";
+    use_substeps: "Take that many substeps", "Uzmi toliko podkoraka";
+    crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
+    too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
+    only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";
+    recorded: "commands recorded", "snimljenih naredbi";
+    pictures_pending: "drawing …", "crta se …";
+    shortcuts: "Space  play or pause\n→  one frame      Home  reset\nCtrl Z, Ctrl Y  undo, redo\nCtrl S  save the scene\n1 2 3 4 5  pull, push, pin, move, draw\nDel  delete the body      Ctrl D  duplicate it\n[ ]  turn it      + −  scale it\nF  show everything      P  plots      G  scenes\nWheel  zoom      middle drag, Space drag  pan\nright drag  push (in space: turn the view where no body is)\nShift drag  pin      ?  this help", "Razmaknica  pokreni ili zaustavi\n→  jedna sličica      Home  na početak\nCtrl Z, Ctrl Y  poništi, ponovi\nCtrl S  spremi prizor\n1 2 3 4 5  vuci, guraj, pribodi, pomakni, crtaj\nDel  izbriši tijelo      Ctrl D  udvostruči ga\n[ ]  zakreni ga      + −  povećaj, smanji\nF  sve u kadar      P  grafovi      G  prizori\nKotačić  približi      srednja tipka ili razmaknica  pomakni pogled\ndesna tipka  guraj (u prostoru pokraj tijela: okreni pogled)\nShift  pribodi      ?  ova pomoć";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ALL;
+
+    #[test]
+    fn every_word_is_there_in_every_language() {
+        for (name, english, croatian) in ALL {
+            assert!(!english.is_empty() && !croatian.is_empty(), "{name}");
+            assert_eq!(english.contains('…'), croatian.contains('…'), "{name}");
+            assert_eq!(english.lines().count(), croatian.lines().count(), "{name}");
+        }
+    }
+}

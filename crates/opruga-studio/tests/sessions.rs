@@ -1,0 +1,379 @@
+//! What a person does is in the scene that is saved: whoever runs it gets the same bits.
+#![allow(missing_docs)]
+
+use opruga::blueprint::AnyBlueprint;
+use opruga::core::spec::{Value, Values};
+use opruga::io::{Files, scene};
+use opruga::{Options, Registry, World, catalogue};
+use opruga_studio::session::{Edit, Grip, Placed, Request, Session};
+use opruga_studio::shown::{Offer, Severity, Show};
+use std::time::Duration;
+
+fn open(name: &str) -> Session {
+    let text = opruga::scenes::find(name).expect("a scene of the program");
+    Session::open(name, text, opruga::scenes::files(), Options::default()).expect("it opens")
+}
+
+/// As if so many frames of the screen had passed, on a machine that takes no time at all.
+fn pass(session: &mut Session, frames: u32) {
+    for _ in 0..frames {
+        session.handle(Request::Step);
+    }
+    no_refusal(session);
+}
+
+fn no_refusal(session: &mut Session) {
+    let message = session.shown().message;
+    assert!(message.as_ref().is_none_or(|m| m.severity == Severity::Told), "{message:?}");
+}
+
+fn refusal(session: &mut Session) -> String {
+    let message = session.shown().message.expect("a message");
+    assert_eq!(message.severity, Severity::Refused, "{}", message.text);
+    message.text
+}
+
+/// Lets a session come to where it goes.
+fn arrive(session: &mut Session) {
+    while session.is_seeking() {
+        session.tick(Duration::from_millis(16), Duration::from_millis(12), &|| Duration::ZERO);
+    }
+}
+
+/// What the command line makes of a text: the hash after so many frames.
+fn replayed(text: &str, frames: u64) -> u64 {
+    fn run<const D: usize>(blueprint: opruga::blueprint::Blueprint<D>, frames: u64) -> u64 {
+        let mut world = World::new(blueprint, Options { threads: 2, ..Options::default() }).expect("a world");
+        (0..frames).for_each(|_| world.frame().expect("a frame"));
+        world.state_hash()
+    }
+    let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
+    let read = scene::read(text.as_bytes(), "saved.toml", &catalogue(), &options);
+    let errors = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
+    match read.map_err(errors).unwrap_or_else(|errors| panic!("{errors}\n{text}")).0 {
+        AnyBlueprint::Plane(blueprint) => run(blueprint, frames),
+        AnyBlueprint::Space(blueprint) => run(blueprint, frames),
+    }
+}
+
+fn assert_replays(session: &Session) {
+    assert_eq!(replayed(&session.saved(), session.frames()), session.hash(), "{}", session.saved());
+}
+
+fn model(kind: &str, numbers: &[(&str, f64)]) -> Values {
+    let registry = Registry::<2>::default();
+    let spec = registry.model(kind).expect("a model").spec();
+    let mut values = Values::defaults(spec, 2);
+    for (name, number) in numbers {
+        values.set(spec, name, Value::Number(*number), 2).expect("allowed");
+    }
+    values
+}
+
+fn integrator(kind: &str) -> Values {
+    Values::defaults(Registry::<2>::default().integrator(kind).expect("an integrator").spec(), 2)
+}
+
+/// Pulls the ball along an arc for so many frames.
+fn pull(session: &mut Session, frames: u32) {
+    session.handle(Request::Grab(Grip::Pull, 0, [0.4, 2.0, 0.0]));
+    for k in 0..frames {
+        let turn = 0.1 * f64::from(k);
+        session.handle(Request::Lead([0.4 + 0.3 * turn.sin(), 2.0 + 0.2 * turn, 0.0]));
+        pass(session, 1);
+    }
+    session.handle(Request::Release);
+}
+
+fn ball(name: &str, x: f64) -> toml_edit::InlineTable {
+    let text = format!(
+        "{{ name = \"{name}\", shape = {{ kind = \"ring\", radius = 0.3, vertices = 24, center = [{x}, 1.5] }}, mass = 0.5, \
+         models = [{{ kind = \"mass_spring\", stiffness = 300.0, damping = 1.0 }}, {{ kind = \"pressure\", nRT = 10.0 }}] }}"
+    );
+    text.parse::<toml_edit::Value>().expect("a table").as_inline_table().expect("a table").clone()
+}
+
+#[test]
+fn what_a_person_does_runs_to_the_same_bits_from_the_saved_scene() {
+    let mut session = open("ball");
+    pass(&mut session, 20);
+    pull(&mut session, 40);
+    session.handle(Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(1200.0)));
+    pass(&mut session, 10);
+    session.handle(Request::Grab(Grip::Pin, 0, [0.0, 2.5, 0.0]));
+    session.handle(Request::Release);
+    pass(&mut session, 15);
+    let (_, node, _) = session.shown().pins[0];
+    session.handle(Request::Unpin(0, node));
+    session.handle(Request::Grab(Grip::Push, 0, [0.4, 1.0, 0.0]));
+    for k in 0..10 {
+        session.handle(Request::Lead([1.0, 1.0 + 0.1 * f64::from(k), 0.0]));
+        pass(&mut session, 1);
+    }
+    session.handle(Request::Release);
+    session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![1.0, -4.0])));
+    session.handle(Request::Models(
+        0,
+        vec![model("pressure", &[("nRT", 40.0)]), model("mass_spring", &[("stiffness", 800.0)])],
+    ));
+    session.handle(Request::Edit(Edit::Add(ball("small", 1.4))));
+    no_refusal(&mut session);
+    pass(&mut session, 30);
+    session.handle(Request::Integrator(None, integrator("runge_kutta")));
+    pass(&mut session, 30);
+    let turned = Placed { moved: [0.3, 0.5, 0.0], turned: 0.7, scaled: 1.2 };
+    session.handle(Request::Edit(Edit::Place("small".into(), turned)));
+    pass(&mut session, 30);
+    session.handle(Request::Edit(Edit::Delete("ball".into())));
+    pass(&mut session, 30);
+    assert_eq!(session.shown().bodies.len(), 1);
+    assert_replays(&session);
+    assert_ne!(session.hash(), replayed(opruga::scenes::find("ball").expect("it"), session.frames()));
+}
+
+#[test]
+fn a_pull_in_space_runs_to_the_same_bits_and_its_force_is_told() {
+    let mut session = open("balloons");
+    pass(&mut session, 5);
+    session.handle(Request::Grab(Grip::Pull, 1, [-0.3, 1.7, 0.2]));
+    session.handle(Request::Lead([-0.3, 2.2, 0.6]));
+    pass(&mut session, 8);
+    let [node, pointer, force] = session.shown().pulls[0];
+    assert!(pointer[1] > node[1] && force[1] > 0.1, "{node:?} {pointer:?} {force:?}");
+    session.handle(Request::Release);
+    pass(&mut session, 4);
+    assert!(session.shown().pulls.is_empty());
+    assert_replays(&session);
+}
+
+#[test]
+fn rewinding_comes_to_the_same_bits_and_what_is_done_then_replaces_the_future() {
+    let mut session = open("ball");
+    let mut hashes = vec![session.hash()];
+    for _ in 0..30 {
+        pass(&mut session, 1);
+        hashes.push(session.hash());
+    }
+    pull(&mut session, 25);
+    for _ in 0..20 {
+        pass(&mut session, 1);
+    }
+    let end = session.hash();
+    for frame in [3, 25, 10, 0, 30] {
+        session.handle(Request::Seek(frame));
+        arrive(&mut session);
+        assert_eq!((session.frames(), session.hash()), (frame, hashes[frame as usize]));
+    }
+    session.handle(Request::Seek(75));
+    arrive(&mut session);
+    assert_eq!(session.hash(), end, "the pull happens again");
+    assert!(session.shown().recorded > 0);
+    // From the middle of the pull on, another future.
+    session.handle(Request::Seek(40));
+    arrive(&mut session);
+    session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, 3.0])));
+    pass(&mut session, 20);
+    assert_eq!(session.shown().latest, 60);
+    assert_replays(&session);
+    assert_ne!(session.hash(), end);
+}
+
+#[test]
+fn undo_goes_back_to_the_moment_before_an_edit_and_redo_does_it_again() {
+    let mut session = open("ball");
+    pass(&mut session, 25);
+    let before = session.hash();
+    session.handle(Request::Edit(Edit::Add(ball("small", 1.4))));
+    session.handle(Request::Set("body.small.models.pressure.nRT".into(), Value::Number(20.0)));
+    no_refusal(&mut session);
+    pass(&mut session, 20);
+    let after = session.hash();
+    session.handle(Request::Undo);
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert_eq!((session.frames(), session.hash(), session.shown().bodies.len()), (25, before, 1));
+    session.handle(Request::Redo);
+    session.handle(Request::Redo);
+    arrive(&mut session);
+    assert_eq!(session.shown().bodies.len(), 2);
+    session.handle(Request::Seek(45));
+    arrive(&mut session);
+    if session.frames() < 45 {
+        let left = 45 - session.frames() as u32;
+        pass(&mut session, left);
+    }
+    assert_eq!(session.hash(), after);
+    session.handle(Request::Redo);
+    assert!(session.shown().redo.is_none());
+    assert_replays(&session);
+}
+
+#[test]
+fn an_edit_at_the_start_is_written_into_the_scene_itself() {
+    let mut session = open("ball");
+    session.handle(Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(900.0)));
+    session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, -1.6])));
+    session.handle(Request::Edit(Edit::Shape("ball".into(), "vertices", Value::Integer(48))));
+    session.handle(Request::Edit(Edit::Duplicate("ball".into())));
+    session.handle(Request::Integrator(None, integrator("symplectic_euler")));
+    no_refusal(&mut session);
+    assert_eq!(session.shown().recorded, 0, "no commands");
+    let text = session.text();
+    assert!(text.contains("stiffness = 900.0") && text.contains("vertices = 48"), "{text}");
+    assert!(text.contains("ball-2") && text.contains("# The elastic ball"), "comments stay: {text}");
+    let shown = session.shown();
+    assert_eq!(shown.bodies.iter().map(|b| b.nodes).collect::<Vec<_>>(), [48, 48]);
+    pass(&mut session, 30);
+    assert_replays(&session);
+    for _ in 0..5 {
+        session.handle(Request::Undo);
+        arrive(&mut session);
+    }
+    assert_eq!(session.text(), opruga::scenes::find("ball").expect("it"));
+}
+
+#[test]
+fn a_body_turns_and_grows_about_its_middle() {
+    let mut session = open("ball");
+    let middle = |session: &mut Session| {
+        let positions = session.shown().picture.bodies[0].positions.clone();
+        let mean = |d: usize| positions.iter().map(|p| p[d]).sum::<f64>() / positions.len() as f64;
+        let far = positions.iter().map(|p| (p[0] - mean(0)).hypot(p[1] - mean(1))).fold(0.0, f64::max);
+        (mean(0), mean(1), far)
+    };
+    let (x, y, radius) = middle(&mut session);
+    let placed = Placed { moved: [0.5, 0.25, 0.0], turned: 1.1, scaled: 2.0 };
+    session.handle(Request::Edit(Edit::Place("ball".into(), placed)));
+    no_refusal(&mut session);
+    let (x2, y2, radius2) = middle(&mut session);
+    // Pictures have the digits of single precision.
+    assert!((x2 - x - 0.5).abs() < 1e-6 && (y2 - y - 0.25).abs() < 1e-6, "{x2} {y2}");
+    assert!((radius2 - 2.0 * radius).abs() < 1e-6, "{radius2}");
+}
+
+#[test]
+fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
+    let mut session = open("ball");
+    pass(&mut session, 12);
+    let (hash, text) = (session.hash(), session.text());
+    let mut unknown = ball("odd", 1.0);
+    unknown.insert("models", "[{ kind = \"springy\" }]".parse().expect("a list"));
+    for (request, word) in [
+        (Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(-1.0)), "allowed"),
+        (Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(1e9)), "unstable"),
+        (Request::Set("body.bal.models.mass_spring.stiffness".into(), Value::Number(1.0)), "did you mean"),
+        (Request::Models(0, vec![model("mass_spring", &[("stiffness", 1e12)])]), "unstable"),
+        (Request::Edit(Edit::Delete("nobody".into())), "no such body"),
+        (Request::Edit(Edit::Add(unknown)), "springy"),
+        (Request::Edit(Edit::Shape("ball".into(), "vertices", Value::Integer(1))), "vertices"),
+        (Request::Open { name: "x".into(), text: "format = 3".into(), files: Files::default() }, "format"),
+        (Request::Grab(Grip::Pull, 7, [0.0; 3]), "no such body"),
+    ] {
+        let asked = format!("{request:?}");
+        session.handle(request);
+        arrive(&mut session);
+        let said = refusal(&mut session);
+        assert!(said.contains(word), "{asked}: {said}");
+        assert_eq!((session.hash(), session.text()), (hash, text.clone()), "{asked}");
+    }
+    // The step that would do is offered, and taken.
+    session.handle(Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(640_000.0)));
+    let offer = session.shown().message.and_then(|m| m.offer).expect("an offer");
+    assert!(matches!(offer, Offer::Substeps(n) if n > 32), "{offer:?}");
+    session.handle(Request::Accept(offer));
+    no_refusal(&mut session);
+    pass(&mut session, 5);
+    assert_replays(&session);
+}
+
+#[test]
+fn a_scene_that_diverges_names_body_and_node_and_stops_at_its_last_good_frame() {
+    let text = opruga::scenes::find("ball").expect("it").replace("[[collider]]", "[[load]]\nkind = \"force\"\nbody = \"ball\"\nvalue = [1e300, 0.0]\ncurve = [[0.0, 0.0], [0.2, 0.0], [0.3, 1.0]]\n\n[[collider]]");
+    let mut session = Session::open("bad", &text, Files::default(), Options::default()).expect("it opens");
+    session.handle(Request::Play(true));
+    for _ in 0..60 {
+        session.tick(Duration::from_millis(17), Duration::from_millis(12), &|| Duration::ZERO);
+    }
+    let said = refusal(&mut session);
+    assert!(said.contains("`ball`") && said.contains("node"), "{said}");
+    let shown = session.shown();
+    assert!(!shown.playing && shown.time > 0.1, "{}", shown.time);
+    assert_eq!(shown.message.and_then(|m| m.offer), Some(Offer::HalveStep));
+    assert!(shown.picture.bodies[0].positions.iter().flatten().all(|x| !x.is_nan()), "the last good state is shown");
+    session.handle(Request::Accept(Offer::HalveStep));
+    assert_eq!(session.shown().substeps, 64);
+}
+
+#[test]
+fn every_scene_of_the_program_opens_moves_and_can_be_seen_in_every_colour() {
+    for name in opruga::scenes::names().filter(|n| !["million-vertices", "thousand-balls", "giant-ring"].contains(n)) {
+        let mut session = open(name);
+        pass(&mut session, 2);
+        for quantity in opruga::pictures::Quantity::ALL {
+            session.handle(Request::Show(Show {
+                quantity,
+                arrows: true,
+                vertices: true,
+                velocities: true,
+                ..Show::default()
+            }));
+            let shown = session.shown();
+            assert_eq!(shown.bodies.len(), shown.picture.bodies.len(), "{name}");
+            assert!(shown.picture.legend.is_some() != (quantity == opruga::pictures::Quantity::Plain), "{name}");
+        }
+    }
+}
+
+#[test]
+fn scene_picture_film_animation_and_table_are_kept() {
+    use opruga_studio::panels::keeping::{What, content};
+    let mut session = open("ball");
+    pull(&mut session, 12);
+    let copied = opruga_studio::runner::Copied::of(&session);
+    let bytes = |what| content(what, &copied, Show::default()).expect("a file");
+    assert!(bytes(What::Picture).starts_with(b"\x89PNG"));
+    assert_eq!(&bytes(What::Film)[4..8], b"ftyp");
+    assert!(bytes(What::Animation).starts_with(b"GIF89a"));
+    let table = String::from_utf8(bytes(What::Table)).expect("a text");
+    assert_eq!(table.lines().count(), 14, "a head and thirteen states");
+    assert!(table.starts_with("time,kinetic,") && table.contains("ball.volume"));
+    let scene = String::from_utf8(bytes(What::Scene)).expect("a text");
+    assert_eq!(replayed(&scene, 12), session.hash());
+}
+
+#[test]
+fn files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
+    use opruga_studio::dropping::take;
+    let folder = std::env::temp_dir().join(format!("opruga-dropped-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    };
+    let refused = |path: &std::path::Path| take(path).err().expect("it is refused");
+    assert!(refused(&put("letter.docx", b"PK")).contains(".toml"));
+    assert!(refused(&put("bytes.toml", &[0xff, 0xfe, 0x00])).contains("UTF-8"));
+    assert!(refused(&folder.join("absent.toml")).contains("read"));
+    // Two gigabytes that take no room: they are refused before they are read.
+    let large = std::fs::File::create(folder.join("large.toml")).expect("a file");
+    large.set_len(2 << 30).expect("a length");
+    assert!(refused(&folder.join("large.toml")).contains("2147483648 bytes"));
+    let mut session = open("ball");
+    let (hash, name) = (session.hash(), session.name().to_string());
+    let wrong = take(&put("wrong.toml", b"format = \"opruga-1\"\ndimension = 7\n")).expect("it is read");
+    session.handle(wrong);
+    assert!(refusal(&mut session).contains("dimension"));
+    assert_eq!((session.hash(), session.name()), (hash, name.as_str()));
+    let svg = b"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\"><path d=\"M0 0 H10 V10 H0 Z\"/></svg>";
+    session.handle(take(&put("square.svg", svg)).expect("a shape"));
+    no_refusal(&mut session);
+    assert_eq!(session.name(), "square");
+    pass(&mut session, 3);
+    let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    session.handle(take(&put("four.obj", obj)).expect("a shape"));
+    no_refusal(&mut session);
+    pass(&mut session, 3);
+    assert_eq!(session.shown().dimension, 3);
+    std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
