@@ -233,6 +233,9 @@ impl<const D: usize> World<D> {
                 Err(StepError::Model { model, message }) => {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }
                 }
+                Err(error @ StepError::NotConverged { .. }) => {
+                    WorldError::Step { body: body(0), message: error.to_string() }
+                }
                 Ok(()) => WorldError::Step { body: body(0), message: String::new() },
             });
         }
