@@ -105,7 +105,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
             along += second[i] * first[i];
         }
         for i in 0..D {
-            second[i] = second[i] - along * first[i];
+            second[i] -= along * first[i];
         }
         let (x, y, z) = (first[0].abs(), first[1].abs(), first[D - 1].abs());
         let x_least = S::both(x.less_or_equal(y), x.less_or_equal(z));

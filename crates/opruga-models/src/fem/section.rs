@@ -108,6 +108,9 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn heap_bytes(&self) -> usize;
 }
 
+/// Writes tangents of some points with these retardation times.
+type Tangents<'a> = dyn Fn(Simd, Points<'_>, &[f64], &mut [f64]) + 'a;
+
 /// What every step of the work on some packs of elements needs to know.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group<'a> {
@@ -302,12 +305,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     }
 
     /// Delivers blocks K_ab of every element, made from tangents at its points.
-    fn assemble(
-        &self,
-        positions: Nodes<'_, D>,
-        sink: &mut dyn Sink<D>,
-        tangents: &dyn Fn(Simd, Points<'_>, &[f64], &mut [f64]),
-    ) {
+    fn assemble(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>, tangents: &Tangents<'_>) {
         let simd = Simd::best();
         let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);

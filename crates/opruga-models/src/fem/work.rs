@@ -77,9 +77,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                         for a in 0..N {
                             let of_node = &places[a * WIDTH + offset..a * WIDTH + offset + P::Part::NUMBERS];
                             let row = P::Part::gather_rows(self.nodes.rows, of_node);
-                            for d in 0..D {
-                                x[a][d] = row[d];
-                            }
+                            x[a].copy_from_slice(&row[..D]);
                         }
                     }
                     Layout::Batch => {

@@ -20,7 +20,7 @@ impl<const D: usize> Material<D> for Linear {
             for j in 0..D {
                 strain[i][j] = half * (f[i][j] + f[j][i]);
             }
-            strain[i][i] = strain[i][i] - S::one();
+            strain[i][i] -= S::one();
         }
         let trace = matrix::trace(&strain);
         let energy = p.mu * matrix::inner(&strain, &strain) + half * p.lambda * trace * trace;

@@ -18,7 +18,7 @@ pub struct StVenantKirchhoff;
 fn strain_and_stress<S: Lane, const D: usize>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Matrix<S, D>, Matrix<S, D>) {
     let mut strain = matrix::transposed_product(f, f);
     for i in 0..D {
-        strain[i][i] = strain[i][i] - S::one();
+        strain[i][i] -= S::one();
     }
     let strain = matrix::scaled(&strain, S::splat(0.5));
     let stress = matrix::scaled(&strain, p.mu + p.mu);
