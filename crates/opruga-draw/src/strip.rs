@@ -144,7 +144,16 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     }
     let mut canvas = Canvas::new(&mut image);
     let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
-    for (index, time) in time_texts(&times).iter().enumerate() {
+    // Pictures of no moment are told apart by their titles; that of the first stands above them all.
+    let texts = match times.iter().all(|time| time.is_finite()) {
+        true => time_texts(&times),
+        false => {
+            let own =
+                |k: usize| if k > 0 && pictures[k].title != pictures[0].title { &pictures[k].title[..] } else { "" };
+            (0..pictures.len()).map(|k| own(k).to_string()).collect()
+        }
+    };
+    for (index, time) in texts.iter().enumerate() {
         let [left, top] = grid.place(index, [margin, head]);
         canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
         let point = [left + 0.5 * panel, top + tall + 19.0 * unit];
