@@ -295,7 +295,7 @@ fn what_no_body_can_be_made_of_is_refused_with_its_line() {
         assert!(error.allowed.is_some() || error.hint.is_some(), "{error}");
     }
     let error = body::<2>("cube.msh", &bytes("mujoco/cube_22_ascii_vol_gmshApp.msh"), Mending::default()).unwrap_err();
-    assert_eq!((error.code, error.line), ("mesh.dimension", Some(46)), "{error}");
+    assert_eq!((error.code, error.line), ("mesh.dimension", Some(23)), "{error}");
     // Three tetrahedra at one face.
     let file = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 0 0 -1\n$EndNodes\n$Elements\n3\n1 4 0 1 2 3 4\n2 4 0 1 2 3 5\n3 4 0 1 3 2 6\n$EndElements\n";
     let error = body::<3>("a.msh", file.as_bytes(), Mending::default()).unwrap_err();
