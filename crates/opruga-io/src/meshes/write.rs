@@ -236,7 +236,7 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
         .map(|(element, _, nodes)| (vtk_type(element), nodes.iter().map(|node| *node as usize).collect()))
         .collect();
     let mut write = || -> std::io::Result<()> {
-        vtu::head(&mut out, &points, cells.len())?;
+        vtu::head(&mut out, None, &points, cells.len())?;
         vtu::cells(&mut out, cells.iter().map(|(kind, nodes)| (*kind, &nodes[..])))?;
         std::io::Write::write_all(&mut out, b"<CellData>\n")?;
         for (name, values) in &mesh.cell_values {
