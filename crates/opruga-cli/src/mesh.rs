@@ -41,12 +41,9 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
          [[body]]\nname = \"mesh\"\nmass = 1\nshape = {{ {shape} }}\n"
     );
     let options = scene::Options { files: Files::in_folder(folder), ..scene::Options::default() };
-    let told = |error: SceneError| {
-        let of_call = error.file == "--size" || error.file == name;
-        SceneError {
-            file: if of_call && error.file == name { call.input.display().to_string() } else { error.file.clone() },
-            ..error
-        }
+    let told = |error: SceneError| match error.file == name {
+        true => SceneError { file: call.input.display().to_string(), ..error },
+        false => error,
     };
     let (blueprint, notices) = scene::read(text.as_bytes(), "opruga mesh", &opruga::catalogue(), &options)
         .map_err(|errors| Failure::Scene(errors.into_iter().map(told).collect()))?;
@@ -251,12 +248,13 @@ fn drawn<const D: usize>(mesh: &Mesh<D>, input: &Path) -> Result<Vec<u8>, draw::
     let name = PathBuf::from(input).file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let picture = |body: BodyPicture, title: String| Picture {
         dimension: D as u8,
+        time: f64::NAN,
         title,
         bodies: vec![body],
         legend: Some(Legend {
             label: "smallest angle".into(),
             unit: "°".into(),
-            range: None,
+            range: Some([0.0, 60.0]),
             map: ColourMap::default(),
         }),
         ..Picture::default()

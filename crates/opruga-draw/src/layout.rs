@@ -257,6 +257,9 @@ fn legend_width(legend: &Legend, range: [f64; 2], unit: f32) -> f32 {
 
 /// A time as text, with three digits after the point.
 fn time_text(time: f64) -> String {
+    if !time.is_finite() {
+        return String::new();
+    }
     if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
@@ -288,6 +291,7 @@ mod tests {
         assert_eq!(time_texts(&[0.0, 0.95, 8.0]), ["t = 0.00 s", "t = 0.95 s", "t = 8.00 s"]);
         assert_eq!(time_texts(&[0.0, 1.776]), ["t = 0.000 s", "t = 1.776 s"]);
         assert_eq!(time_texts(&[2.0]), ["t = 2.0 s"]);
+        assert_eq!((time_text(2.0).as_str(), time_text(f64::NAN).as_str()), ("t = 2.000 s", ""));
         assert_eq!(time_texts(&[1.0 / 3.0]), ["t = 0.333 s"]);
     }
 

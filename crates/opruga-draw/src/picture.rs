@@ -8,7 +8,7 @@ use crate::error::DrawError;
 pub struct Picture {
     /// The number of dimensions: 2 (seen along z) or 3 (seen by a camera, with y upwards).
     pub dimension: u8,
-    /// The time [s].
+    /// The time [s]; not a number for a picture of no moment, which has no time written on it.
     pub time: f64,
     /// The title, which may be empty.
     pub title: String,

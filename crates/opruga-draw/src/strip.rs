@@ -115,7 +115,11 @@ pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
 /// Draws pictures side by side in rows, with one view, one length scale and one legend for all; below each its time.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
     let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
-    captioned_strip(pictures, &time_texts(&times), view, style)
+    // Pictures of no moment are told apart by their titles; that of the first stands above them all.
+    let own = |picture: &&Picture| if picture.title == pictures[0].title { String::new() } else { picture.title.clone() };
+    let moments = times.iter().all(|time| time.is_finite());
+    let captions = if moments { time_texts(&times) } else { pictures.iter().map(own).collect() };
+    captioned_strip(pictures, &captions, view, style)
 }
 
 /// The same with a text of its own below each picture.

@@ -309,4 +309,36 @@ mod tests {
         assert!(text(Format::Obj).ends_with("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
         assert!(text(Format::Ply).ends_with("3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
     }
+
+    /// The frame of a solid as VTK XML is a mesh file again; time, displacement and fields of cells stand where VTK wants them.
+    #[test]
+    fn frames_in_vtk_xml_are_whole() {
+        let grid = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2, 1, 1]).unwrap().into_simplices().unwrap();
+        let mut mesh = grid.into_quadratic().unwrap();
+        mesh.cell_groups.insert("some".into(), vec![1]);
+        let moved: Vec<[f64; 3]> = mesh.positions.iter().map(|x| [x[0] + 5.0, 2.0 * x[1], x[2]]).collect();
+        let (still, stress) = (vec![[0.0; 3]; mesh.nodes()], vec![1.5; 9 * mesh.cells.len()]);
+        let fields = [CellField { name: "Cauchy stress [Pa]", components: 9, values: &stress }];
+        let shape = Shape {
+            name: "b",
+            mesh: &mesh,
+            positions: &moved,
+            velocities: &still,
+            translation: [5.0, 0.0, 0.0],
+            cell_fields: &fields,
+        };
+        let mut out = Vec::new();
+        Format::Vtu.write(&mut out, "", 0.25, &[shape]).expect("memory does not fail");
+        let text = core::str::from_utf8(&out).expect("text");
+        let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
+        let time = crate::base64::encode(&[8u64.to_le_bytes(), 0.25f64.to_le_bytes()].concat());
+        assert!(place(&time) < place("<Piece") && place("<PointData>") < place("displacement [m]"));
+        assert!(place("Name=\"Cauchy stress [Pa]\" NumberOfComponents=\"9\"") > place("<CellData>"));
+        let mut open = |_: &str| -> Result<std::sync::Arc<[u8]>, crate::SceneError> { panic!("no other file") };
+        let file = crate::meshes::read("a.vtu", &out, &mut open).expect("a mesh");
+        let (again, left_out) = file.assemble::<3>(crate::meshes::Mending::default()).expect("a body");
+        assert_eq!((&again.positions, &again.cells), (&moved, &mesh.cells));
+        assert_eq!(again.cell_values["group some"][..2], [0.0, 1.0]);
+        assert_eq!(left_out.len(), 3, "displacement, velocity and stress are no part of a body at rest");
+    }
 }

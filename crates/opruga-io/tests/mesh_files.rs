@@ -171,7 +171,7 @@ fn malformed_files_of_others_are_refused_with_their_line() {
         ("22_ascii_missing_num_nodes", 5, "msh.syntax"),
         ("41_ascii_missing_element", 66, "msh.syntax"),
         ("41_ascii_missing_node", 38, "msh.syntax"),
-        ("41_ascii_missing_node_header", 14, "msh.syntax"),
+        ("41_ascii_missing_node_header", 13, "msh.syntax"),
     ] {
         let name = format!("mujoco/malformed_cube_{name}.msh");
         let error = body::<3>(&name, &bytes(&name), Mending::default()).unwrap_err();
@@ -213,7 +213,7 @@ fn every_truncation_of_good_gmsh_files_is_refused_with_its_place() {
                 Err(error) => error,
                 Ok(_) => panic!("{name} is read though only {end} bytes are there"),
             };
-            let binary = bytes.windows(3).any(|w| w == b" 1 ") && name.contains("binary");
+            let binary = bytes.windows(5).take(30).any(|w| w == b" 1 8\n");
             let told = error.line.is_some() || binary && error.message.contains("byte");
             assert!(told && !error.file.is_empty() && error.value.is_some(), "{name}, {end} bytes: {error}");
         }
@@ -295,7 +295,7 @@ fn what_no_body_can_be_made_of_is_refused_with_its_line() {
         assert!(error.allowed.is_some() || error.hint.is_some(), "{error}");
     }
     let error = body::<2>("cube.msh", &bytes("mujoco/cube_22_ascii_vol_gmshApp.msh"), Mending::default()).unwrap_err();
-    assert_eq!((error.code, error.line), ("mesh.dimension", Some(46)), "{error}");
+    assert_eq!((error.code, error.line), ("mesh.dimension", Some(23)), "{error}");
     // Three tetrahedra at one face.
     let file = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 0 0 -1\n$EndNodes\n$Elements\n3\n1 4 0 1 2 3 4\n2 4 0 1 2 3 5\n3 4 0 1 3 2 6\n$EndElements\n";
     let error = body::<3>("a.msh", file.as_bytes(), Mending::default()).unwrap_err();

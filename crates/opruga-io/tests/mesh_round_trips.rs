@@ -99,6 +99,25 @@ fn vtk_keeps_cells_and_values() {
     }
 }
 
+/// Values that some cells do not have are kept where the format knows gaps, and told of elsewhere.
+#[test]
+fn gaps_in_values_are_kept_or_told_of() {
+    let mut mesh = solid().into_simplices().unwrap();
+    mesh.cell_groups.clear();
+    mesh.groups.clear();
+    let values: Vec<f64> = (0..mesh.cells.len()).map(|k| if k == 3 { f64::NAN } else { k as f64 }).collect();
+    mesh.cell_values = BTreeMap::from([("some".to_string(), values)]);
+    for ending in ["msh", "vtu"] {
+        let read = &again(&mesh, ending).cell_values["some"];
+        assert!(read[3].is_nan() && read[4] == 4.0, "{ending}");
+        assert!(write(&mesh, ending).unwrap().left_out.is_empty());
+    }
+    for ending in ["vtk", "ele"] {
+        assert!(again(&mesh, ending).cell_values.is_empty(), "{ending}");
+        assert!(!write(&mesh, ending).unwrap().left_out.is_empty(), "{ending}");
+    }
+}
+
 #[test]
 fn formats_of_straight_cells_keep_them_and_refuse_others() {
     let (boxes, simplices) = (solid(), solid().into_simplices().unwrap());

@@ -64,7 +64,8 @@ impl Assembly<'_> {
 
     /// The dimension of the elements that make up the body.
     fn dimension<const D: usize>(&self) -> Result<usize, SceneError> {
-        let Some(highest) = self.found.items.iter().max_by_key(|item| item.kind.dimension()) else {
+        // The first of them in the file.
+        let Some(highest) = self.found.items.iter().rev().max_by_key(|item| item.kind.dimension()) else {
             let error = SceneError::new("mesh.empty", "the file holds no elements").value("0");
             return Err(self.file(error.allowed("at least one element")));
         };

@@ -30,7 +30,12 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
     }
     match ending.to_ascii_lowercase().as_str() {
         "msh" => Ok(Written { files: vec![("msh", gmsh(mesh).into_bytes())], left_out: Vec::new() }),
-        "vtk" => Ok(named_values("vtk", vtk(mesh).into_bytes(), mesh)),
+        "vtk" => {
+            let mut written = named_values("vtk", vtk(mesh).into_bytes(), mesh);
+            let gaps = mesh.cell_values.iter().filter(|(_, values)| !is_whole(values));
+            written.left_out.extend(gaps.map(|(name, _)| format!("`{}`, which not all cells have", visible(name))));
+            Ok(written)
+        }
         "vtu" => Ok(named_values("vtu", vtu_file(mesh), mesh)),
         "mesh" => medit(mesh),
         "mfem" => mfem(mesh),
@@ -182,6 +187,11 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
     out
 }
 
+/// Whether all cells have a value.
+fn is_whole(values: &[f64]) -> bool {
+    values.iter().all(|x| x.is_finite())
+}
+
 /// The number that VTK gives a kind of cell.
 fn vtk_type(element: Element) -> u8 {
     match kind(element) {
@@ -206,10 +216,11 @@ fn vtk<const D: usize>(mesh: &Mesh<D>) -> String {
     }
     let _ = writeln!(out, "CELL_TYPES {cells}");
     out.extend(mesh.cells.iter().map(|(element, _, _)| format!("{}\n", vtk_type(element))));
-    if !mesh.cell_values.is_empty() {
+    let whole = || mesh.cell_values.iter().filter(|(_, values)| is_whole(values));
+    if whole().next().is_some() {
         let _ = writeln!(out, "CELL_DATA {cells}");
     }
-    for (name, values) in &mesh.cell_values {
+    for (name, values) in whole() {
         let _ = writeln!(out, "SCALARS {} double 1\nLOOKUP_TABLE default", name.replace(char::is_whitespace, "%20"));
         out.extend(values.iter().map(|x| format!("{x:e}\n")));
     }
@@ -225,7 +236,7 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
         .map(|(element, _, nodes)| (vtk_type(element), nodes.iter().map(|node| *node as usize).collect()))
         .collect();
     let mut write = || -> std::io::Result<()> {
-        vtu::head(&mut out, &points, cells.len())?;
+        vtu::head(&mut out, None, &points, cells.len())?;
         vtu::cells(&mut out, cells.iter().map(|(kind, nodes)| (*kind, &nodes[..])))?;
         std::io::Write::write_all(&mut out, b"<CellData>\n")?;
         for (name, values) in &mesh.cell_values {
@@ -342,9 +353,12 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
         let _ = writeln!(nodes, "{node} {}", words.join(" "));
     }
     // Attributes have no names, and no gaps.
-    let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|v| v.iter().all(|x| x.is_finite())).collect();
+    let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|values| is_whole(values)).collect();
     if !mesh.cell_values.is_empty() {
         left_out.push(format!("names of {} values of cells", mesh.cell_values.len()));
+    }
+    if values.len() < mesh.cell_values.len() {
+        left_out.push(format!("{} values that not all cells have", mesh.cell_values.len() - values.len()));
     }
     let mut elements = format!("{} {} {}\n", mesh.cells.len(), D + 1, values.len());
     for (cell, (_, _, corners)) in mesh.cells.iter().enumerate() {

@@ -51,14 +51,24 @@ fn vectors<'a, const D: usize>(all: impl Iterator<Item = &'a [f64; D]>) -> Vec<f
     all.flat_map(|x| [x[0], x[1], x.get(2).copied().unwrap_or(0.0)]).collect()
 }
 
-/// Head and points of a file.
-pub(crate) fn head(out: &mut dyn Write, points: &[f64], cells: usize) -> io::Result<()> {
+/// Head and points of a file; the time [s] of a frame.
+pub(crate) fn head(out: &mut dyn Write, time: Option<f64>, points: &[f64], cells: usize) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
         out,
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
     )?;
     writeln!(out, "<UnstructuredGrid>")?;
+    if let Some(time) = time {
+        let whole = [8u64.to_le_bytes(), time.to_le_bytes()].concat();
+        let text = base64::encode(&whole);
+        writeln!(out, "<FieldData>")?;
+        writeln!(
+            out,
+            "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"binary\">{text}</DataArray>"
+        )?;
+        writeln!(out, "</FieldData>")?;
+    }
     writeln!(out, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">", points.len() / 3)?;
     writeln!(out, "<Points>")?;
     reals(out, "Points", 3, points)?;
@@ -89,7 +99,7 @@ pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Sh
     let elements = super::elements(shapes, true);
     let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
     let count = all().count();
-    head(out, &vectors(shapes.iter().flat_map(|s| s.positions)), count)?;
+    head(out, Some(time), &vectors(shapes.iter().flat_map(|s| s.positions)), count)?;
     cells(out, all().map(|(_, (kind, nodes))| (*kind, &nodes[..])))?;
 
     // Nodes.
@@ -143,15 +153,7 @@ pub(super) fn write<const D: usize>(out: &mut dyn Write, time: f64, shapes: &[Sh
             Some(member)
         })?;
     }
-    writeln!(out, "</CellData>\n<FieldData>")?;
-    let bytes = time.to_le_bytes();
-    let mut whole = 8u64.to_le_bytes().to_vec();
-    whole.extend_from_slice(&bytes);
-    let text = base64::encode(&whole);
-    writeln!(
-        out,
-        "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"binary\">{text}</DataArray>\n</FieldData>"
-    )?;
+    writeln!(out, "</CellData>")?;
     foot(out)
 }
 
