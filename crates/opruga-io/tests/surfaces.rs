@@ -499,8 +499,8 @@ fn surfaces_that_meet_themselves_are_refused_with_their_place() {
     assert!(error.message.contains("triangle ") && error.to_string().contains("overlap = \"keep\""), "{error}");
     let kept = space("kind = \"surface\", file = \"a.obj\", overlap = \"keep\"", &[("a.obj", twice.as_bytes())]);
     let (mesh, notices) = kept.expect("taken as it is");
-    assert_eq!((mesh.facets.len(), notices.len()), (24, 1));
-    assert_eq!(notices[0].about.code, "mesh.self_intersection");
+    assert_eq!(mesh.facets.len(), 24);
+    assert!(notices.iter().any(|n| n.about.code == "mesh.self_intersection"), "{notices:?}");
 
     // The same as bytes: each triangle of a binary STL, each face of a PLY, each primitive of a glTF has its place.
     let mut stl = stl_bytes();

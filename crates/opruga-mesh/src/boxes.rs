@@ -97,12 +97,6 @@ impl Tree {
         let end = self.order.len();
         &self.order[(leaf * LEAF).min(end)..((leaf + 1) * LEAF).min(end)]
     }
-
-    /// The last leaf below a node.
-    pub(crate) fn last_leaf(&self, node: usize) -> usize {
-        let below = self.leaves.ilog2() - node.ilog2();
-        ((node + 1) << below) - 1 - self.leaves
-    }
 }
 
 /// The lower 20 bits of a number, each followed by two zeros.

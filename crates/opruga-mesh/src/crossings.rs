@@ -44,26 +44,24 @@ impl Mesh<3> {
         let corners: Vec<[[f64; 3]; 3]> = self.facets.iter().map(|facet| facet.map(place)).collect();
         let tree = Tree::of(&corners);
         let mut budget = MOST_COMPARED * self.facets.len() as u64;
-        let mut waiting = Vec::new();
-        for leaf in 0..tree.leaves {
-            // Every pair of leaves once: those before this one have met it already.
-            waiting.clear();
-            waiting.push(1usize);
-            while let Some(node) = waiting.pop() {
-                if budget == 0 || found.pairs.len() >= MOST_LISTED {
-                    found.complete = false;
-                    found.pairs.sort_unstable();
-                    return found;
-                }
-                budget -= 1;
-                if tree.last_leaf(node) < leaf || !overlap(&tree.boxes[node], &tree.boxes[tree.leaves + leaf]) {
-                    continue;
-                }
-                if node < tree.leaves {
-                    waiting.extend([2 * node, 2 * node + 1]);
-                } else {
-                    self.compare(&tree, &corners, [leaf, node - tree.leaves], &mut found.pairs);
-                }
+        // Pairs of nodes of one level; every pair of leaves comes once.
+        let mut waiting = vec![[1usize; 2]];
+        while let Some([node, other]) = waiting.pop() {
+            if budget == 0 || found.pairs.len() >= MOST_LISTED {
+                found.complete = false;
+                break;
+            }
+            budget -= 1;
+            if node != other && !overlap(&tree.boxes[node], &tree.boxes[other]) {
+                continue;
+            }
+            let ([a, b], [c, d]) = ([2 * node, 2 * node + 1], [2 * other, 2 * other + 1]);
+            if node >= tree.leaves {
+                self.compare(&tree, &corners, [node - tree.leaves, other - tree.leaves], &mut found.pairs);
+            } else if node == other {
+                waiting.extend([[a, a], [b, b], [a, b]]);
+            } else {
+                waiting.extend([[a, c], [a, d], [b, c], [b, d]]);
             }
         }
         found.pairs.sort_unstable();
