@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// The scene that comes first.
 pub const FIRST_SCENE: &str = "ball";
 
+/// How long it stays on the screen that something was done [s].
+const TOLD_FOR: f64 = 6.0;
+
 /// The whole window.
 #[derive(Debug)]
 pub struct Studio {
@@ -32,6 +35,8 @@ pub struct Studio {
     help_open: bool,
     /// The message that was closed.
     closed: u64,
+    /// What was told last, and since when: it goes by itself.
+    told: (String, f64),
     /// Seconds of the interface for a frame, without the time of the graphics card.
     rate: f64,
 }
@@ -57,6 +62,7 @@ impl Studio {
             plots_open: false,
             help_open: false,
             closed: 0,
+            told: (String::new(), 0.0),
             rate: 60.0,
         })
     }
@@ -212,10 +218,18 @@ impl Studio {
             _ => return,
         };
         let refused = severity == Severity::Refused;
+        let now = ui.input(|i| i.time);
+        let told = format!("{}: {text}", message.map_or(0, |m| m.number));
+        if self.told.0 != told {
+            self.told = (told, now);
+        }
+        if !refused && now - self.told.1 > TOLD_FOR {
+            return;
+        }
         egui::Area::new(egui::Id::unique("message"))
             .pivot(Align2::CENTER_BOTTOM)
             .fixed_pos(rect.center_bottom() - egui::vec2(0.0, 40.0))
-            .order(egui::Order::Foreground)
+            .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };
                 Frame::popup(ui.style()).stroke(Stroke::new(1.5, edge)).corner_radius(CornerRadius::same(6)).show(
@@ -268,6 +282,7 @@ impl Studio {
             .collapsible(false)
             .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ui.ctx(), |ui| {
+                ui.set_min_width(480.0);
                 ui.label(RichText::new(words.shortcuts()).size(14.0).line_height(Some(22.0)));
             });
         self.help_open = open;

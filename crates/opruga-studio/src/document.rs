@@ -92,7 +92,7 @@ impl Document {
     }
 
     /// Takes back what was recorded from a time on [s]: commands behind the first `kept` that begin then or later go,
-    /// and those that act then end.
+    /// those that act then end, and points that are pinned then stay so.
     pub fn cut(&mut self, kept: usize, time: f64) {
         let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut) else { return };
         for number in (kept..tables.len()).rev() {
@@ -103,7 +103,8 @@ impl Document {
             if number_of(table, "at").is_some_and(|at| at >= time) {
                 tables.remove(number);
             } else if number_of(table, "until").is_some_and(|until| until > time) {
-                table["until"] = toml_edit::value(time);
+                let pin = table.get("do").and_then(Item::as_str) == Some("pin");
+                table["until"] = toml_edit::value(if pin { FOR_EVER } else { time });
             }
         }
     }

@@ -130,7 +130,7 @@ words! {
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";
-    recorded: "commands recorded", "snimljenih naredbi";
+    recorded: "recorded commands", "snimljene naredbe";
     pictures_pending: "drawing …", "crta se …";
     shortcuts: "Space  play or pause\n→  one frame      Home  reset\nCtrl Z, Ctrl Y  undo, redo\nCtrl S  save the scene\n1 2 3 4 5  pull, push, pin, move, draw\nDel  delete the body      Ctrl D  duplicate it\n[ ]  turn it      + −  scale it\nF  show everything      P  plots      G  scenes\nWheel  zoom      middle drag, Space drag  pan\nright drag  push (in space: turn the view where no body is)\nShift drag  pin      ?  this help", "Razmaknica  pokreni ili zaustavi\n→  jedna sličica      Home  na početak\nCtrl Z, Ctrl Y  poništi, ponovi\nCtrl S  spremi prizor\n1 2 3 4 5  vuci, guraj, pribodi, pomakni, crtaj\nDel  izbriši tijelo      Ctrl D  udvostruči ga\n[ ]  zakreni ga      + −  povećaj, smanji\nF  sve u kadar      P  grafovi      G  prizori\nKotačić  približi      srednja tipka ili razmaknica  pomakni pogled\ndesna tipka  guraj (u prostoru pokraj tijela: okreni pogled)\nShift  pribodi      ?  ova pomoć";
 }

@@ -1,5 +1,7 @@
 //! What a person does is in the scene that is saved: whoever runs it gets the same bits.
 #![allow(missing_docs)]
+// Paths of pointers may differ in a last bit.
+#![allow(clippy::disallowed_methods)]
 
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
@@ -179,6 +181,33 @@ fn rewinding_comes_to_the_same_bits_and_what_is_done_then_replaces_the_future() 
 }
 
 #[test]
+fn a_point_stays_pinned_when_the_future_is_written_anew() {
+    let mut session = open("ball");
+    pass(&mut session, 10);
+    session.handle(Request::Grab(Grip::Pin, 0, [0.0, 2.5, 0.0]));
+    session.handle(Request::Release);
+    pass(&mut session, 20);
+    let (body, node, place) = session.shown().pins[0];
+    session.handle(Request::Unpin(body, node));
+    pass(&mut session, 20);
+    assert!(session.shown().pins.is_empty());
+    session.handle(Request::Seek(20));
+    arrive(&mut session);
+    assert_eq!(session.shown().pins, [(body, node, place)]);
+    // From here on another future, in which nobody lets go of it.
+    session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, -2.0])));
+    pass(&mut session, 40);
+    assert_eq!(session.shown().pins, [(body, node, place)]);
+    assert_replays(&session);
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    session.handle(Request::Unpin(body, node));
+    pass(&mut session, 10);
+    assert!(session.shown().pins.is_empty());
+    assert_replays(&session);
+}
+
+#[test]
 fn undo_goes_back_to_the_moment_before_an_edit_and_redo_does_it_again() {
     let mut session = open("ball");
     pass(&mut session, 25);
@@ -351,7 +380,7 @@ fn files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
         std::fs::write(&path, bytes).expect("a file");
         path
     };
-    let refused = |path: &std::path::Path| take(path).err().expect("it is refused");
+    let refused = |path: &std::path::Path| take(path).expect_err("it is refused");
     assert!(refused(&put("letter.docx", b"PK")).contains(".toml"));
     assert!(refused(&put("bytes.toml", &[0xff, 0xfe, 0x00])).contains("UTF-8"));
     assert!(refused(&folder.join("absent.toml")).contains("read"));

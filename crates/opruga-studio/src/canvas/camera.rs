@@ -3,8 +3,10 @@
 use egui::{Pos2, Rect, Vec2};
 use opruga::draw::View;
 
-/// The room beside and above the scene that the tools and numbers take [points].
-const BORDER: f32 = 46.0;
+/// The room around a scene [points].
+const BORDER: f32 = 36.0;
+/// The room above it that the tools take [points].
+const TOOLS: f32 = 50.0;
 
 /// The point in the middle and the scale.
 #[derive(Clone, Copy, Debug)]
@@ -26,9 +28,10 @@ impl Flat {
         // Bodies move: there is room around them for that.
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
-        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER).max(8.0))];
+        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER - TOOLS).max(8.0))];
         self.scale = (room[0] / wide).min(room[1] / tall);
-        self.center = [view.center()[0], view.center()[1]];
+        let up = if view.y_down { -0.5 } else { 0.5 };
+        self.center = [view.center()[0], view.center()[1] + up * f64::from(TOOLS) / self.scale];
     }
 
     pub(crate) fn to_screen(self, rect: Rect, point: [f64; 3], y_down: bool) -> Pos2 {

@@ -92,6 +92,30 @@ pub struct Canvas {
     pub panned: bool,
 }
 
+/// What everything that is drawn needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Look<'a> {
+    pub(crate) painter: &'a egui::Painter,
+    pub(crate) shown: &'a Shown,
+    /// Where the scene is.
+    pub(crate) rect: Rect,
+    pub(crate) paper: &'a Paper,
+    /// The ends of the colours.
+    pub(crate) range: [f64; 2],
+}
+
+/// A press of the pointer.
+#[derive(Clone, Copy)]
+struct Press {
+    button: PointerButton,
+    at: Pos2,
+    /// Where the scene is.
+    rect: Rect,
+    /// Whether the space bar is held.
+    space: bool,
+    shift: bool,
+}
+
 /// Colours of the canvas in a theme.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Paper {
@@ -175,15 +199,16 @@ impl Canvas {
         let under = response.hover_pos().and_then(|at| self.under(shown, rect, at));
         self.press(ui, &response, shown, rect, under.as_ref(), &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
+        let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         if shown.dimension == 3 {
             if let Some(scales) = &self.scales {
-                self.space.show(ui, &painter, shown, scales, rect, range, &paper);
+                self.space.show(ui, &look, shown, scales);
             }
         } else {
-            plane::paint(&painter, shown, &self.flat, rect, &paper, range, &mut self.fills, self.selected.as_deref());
+            plane::paint(&look, &self.flat, &mut self.fills, self.selected.as_deref());
         }
-        self.overlays(&painter, shown, rect, &paper, under.as_ref(), language);
-        plane::legend(&painter, shown, rect, &paper, range);
+        self.overlays(&look, under.as_ref(), language);
+        plane::legend(&look);
         asks
     }
 
@@ -318,7 +343,8 @@ impl Canvas {
             && response.contains_pointer()
         {
             self.refused = None;
-            self.begin(button, space_down, shift, shown, rect, at, under, asks);
+            let press = Press { button, at, rect, space: space_down, shift };
+            self.begin(press, shown, under, asks);
         }
         if response.double_clicked()
             && let Some(under) = under
@@ -354,19 +380,10 @@ impl Canvas {
         }
     }
 
-    fn begin(
-        &mut self,
-        button: PointerButton,
-        space_down: bool,
-        shift: bool,
-        shown: &Shown,
-        rect: Rect,
-        at: Pos2,
-        under: Option<&Under>,
-        asks: &mut Vec<Request>,
-    ) {
-        if button == PointerButton::Middle || space_down {
-            self.panned = space_down;
+    fn begin(&mut self, press: Press, shown: &Shown, under: Option<&Under>, asks: &mut Vec<Request>) {
+        let Press { button, at, rect, space, shift } = press;
+        if button == PointerButton::Middle || space {
+            self.panned = space;
             self.doing = Doing::Panning;
             return;
         }
@@ -422,15 +439,8 @@ impl Canvas {
     }
 
     /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull.
-    fn overlays(
-        &self,
-        painter: &egui::Painter,
-        shown: &Shown,
-        rect: Rect,
-        paper: &Paper,
-        under: Option<&Under>,
-        language: Language,
-    ) {
+    fn overlays(&self, look: &Look<'_>, under: Option<&Under>, language: Language) {
+        let Look { painter, shown, rect, paper, .. } = *look;
         let lens = self.scales.as_ref().and_then(|scales| self.space.lens(scales, rect));
         let project = |point: [f64; 3]| -> Option<Pos2> {
             if shown.dimension == 3 {
@@ -482,7 +492,7 @@ impl Canvas {
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
         {
-            plane::hint(painter, top, rect, language.drag_me(), paper);
+            plane::hint(painter, top, rect, language.drag_me());
         }
     }
 }

@@ -33,7 +33,7 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
          {{ kind = \"bending\", stiffness = {:.4} }}, \
          {{ kind = \"pressure\", nRT = {:.4}, ambient = {pressure:.1} }}] }}",
         rows.join(", "),
-        0.02 * (length / 3.14),
+        0.02 * length / core::f64::consts::PI,
         pressure * area
     );
     let value = text.parse::<toml_edit::Value>().map_err(|_| "too_small")?;

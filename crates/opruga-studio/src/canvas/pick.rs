@@ -30,15 +30,20 @@ pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Opti
     let reach = NEAR * pixel;
     let mut best: Option<(f64, usize, [f64; 3])> = None;
     for (place, body) in shown.picture.bodies.iter().enumerate() {
-        let far = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
-        let nearest = body.positions.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        let Some(nearest) = nearest else { continue };
-        let distance = far(nearest);
-        if distance > reach && !around(body, x, y) {
-            continue;
+        // In a crowd every node is looked at whenever the pointer moves: squares will do.
+        let mut nearest = (f64::INFINITY, [0.0; 3]);
+        for p in &body.positions {
+            let square = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);
+            if square < nearest.0 {
+                nearest = (square, *p);
+            }
         }
-        if best.is_none_or(|(least, ..)| distance < least) {
-            best = Some((distance, place, *nearest));
+        let (square, point) = nearest;
+        if square.is_finite()
+            && best.is_none_or(|(least, ..)| square < least)
+            && (square <= reach * reach || around(body, x, y))
+        {
+            best = Some((square, place, point));
         }
     }
     let (_, place, point) = best?;

@@ -1,8 +1,8 @@
 //! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
 
-use super::Paper;
 use super::camera::Flat;
 use super::triangles::Fills;
+use super::{Look, Paper};
 use crate::shown::Shown;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
@@ -19,12 +19,18 @@ fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// A colour that can be seen on the paper: on a dark one the dark ones are lifted, and their order stays.
+fn on_paper(c: Color32, paper: &Paper) -> Color32 {
+    let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
+    Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))
+}
+
 /// The colours of a map, found once for a picture.
 struct Colours([Color32; 256]);
 
 impl Colours {
-    fn new(map: ColourMap) -> Colours {
-        Colours(std::array::from_fn(|k| colour(map.colour(k as f64 / 255.0))))
+    fn new(map: ColourMap, paper: &Paper) -> Colours {
+        Colours(std::array::from_fn(|k| on_paper(colour(map.colour(k as f64 / 255.0)), paper)))
     }
     fn at(&self, scalar: f64, range: [f64; 2]) -> Color32 {
         let place = (scalar - range[0]) / (range[1] - range[0]).max(1e-300);
@@ -33,23 +39,15 @@ impl Colours {
 }
 
 /// Draws obstacles, bodies and arrows.
-pub(crate) fn paint(
-    painter: &Painter,
-    shown: &Shown,
-    flat: &Flat,
-    rect: Rect,
-    paper: &Paper,
-    range: [f64; 2],
-    fills: &mut Fills,
-    selected: Option<&str>,
-) {
+pub(crate) fn paint(look: &Look<'_>, flat: &Flat, fills: &mut Fills, selected: Option<&str>) {
+    let Look { painter, shown, rect, paper, range } = *look;
     let picture = &shown.picture;
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
     grid(painter, flat, rect, paper, &picture.length_unit, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
     let edges: usize = picture.bodies.iter().map(|b| b.segments.len()).sum();
     let soft = edges <= SOFT_EDGES;
-    let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map));
+    let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map), paper);
     let (mut filled, mut lines) = (Mesh::default(), Mesh::default());
     for (place, body) in picture.bodies.iter().enumerate() {
         let base = colour(body.colour.unwrap_or(BODIES[place % BODIES.len()]));
@@ -60,7 +58,7 @@ pub(crate) fn paint(
             body.scalar.iter().map(|s| map.at(*s, range)).collect()
         };
         let triangles = if body.cells.is_empty() { fills.of(place, body) } else { &body.cells };
-        let strength = if body.cells.is_empty() { 0.30 } else { 0.62 };
+        let strength = if body.cells.is_empty() { 0.34 } else { 0.62 };
         let first = filled.vertices.len() as u32;
         filled.vertices.extend(at.iter().zip(&colours).map(|(pos, c)| Vertex {
             pos: *pos,
@@ -291,22 +289,13 @@ pub(crate) fn rubber(painter: &Painter, from: Pos2, to: Pos2, force: &[f64; 3], 
     painter.circle_filled(from, 4.0, RUBBER);
     painter.circle(to, 6.0, paper.background, Stroke::new(2.0, RUBBER));
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-    let text = format!("{} N", format_value(round(newtons)));
+    let text = format!("{} N", format_value(newtons));
     let spot = to + Vec2::new(12.0, -10.0);
     let size = FontId::proportional(14.0);
     let galley = painter.layout_no_wrap(text, size, RUBBER);
     let place = Align2::LEFT_BOTTOM.anchor_size(spot, galley.size());
     painter.rect_filled(place.expand(3.0), 4.0, paper.background.gamma_multiply(0.85));
     painter.galley(place.min, galley, RUBBER);
-}
-
-/// Three digits: more of them tremble.
-pub(crate) fn round(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return x;
-    }
-    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 2);
-    (x / unit).round() * unit
 }
 
 /// Where a body would be set down.
@@ -330,13 +319,13 @@ pub(crate) fn ghost(
 }
 
 /// The hint for the first pull, above a body.
-pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str, paper: &Paper) {
+pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
     // Below the toolbar, and where the body is out of sight, at the border next to it.
     let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
     let tip = Pos2::new(across, top.y.clamp(rect.top() + 96.0, rect.bottom().max(rect.top() + 96.0)) - 8.0);
     let beat = (painter.ctx().input(|i| i.time) * 3.0).sin() as f32 * 3.0;
     let middle = tip - Vec2::new(0.0, 26.0 - beat);
-    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), paper.background);
+    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), Color32::WHITE);
     let bubble = Rect::from_center_size(middle, galley.size() + Vec2::new(22.0, 12.0));
     painter.rect_filled(bubble, 8.0, RUBBER);
     let foot = bubble.center_bottom();
@@ -346,18 +335,23 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str, paper: 
 }
 
 /// What the colours mean.
-pub(crate) fn legend(painter: &Painter, shown: &Shown, rect: Rect, paper: &Paper, range: [f64; 2]) {
+pub(crate) fn legend(look: &Look<'_>) {
+    let Look { painter, shown, rect, paper, range } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
         return;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
     let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, rect.top() + 44.0), Vec2::new(12.0, tall));
+    let behind =
+        Rect::from_min_max(bar.min - Vec2::new(24.0, 28.0), Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0));
+    painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));
     let mut mesh = Mesh::default();
     let steps = 32;
     for k in 0..=steps {
         let share = k as f32 / steps as f32;
         let c = colour(legend.map.colour(f64::from(1.0 - share)));
+        let c = if shown.dimension == 2 { on_paper(c, paper) } else { c };
         let y = bar.top() + share * bar.height();
         mesh.colored_vertex(Pos2::new(bar.left(), y), c);
         mesh.colored_vertex(Pos2::new(bar.right(), y), c);

@@ -1,9 +1,9 @@
 //! A scene of space: drawn by the same renderer as the pictures of the command line, on a thread of its own, into a
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
-use super::Paper;
+use super::Look;
 use crate::shown::Shown;
-use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, TextureOptions, Ui, Vec2};
+use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -89,16 +89,8 @@ impl Space {
     }
 
     /// Shows the last picture and orders the next one.
-    pub(crate) fn show(
-        &mut self,
-        ui: &Ui,
-        painter: &Painter,
-        shown: &Arc<Shown>,
-        scales: &View,
-        rect: Rect,
-        range: [f64; 2],
-        paper: &Paper,
-    ) {
+    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View) {
+        let Look { painter, rect, paper, range, .. } = *look;
         let Some(eye) = self.eye else { return };
         if let Some(image) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
             let size = [image.width() as usize, image.height() as usize];

@@ -151,7 +151,7 @@ pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
         ui.label(small(format!("{steps:.0} {}", words.steps_a_second())));
         ui.label(small(format!("{}: {margin}", words.margin()))).on_hover_text(words.substeps_hint());
         if shown.recorded > 0 {
-            ui.label(small(format!("{} {}", shown.recorded, words.recorded())));
+            ui.label(small(format!("{}: {}", words.recorded(), shown.recorded)));
         }
         for warning in shown.warnings.iter().take(2) {
             let text = format!("{} ({})", warning.code, warning.count);

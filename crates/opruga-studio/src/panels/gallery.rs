@@ -45,13 +45,14 @@ impl Gallery {
         let mut open = true;
         let room = ui.ctx().content_rect();
         let columns = (((room.width() - 80.0) / 276.0) as usize).clamp(1, 4);
+        let tall = (room.height() - 120.0).max(120.0);
         egui::Window::new(words.scenes())
             .open(&mut open)
             .collapsible(false)
             .resizable(false)
             .anchor(egui::Align2::CENTER_CENTER, Vec2::ZERO)
+            .fixed_size([columns as f32 * 272.0, tall])
             .show(ui.ctx(), |ui| {
-                let tall = (room.height() - 120.0).max(120.0);
                 ScrollArea::vertical().max_height(tall).auto_shrink([false, true]).show(ui, |ui| {
                     ui.set_width(columns as f32 * 272.0);
                     egui::Grid::new("scenes").num_columns(columns).spacing([12.0, 12.0]).show(ui, |ui| {

@@ -134,7 +134,7 @@ fn number(
     if whole {
         slider = slider.integer();
     } else {
-        slider = slider.custom_formatter(|x, _| opruga::draw::format_value(three_digits(x)));
+        slider = slider.custom_formatter(|x, _| opruga::draw::format_value(x));
     }
     let response = ui.add(slider).labelled_by(name);
     let changed = response.changed() && x != now && x.is_finite();
@@ -145,14 +145,6 @@ fn number(
         hand.held = None;
     }
     changed.then_some(x)
-}
-
-fn three_digits(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return x;
-    }
-    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 3);
-    (x / unit).round() * unit
 }
 
 /// The ends of a slider, and whether the upper one is open.

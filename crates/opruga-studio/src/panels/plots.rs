@@ -3,7 +3,7 @@
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
-use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
+use egui_plot::{Line, Plot, PlotPoints};
 use opruga::draw::OKABE_ITO;
 
 /// The most moments that are kept.
@@ -67,7 +67,7 @@ impl Plots {
     pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>) {
         let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
         let count = if gas { 4 } else { 3 };
-        let size = egui::vec2(ui.available_width() / count as f32 - 10.0, ui.available_height() - 24.0);
+        let size = egui::vec2(ui.available_width() / count as f32 - 10.0, ui.available_height());
         ui.horizontal(|ui| {
             let energies = [
                 (words.kinetic(), 0),
@@ -109,29 +109,33 @@ impl Plots {
 }
 
 fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, Vec<[f64; 2]>)>) {
+    let dark = ui.visuals().dark_mode;
+    let ink = |number: usize| {
+        let [r, g, b] = OKABE_ITO[number % OKABE_ITO.len()];
+        // Black is the seventh of these colours.
+        if dark && (r, g, b) == (0, 0, 0) { Color32::from_gray(200) } else { Color32::from_rgb(r, g, b) }
+    };
     ui.vertical(|ui| {
+        ui.set_width(size.x);
         ui.label(RichText::new(title).size(12.0).strong());
-        let named = lines.iter().any(|(name, _)| !name.is_empty());
-        let mut plot = Plot::new(id)
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
+            for (number, (name, _)) in lines.iter().enumerate().filter(|(_, (name, _))| !name.is_empty()) {
+                ui.label(RichText::new(*name).size(11.0).color(ink(number)));
+            }
+        });
+        let plot = Plot::new(id)
             .width(size.x)
-            .height(size.y)
+            .height((ui.available_height() - 4.0).max(40.0))
             .allow_scroll(false)
             .allow_drag(false)
             .allow_zoom(false)
             .allow_boxed_zoom(false)
             .y_axis_min_width(26.0);
-        if named {
-            plot = plot.legend(Legend::default().position(Corner::LeftTop).background_alpha(0.6));
-        }
         let owned: Vec<(String, Vec<[f64; 2]>)> = lines.into_iter().map(|(n, l)| (n.to_string(), l)).collect();
-        let dark = ui.visuals().dark_mode;
         plot.show(ui, move |plot| {
             for (number, (name, points)) in owned.into_iter().enumerate() {
-                let [r, g, b] = OKABE_ITO[number % OKABE_ITO.len()];
-                // Black is the seventh of these colours.
-                let ink =
-                    if dark && (r, g, b) == (0, 0, 0) { Color32::from_gray(200) } else { Color32::from_rgb(r, g, b) };
-                plot.line(Line::new(name, PlotPoints::from(points)).color(ink).width(1.6));
+                plot.line(Line::new(name, PlotPoints::from(points)).color(ink(number)).width(1.6));
             }
         });
     });

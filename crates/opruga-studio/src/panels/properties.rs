@@ -129,7 +129,7 @@ impl Properties {
                 } else {
                     ""
                 };
-                readings.push(format!("{} {}{unit}", name.replace('_', " "), opruga::draw::format_value(round(*x))));
+                readings.push(format!("{} {}{unit}", name.replace('_', " "), opruga::draw::format_value(*x)));
             }
             ui.label(RichText::new(readings.join("   ")).weak().size(11.5));
         }
@@ -324,14 +324,6 @@ impl Properties {
 /// Gives a control without a label beside it a name for those who cannot see it.
 fn name(response: &egui::Response, text: &str) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text));
-}
-
-fn round(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return x;
-    }
-    let unit = 10f64.powi(x.abs().log10().floor() as i32 - 3);
-    (x / unit).round() * unit
 }
 
 /// Gravity as an arrow whose end can be dragged; the new gravity if it was.

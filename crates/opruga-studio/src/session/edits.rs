@@ -44,9 +44,9 @@ impl Session {
 
     /// Takes a document that differs at its start.
     fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Refusal> {
-        let (pins, held) = (self.pins.clone(), self.held.is_some());
+        let held = self.held.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, 0)?;
-        if !pins.is_empty() || held {
+        if held {
             self.tell(Severity::Told, "the scene begins anew: pins of the pointer were let go".into(), None);
         }
         Ok(())
@@ -54,7 +54,7 @@ impl Session {
 
     pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Refusal> {
         self.branch()?;
-        let past = self.past(&format!("{path} = {value}").split(" = ").next().unwrap_or_default().to_string());
+        let past = self.past(path);
         if self.at_start() && self.document.commands() == self.own_commands {
             let mut document = self.document.clone();
             if document.set(path, &value) {
@@ -285,6 +285,7 @@ impl Session {
     fn back_to(&mut self, past: super::Past) -> Result<(), Refusal> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, frame)?;
+        self.pins = past.pins;
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
             self.frame().map_err(Refusal::World)?;
         }

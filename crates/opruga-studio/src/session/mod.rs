@@ -88,6 +88,7 @@ struct Past {
     document: Document,
     own_commands: usize,
     frame: u64,
+    pins: Vec<pointer::Pinned>,
 }
 
 /// A scene that runs while a person works on it.
@@ -106,7 +107,7 @@ pub struct Session {
     undo: Vec<Past>,
     redo: Vec<Past>,
     held: Option<Held>,
-    /// Points that are pinned: body, node, command of the world and of the document.
+    /// Points that are pinned, and those that were.
     pins: Vec<pointer::Pinned>,
     playing: bool,
     speed: f64,
@@ -320,7 +321,7 @@ impl Session {
         let mut engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
         engine.rewind(&self.engine.snapshot()).map_err(Refusal::World)?;
         (self.document, self.engine) = (document, engine);
-        self.pins.retain(|pin| pin.at < now);
+        self.cut_pins();
         self.keyframes.forget_after(now);
         self.latest = now;
         self.goal = None;
@@ -334,6 +335,7 @@ impl Session {
             document: self.document.clone(),
             own_commands: self.own_commands,
             frame: self.engine.frames(),
+            pins: self.pins.clone(),
         }
     }
 
@@ -378,6 +380,7 @@ impl Session {
         let Some(past) = self.undo.last().cloned() else { return Ok(()) };
         let present = Past { label: past.label.clone(), ..self.past("") };
         self.take(past.document, past.own_commands, past.frame)?;
+        self.pins = past.pins;
         self.undo.pop();
         // What is redone begins where it was done.
         self.redo.push(Past { frame: present.frame, ..present });
@@ -389,6 +392,7 @@ impl Session {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
         let present = Past { label: future.label.clone(), ..self.past("") };
         self.take(future.document, future.own_commands, future.frame)?;
+        self.pins = future.pins;
         self.redo.pop();
         self.undo.push(present);
         self.tell(Severity::Told, format!("redo: {}, t = {:.2} s", future.label, self.time_of(future.frame)), None);

@@ -40,7 +40,16 @@ pub(super) struct Pinned {
     node: u32,
     command: [usize; 2],
     /// The frame at which it was pinned.
-    pub(super) at: u64,
+    at: u64,
+    /// The frame at which it was let go.
+    until: Option<u64>,
+}
+
+impl Pinned {
+    /// Whether it is held before a frame.
+    fn holds(&self, frame: u64) -> bool {
+        self.at <= frame && self.until.is_none_or(|until| until > frame)
+    }
 }
 
 impl Session {
@@ -68,7 +77,7 @@ impl Session {
             }
             Grip::Push => {}
             Grip::Pin => {
-                if self.pins.iter().any(|pin| (pin.body, pin.node) == (body, node)) {
+                if self.pinned(body, node).is_some() {
                     // A pinned point goes with the pointer and is pinned where that lets go.
                     self.unpin(body, node)?;
                     let given = self.engine.pull(body, point)?;
@@ -86,16 +95,31 @@ impl Session {
     fn pin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
         let given = self.engine.pin(body, node)?;
         let command = self.write(given);
-        self.pins.push(Pinned { body, node, command, at: self.engine.frames() });
+        self.pins.push(Pinned { body, node, command, at: self.engine.frames(), until: None });
         Ok(())
     }
 
+    /// The pin that holds a node now.
+    fn pinned(&self, body: usize, node: u32) -> Option<usize> {
+        let now = self.engine.frames();
+        self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node) && pin.holds(now))
+    }
+
     pub(super) fn unpin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
-        if let Some(place) = self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node)) {
-            let pin = self.pins.remove(place);
-            self.end(pin.command)?;
+        if let Some(place) = self.pinned(body, node) {
+            self.end(self.pins[place].command)?;
+            self.pins[place].until = Some(self.engine.frames());
         }
         Ok(())
+    }
+
+    /// The pins of a future that is cut off: those that are held now stay.
+    pub(super) fn cut_pins(&mut self) {
+        let now = self.engine.frames();
+        self.pins.retain(|pin| pin.at < now);
+        for pin in &mut self.pins {
+            pin.until = pin.until.filter(|until| *until < now);
+        }
     }
 
     fn end(&mut self, [number, written]: [usize; 2]) -> Result<(), WorldError> {
@@ -117,15 +141,16 @@ impl Session {
     pub(super) fn lead_held(&mut self) {
         let Some(mut held) = self.held.take() else { return };
         match (held.grip, held.command) {
-            (Grip::Push, command) => {
-                if held.moved {
-                    if let Some(command) = command {
-                        let _ = self.end(command);
-                    }
-                    held.command = self.push_now(&held);
-                    held.moved = false;
+            (Grip::Push, command) if held.moved => {
+                if let Some(command) = command
+                    && let Err(error) = self.end(command)
+                {
+                    self.refuse(&error, None);
                 }
+                held.command = self.push_now(&held);
+                held.moved = false;
             }
+            (Grip::Push, _) => {}
             (_, Some([number, written])) if held.led <= self.engine.frames() + 1 => {
                 if let Ok(row) = self.engine.lead(number, held.pointer) {
                     self.document.lead_command(written, &row);
@@ -161,6 +186,7 @@ impl Session {
 
     pub(super) fn pins_shown(&self) -> Vec<(usize, u32, [f64; 3])> {
         let at = |pin: &Pinned| Some((pin.body, pin.node, self.engine.position(pin.body, pin.node)?));
-        self.pins.iter().filter_map(at).collect()
+        let now = self.engine.frames();
+        self.pins.iter().filter(|pin| pin.holds(now)).filter_map(at).collect()
     }
 }

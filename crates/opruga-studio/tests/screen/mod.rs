@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 /// The textures that the interface has made.
 #[derive(Clone, Default)]
-pub struct Textures(Rc<RefCell<HashMap<TextureId, ColorImage>>>);
+pub(crate) struct Textures(Rc<RefCell<HashMap<TextureId, ColorImage>>>);
 
 impl TestRenderer for Textures {
     fn handle_delta(&mut self, delta: &mut TexturesDelta) {
@@ -41,15 +41,15 @@ impl TestRenderer for Textures {
 }
 
 /// A picture of the window.
-pub struct Screen {
-    pub width: usize,
-    pub height: usize,
-    pub pixels: Vec<[u8; 4]>,
+pub(crate) struct Screen {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) pixels: Vec<[u8; 4]>,
 }
 
 impl Screen {
     /// Draws what a harness shows now.
-    pub fn of<State>(harness: &Harness<'_, State>, textures: &Textures) -> Screen {
+    pub(crate) fn of<State>(harness: &Harness<'_, State>, textures: &Textures) -> Screen {
         let output = harness.output();
         let size = harness.ctx.content_rect().size() * output.pixels_per_point;
         let (width, height) = (size.x as usize, size.y as usize);
@@ -124,7 +124,7 @@ impl Screen {
 
     /// Compares with the picture of this name in `tests/pictures`; `OPRUGA_UPDATE_PICTURES=1` writes it anew. Up to one
     /// pixel in a hundred may differ visibly: fonts are drawn by the processor at hand.
-    pub fn assert_like(&self, name: &str) {
+    pub(crate) fn assert_like(&self, name: &str) {
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
         let path = folder.join(format!("{name}.png"));
         if std::env::var_os("OPRUGA_UPDATE_PICTURES").is_some() {
@@ -147,7 +147,7 @@ impl Screen {
     }
 
     /// The picture as PNG.
-    pub fn png(&self) -> Vec<u8> {
+    pub(crate) fn png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
