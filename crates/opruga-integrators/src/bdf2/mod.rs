@@ -10,7 +10,7 @@
 //!
 //! **What it remembers** is the displacement and the velocity before the last step. They are part of the state: of
 //! checkpoints, hashes and replays. The first step, and the first after a program has placed a node, is one of backward
-//! Euler. Nodes that an obstacle has stopped go on as if they had always moved as they do then: a difference across an
+//! Euler. Nodes that have met an obstacle go on as if they had always moved as they do then: a difference across an
 //! impact says nothing of the motion behind it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
@@ -83,7 +83,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 (room.z[k], room.y[k]) = (0.0, span * room.v0[k]);
             }
         }
-        Balance { sigma: 1.0 / (span * span), beta: 1.0 / span, theta: 1.0, time: h, h, load: 1.0 }
+        Balance { sigma: 1.0 / (span * span), beta: 1.0 / span, theta: 1.0, time: h, h, load: 1.0, impulse: span / h }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
         for k in 0..room.u.len() {

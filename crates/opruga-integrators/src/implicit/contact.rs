@@ -7,9 +7,10 @@
 //! ```
 //!
 //! Whether a node is held is decided again in every iteration of Newton, from the gap that the last correction left and the
-//! force that the constraint would take. A contact that changes sides too often keeps the side that it has: then the last
-//! word is that no node may be inside.
+//! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
+//! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
+use super::newton::Balance;
 use opruga_core::contacts::Touch;
 use opruga_core::system::System;
 use opruga_math::WIDTH;
@@ -50,14 +51,14 @@ enum Hold {
     Stick,
 }
 
-/// After so many changes a contact keeps what it has.
+/// After so many changes a contact slips or is released for good.
 const MOST_CHANGES: u8 = 8;
 
 /// Depths and slides below this part of the extent of a body do not count.
 pub(crate) const SMALL: f64 = 1e-9;
 
 /// A slipping contact is settled when its force changes by no more than this part of itself.
-const SETTLED: f64 = 1e-9;
+const SETTLED: f64 = 1e-7;
 
 fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
@@ -131,14 +132,22 @@ impl<const D: usize> Contacting<D> {
                     // A node that rests on the surface is held until it turns out that it need not be.
                     None if touch.gap <= touch.rounding => {
                         changed = true;
-                        self.contacts.push(Contact {
+                        let mut contact = Contact {
                             node,
                             touch: *touch,
                             hold: if touch.friction > 0.0 { Hold::Stick } else { Hold::Slip },
                             normal_force: 0.0,
                             push: [0.0; D],
                             changes: 0,
-                        });
+                        };
+                        // What slides on the surface is first thought to slide on.
+                        let slide = contact.along(&core::array::from_fn(|d| to[d] - touch.carried[d]));
+                        let size = dot(&slide, &slide).sqrt();
+                        if touch.friction > 0.0 && touch.gap_before <= touch.rounding && size > 100.0 * small {
+                            contact.hold = Hold::Slip;
+                            contact.push = slide.map(|s| -s / size);
+                        }
+                        self.contacts.push(contact);
                     }
                     None => {}
                 }
@@ -269,12 +278,10 @@ impl<const D: usize> Contacting<D> {
             for (k, contact) in self.contacts[first..last].iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
                 let normal_force = normal_forces[k.min(D - 1)];
                 if normal_force < 0.0 {
-                    if contact.changes < MOST_CHANGES {
-                        contact.hold = Hold::Released;
-                        contact.normal_force = 0.0;
-                        contact.changes += 1;
-                        changed = true;
-                    }
+                    contact.hold = Hold::Released;
+                    contact.normal_force = 0.0;
+                    contact.changes = contact.changes.saturating_add(1);
+                    changed = true;
                     continue;
                 }
                 if contact.touch.friction == 0.0 {
@@ -286,10 +293,10 @@ impl<const D: usize> Contacting<D> {
                     Hold::Stick => {
                         let pull = contact.along(&force);
                         let size = dot(&pull, &pull).sqrt();
-                        if size > most * (1.0 + 1e-12) && contact.changes < MOST_CHANGES {
+                        if size > most * (1.0 + 1e-12) {
                             contact.hold = Hold::Slip;
                             contact.push = pull.map(|p| p / size);
-                            contact.changes += 1;
+                            contact.changes = contact.changes.saturating_add(1);
                             changed = true;
                         }
                     }
@@ -308,8 +315,10 @@ impl<const D: usize> Contacting<D> {
                         } else if size > small {
                             let push = slide.map(|s| -s / size);
                             let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
-                            changed |= turn > 1e-6;
-                            contact.push = push;
+                            if contact.changes < MOST_CHANGES {
+                                changed |= turn > SETTLED;
+                                contact.push = push;
+                            }
                         }
                         changed |= (normal_force - contact.normal_force).abs() > SETTLED * normal_force;
                     }
@@ -352,8 +361,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Ends a step: enters the work of the forces that held nodes (`reaction`), and deals with velocities. `u1` and `v1`
-    /// are displacements and velocities at the end. Returns through `struck` the nodes whose velocity it set.
+    /// Ends a step: enters the work of the forces that held nodes (`reaction`), and deals with velocities; `v0` and
+    /// `v1` are those at its ends. Returns through `struck` the nodes that met a surface in this step.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn end(
         &mut self,
@@ -362,7 +371,7 @@ impl<const D: usize> Contacting<D> {
         reaction: &[f64],
         x0: &[f64],
         v0: &[f64],
-        u1: &[f64],
+        balance: &Balance,
         v1: &mut [f64],
         struck: &mut Vec<usize>,
     ) {
@@ -380,17 +389,22 @@ impl<const D: usize> Contacting<D> {
             let (lane, mass) = (node % WIDTH, mass[node]);
             let mut rest = force;
             let mut carrier = None;
+            let before: [f64; D] = core::array::from_fn(|d| v1[at + d]);
             for (k, contact) in self.contacts[first..last].iter().enumerate().filter(|(_, c)| c.is_held()) {
                 let touch = &contact.touch;
                 let ride: [f64; D] = core::array::from_fn(|d| touch.carried[d] - x0[at + d]);
-                let own: [f64; D] = core::array::from_fn(|d| u1[at + d] - ride[d]);
-                let normal_force = normal_forces[k.min(D - 1)];
+                // The work of a force that is the same through the step, by the mean velocity: what it changes of the motion.
+                let mean: [f64; D] = core::array::from_fn(|d| 0.5 * balance.h * (v0[at + d] + before[d]));
+                let own: [f64; D] = core::array::from_fn(|d| mean[d] - ride[d]);
+                // The force of an impact acts in this step alone.
+                let share = if touch.gap_before > touch.rounding { balance.impulse } else { 1.0 };
+                let normal_force = share * normal_forces[k.min(D - 1)];
                 for d in 0..D {
-                    rest[d] -= normal_force * touch.normal[d];
+                    rest[d] -= normal_forces[k.min(D - 1)] * touch.normal[d];
                 }
                 system.work.user[lane] += normal_force * dot(&touch.normal, &ride);
                 system.work.contact[lane] -= normal_force * dot(&touch.normal, &own);
-                carrier = carrier.or(Some((ride, own)));
+                carrier = carrier.or(Some((ride, own, share)));
 
                 // What the node brings along the normal is lost, or a part of it returns.
                 let velocity: [f64; D] = core::array::from_fn(|d| v1[at + d] - touch.velocity[d]);
@@ -414,13 +428,13 @@ impl<const D: usize> Contacting<D> {
                 for d in 0..D {
                     v1[at + d] += gained[d];
                 }
-                if struck.last() != Some(&node) {
+                if touch.gap_before > touch.rounding && struck.last() != Some(&node) {
                     struck.push(node);
                 }
             }
-            if let Some((ride, own)) = carrier {
-                system.work.user[lane] += dot(&rest, &ride);
-                system.work.friction[lane] -= dot(&rest, &own);
+            if let Some((ride, own, share)) = carrier {
+                system.work.user[lane] += share * dot(&rest, &ride);
+                system.work.friction[lane] -= share * dot(&rest, &own);
             }
             first = last;
         }

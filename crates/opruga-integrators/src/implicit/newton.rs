@@ -24,6 +24,8 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The part of the weight and of the loads that acts.
     pub(crate) load: f64,
+    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h.
+    pub(crate) impulse: f64,
 }
 
 /// How the iteration ended.
@@ -62,6 +64,9 @@ impl Keep {
         }
     }
 }
+
+/// From this iteration on contacts stay as they are: those that still change differ by little.
+const MOST_DECISIONS: u32 = 30;
 
 /// The part of the slope that may be left after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
@@ -102,6 +107,8 @@ pub(crate) fn solve<const D: usize>(
             &mut room.prescribed,
         );
         let moves = farthest > 0.0;
+        // Nodes that have a way to go of their own go it at once: the potential may rise by that.
+        let far = farthest > 1e-4 * room.extent;
 
         // The direction; the exact derivatives as long as they are positive definite.
         let mut keep = if clamped { Keep::Clamped } else { Keep::Exact };
@@ -109,7 +116,7 @@ pub(crate) fn solve<const D: usize>(
             match find_direction(system, room, balance, settings, keep, moves, &mut first_norm) {
                 Ok((products, slope)) => {
                     solved.products += products;
-                    if slope <= 0.0 || moves || keep != Keep::Exact {
+                    if slope <= 0.0 || far || keep != Keep::Exact {
                         break Some(slope);
                     }
                 }
@@ -128,18 +135,18 @@ pub(crate) fn solve<const D: usize>(
             longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
         }
         solved.correction = longest.sqrt();
-        if balance.sigma == 0.0 && solved.correction > LONGEST * room.extent && !moves {
+        if balance.sigma == 0.0 && solved.correction > LONGEST * room.extent && !far {
             // Without inertia a soft direction leads far.
             let part = LONGEST * room.extent / solved.correction;
             room.step.iter_mut().for_each(|s| *s *= part);
             solved.correction *= part;
         }
-        if moves || changed || settings.budget || solved.correction <= goal {
+        if far || settings.budget || solved.correction <= goal {
             full_step(system, room, balance)?;
         } else {
             let length = line_search(system, room, balance, slope)?;
             solved.correction *= length;
-            if length == 0.0 {
+            if length == 0.0 && !changed {
                 solved.converged = at_rounding(system, room, balance, settings, size);
                 break;
             }
@@ -149,7 +156,9 @@ pub(crate) fn solve<const D: usize>(
 
         // What the constraints would take says who stays held.
         if system.contacts.is_some() {
-            changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+            if solved.iterations < MOST_DECISIONS {
+                changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+            }
         }
         if !changed && (solved.correction <= goal || at_rounding(system, room, balance, settings, size)) {
             solved.converged = true;
@@ -279,6 +288,7 @@ fn line_search<const D: usize>(
     balance: &Balance,
     slope: f64,
 ) -> Result<f64, StepError> {
+    // Friction and damping have no potential.
     let conservative = !system.is_damped() && !room.contacting.any();
     let before = if conservative { potential(system, room, balance, false) } else { None };
     let mut length = 1.0;
@@ -307,10 +317,11 @@ fn line_search<const D: usize>(
     Ok(0.0)
 }
 
-/// The slope of the incremental potential along the step, friction included.
+/// The slope of the incremental potential along the step in the directions that are free, friction included.
 fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
     room.right.copy_from_slice(&room.residual);
     room.contacting.subtract_friction(&mut room.right);
+    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
     dot(&room.right, &room.step)
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct Room<const D: usize> {
     /// Which nodes are quite free, and the projectors of the others.
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
-    /// Nodes whose velocity an obstacle has set in this step.
+    /// Nodes that met an obstacle in this step.
     pub(crate) struck: Vec<usize>,
     pub(crate) linear: Linear<D>,
     pub(crate) contacting: Contacting<D>,

@@ -48,7 +48,7 @@ const ITERATIONS: Field = Field::new(
     Allowed::Integer { least: 1, greatest: 1000 },
     "",
     Default::Absent,
-    "Iterations of Newton's method at most; 60, or 2 where `accuracy` is \"real_time\".",
+    "Iterations of Newton's method at most; 100, or 3 where `accuracy` is \"real_time\".",
 );
 /// When the iteration ends.
 const TOLERANCE: Field = Field::new(
@@ -87,7 +87,7 @@ pub(crate) const ACCURACY: Field = Field::new(
     Allowed::Choice(&["exact", "real_time"]),
     "",
     Default::Text("exact"),
-    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: two iterations \
+    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
 from the motion of the last step, at most 60 products with the matrix each; the rest of the error, of second order in the \
 rotation of a step, is made up for in the steps that follow.",
 );
@@ -100,7 +100,7 @@ impl Settings {
     pub(crate) fn new(values: &Values) -> Settings {
         let real_time = values.text("accuracy") == Some("real_time");
         Settings {
-            iterations: values.integer("iterations").map_or(if real_time { 2 } else { 60 }, |n| n as u32),
+            iterations: values.integer("iterations").map_or(if real_time { 3 } else { 100 }, |n| n as u32),
             tolerance: values.number("tolerance").unwrap_or(1e-9),
             budget: real_time,
             products: if real_time { 60 } else { 20_000 },

@@ -16,7 +16,7 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync {
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance;
     /// Works displacement `u1` and velocity `v1` of the end out of the stage.
     fn end(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64);
-    /// Moves the history on, after obstacles have had their say; `room.struck` names the nodes that they have touched.
+    /// Moves the history on, after obstacles have had their say; `room.struck` names the nodes that met one.
     fn remember(&self, _system: &mut System<D>, _room: &Room<D>, _h: f64) {}
     /// Whether the forces at the start are needed in `room.force`.
     fn needs_start(&self, _system: &System<D>) -> bool {
@@ -91,7 +91,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     if system.contacts.is_some() {
         let Room { contacting, mass, residual, x0, v0, u1, v1, struck, extent, .. } = room;
         contacting.expel(system, x0, u1, residual, h, *extent);
-        contacting.end(system, mass, residual, x0, v0, u1, v1, struck);
+        contacting.end(system, mass, residual, x0, v0, &balance, v1, struck);
     } else {
         room.struck.clear();
     }

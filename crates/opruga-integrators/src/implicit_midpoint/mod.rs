@@ -65,7 +65,7 @@ impl<const D: usize> Rule<D> for ImplicitMidpoint {
             *y = 0.5 * h * v;
         }
         room.z.fill(0.0);
-        Balance { sigma: 4.0 / (h * h), beta: 2.0 / h, theta: 0.5, time: 0.5 * h, h, load: 1.0 }
+        Balance { sigma: 4.0 / (h * h), beta: 2.0 / h, theta: 0.5, time: 0.5 * h, h, load: 1.0, impulse: 1.0 }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
         for k in 0..room.u.len() {

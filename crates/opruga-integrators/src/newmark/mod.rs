@@ -9,7 +9,9 @@
 //! allows: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
 //!
 //! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a program has placed a node.
-//! Nodes that an obstacle holds forget theirs: it belongs to the time before the impact. Free fall is exact.
+//! Nodes that meet an obstacle forget theirs: it belongs to the time before the impact. Free fall is exact. The rule of
+//! average acceleration damps nothing, and with stiff bodies that lie on obstacles it may feed an oscillation of the contact
+//! forces (Hughes et al. 1976): give it a `spectral_radius` there.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
@@ -26,6 +28,7 @@ use opruga_core::integrator::{Amplification, HistorySize, Integrator, Integrator
 use opruga_core::potential::Views;
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
+use opruga_solve::blocks::times;
 
 /// The parameters.
 pub const SPEC: Spec = Spec {
@@ -113,7 +116,7 @@ impl<const D: usize> Rule<D> for Newmark {
                 room.z[k] = theta * way - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
             }
         }
-        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h, load: 1.0 }
+        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h, load: 1.0, impulse: gamma / (1.0 - alpha_m) }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
         for k in 0..room.u.len() {
@@ -127,6 +130,11 @@ impl<const D: usize> Rule<D> for Newmark {
             for d in 0..D {
                 system.history.columns[0].0[d][node] = self.acceleration(room, node * D + d, h);
             }
+        }
+        // What an obstacle or a pin holds is not accelerated where it is held; after an impact not at all.
+        for node in (0..system.nodes).filter(|node| !room.free[*node]) {
+            let along = times(&room.projectors[node], &system.history.columns[0].at(node));
+            system.history.columns[0].set(node, along);
         }
         for &node in &room.struck {
             system.history.columns[0].set(node, [0.0; D]);
