@@ -81,6 +81,8 @@ words! {
     velocities: "Velocities", "Brzine";
     strain: "Strain", "Deformacija";
     elastic_force: "Elastic force", "Elastična sila";
+    von_mises_stress: "Von Mises stress", "Naprezanje po von Misesu";
+    volume_ratio: "Volume over that at rest", "Obujam prema početnome";
     pressure: "Pressure", "Tlak";
     speed_of_nodes: "Speed of nodes", "Brzina čvorova";
     plain: "Plain", "Jednobojno";

@@ -189,6 +189,8 @@ fn quantity_name(words: Language, quantity: Quantity) -> &'static str {
         Quantity::ElasticForce => words.elastic_force(),
         Quantity::Pressure => words.pressure(),
         Quantity::Speed => words.speed_of_nodes(),
+        Quantity::VonMises => words.von_mises_stress(),
+        Quantity::VolumeRatio => words.volume_ratio(),
         Quantity::Plain => words.plain(),
     }
 }
