@@ -1,4 +1,5 @@
 //! `opruga mesh`: a file to a mesh of cells, with its quality and a picture; also from one format to another.
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::arguments::Mesh as Call;
 use crate::failure::{Failure, print_data};

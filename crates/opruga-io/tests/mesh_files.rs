@@ -1,4 +1,5 @@
 //! Mesh files of other programs: what good ones hold, and that bad ones are refused with their place.
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use opruga_io::SceneError;
 use opruga_io::meshes::{Mending, read};

@@ -1,4 +1,5 @@
 //! Meshes that are written and read again, in every format; the codings of VTK XML; closed surfaces filled by a line of a scene.
+#![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 mod common;
 

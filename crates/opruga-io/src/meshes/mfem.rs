@@ -3,7 +3,7 @@
 //! Attributes of elements become groups of nodes and cells, `attribute 1`; those of the boundary groups of nodes, `boundary 3`.
 //!
 //! # Source
-//! MFEM project, "Mesh formats", https://mfem.org/mesh-format-v1.0/.
+//! MFEM project, "Mesh formats", <https://mfem.org/mesh-format-v1.0/>.
 
 use super::found::{Found, Kind, SUPPORTED};
 use super::scanner::Scanner;

@@ -1,7 +1,7 @@
 //! Legacy VTK: unstructured grids as text or binary, with values of cells. Versions 1 to 5.
 //!
 //! # Source
-//! Kitware, "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+//! Kitware, "VTK File Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
 use super::found::{Found, Kind, SUPPORTED};
 use super::scanner::Scanner;

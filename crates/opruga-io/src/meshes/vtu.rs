@@ -1,7 +1,7 @@
 //! VTK XML unstructured grids (`.vtu`): text, base64 or raw bytes at the end, of either order, zlib or not compressed.
 //!
 //! # Source
-//! Kitware, "VTK XML Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+//! Kitware, "VTK XML Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
 use super::found::Found;
 use super::scanner::Scanner;
