@@ -116,8 +116,8 @@ impl Studio {
             Panel::bottom("plots")
                 .frame(side)
                 .resizable(true)
-                .default_size(190.0)
-                .size_range(120.0..=420.0)
+                .default_size(210.0)
+                .size_range(200.0..=420.0)
                 .show(ui, |ui| self.plots.show(ui, &shown, words, self.canvas.selected.as_deref()));
         }
         self.plots.remember(&shown, self.canvas.selected.as_deref());

@@ -89,7 +89,7 @@ fn a_pointer_that_is_led_gives_the_bits_of_the_path_that_it_has_gone() {
     let (mut live, mut path) = (world(vec![late()]), Vec::new());
     frames(&mut live, 10);
     let time = |k: u64| k as f64 * frame;
-    let spot = |k: u64| vec![time(k), 0.5 + 0.02 * k as f64, 1.0 + (0.3 * k as f64).sin() * 0.1];
+    let spot = |k: u64| vec![time(k), 0.5 + 0.02 * k as f64, 1.0 + 0.01 * (k % 7) as f64];
     path.extend([spot(10), spot(11)]);
     let drag = |path: Vec<Vec<f64>>, until| CommandBlueprint {
         at: time(10),

@@ -1,52 +1,24 @@
 //! The scene on the screen, and what the pointer does there.
 
 mod camera;
+mod look;
 mod pen;
 mod pick;
 mod plane;
 mod space;
+mod tool;
 mod triangles;
 
 use crate::session::{Edit, Grip, Placed, Request};
 use crate::shown::Shown;
 use crate::words::Language;
 use camera::Flat;
-use egui::{Color32, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2};
+use egui::{PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2};
+use look::{Look, Paper};
 use opruga::draw::View;
 use pick::Under;
 use std::sync::Arc;
-
-/// What a press of the first button does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tool {
-    /// Pull.
-    #[default]
-    Pull,
-    /// Push.
-    Push,
-    /// Pin, and move what is pinned.
-    Pin,
-    /// Move a body.
-    Shift,
-    /// Draw an outline.
-    Draw,
-}
-
-impl Tool {
-    /// All of them, in the order of the toolbar.
-    pub const ALL: [Tool; 5] = [Tool::Pull, Tool::Push, Tool::Pin, Tool::Shift, Tool::Draw];
-
-    /// Its name and what it does.
-    pub fn words(self, language: Language) -> (&'static str, &'static str) {
-        match self {
-            Tool::Pull => (language.pull(), language.pull_hint()),
-            Tool::Push => (language.push(), language.push_hint()),
-            Tool::Pin => (language.pin(), language.pin_hint()),
-            Tool::Shift => (language.shift(), language.shift_hint()),
-            Tool::Draw => (language.draw(), language.draw_hint()),
-        }
-    }
-}
+pub use tool::Tool;
 
 /// What the pointer is doing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,18 +64,6 @@ pub struct Canvas {
     pub panned: bool,
 }
 
-/// What everything that is drawn needs.
-#[derive(Clone, Copy)]
-pub(crate) struct Look<'a> {
-    pub(crate) painter: &'a egui::Painter,
-    pub(crate) shown: &'a Shown,
-    /// Where the scene is.
-    pub(crate) rect: Rect,
-    pub(crate) paper: &'a Paper,
-    /// The ends of the colours.
-    pub(crate) range: [f64; 2],
-}
-
 /// A press of the pointer.
 #[derive(Clone, Copy)]
 struct Press {
@@ -114,44 +74,6 @@ struct Press {
     /// Whether the space bar is held.
     space: bool,
     shift: bool,
-}
-
-/// Colours of the canvas in a theme.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Paper {
-    pub(crate) background: Color32,
-    pub(crate) grid: Color32,
-    pub(crate) ink: Color32,
-    pub(crate) soft: Color32,
-    pub(crate) solid: Color32,
-    pub(crate) solid_edge: Color32,
-    pub(crate) dark: bool,
-}
-
-impl Paper {
-    fn of(ui: &Ui) -> Paper {
-        if ui.visuals().dark_mode {
-            Paper {
-                background: Color32::from_rgb(24, 26, 31),
-                grid: Color32::from_rgb(36, 39, 46),
-                ink: Color32::from_rgb(226, 229, 235),
-                soft: Color32::from_rgb(142, 148, 160),
-                solid: Color32::from_rgb(48, 52, 61),
-                solid_edge: Color32::from_rgb(118, 126, 140),
-                dark: true,
-            }
-        } else {
-            Paper {
-                background: Color32::from_rgb(252, 252, 253),
-                grid: Color32::from_rgb(236, 238, 242),
-                ink: Color32::from_rgb(38, 42, 50),
-                soft: Color32::from_rgb(108, 114, 124),
-                solid: Color32::from_rgb(226, 228, 232),
-                solid_edge: Color32::from_rgb(116, 122, 132),
-                dark: false,
-            }
-        }
-    }
 }
 
 impl Canvas {

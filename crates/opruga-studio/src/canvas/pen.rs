@@ -105,9 +105,7 @@ mod tests {
     #[test]
     fn a_drawn_circle_becomes_a_body_and_an_eight_is_refused() {
         let table = body(&line(|t| [t.cos(), 1.5 + t.sin()]), 0.02).expect("a body");
-        let text = format!(
-            "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.0166\nsubsteps = 32\n[integrator]\nkind = \"verlet\"\n[[body]]\n"
-        );
+        let text = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.0166\nsubsteps = 32\n[integrator]\nkind = \"verlet\"\n[[body]]\n";
         let whole = format!("{text}{}", table.into_table());
         let read = opruga::io::scene::read(whole.as_bytes(), "drawn.toml", &opruga::catalogue(), &Default::default());
         assert!(read.is_ok(), "{:?}", read.err());

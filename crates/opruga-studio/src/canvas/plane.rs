@@ -1,8 +1,8 @@
 //! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
 
 use super::camera::Flat;
+use super::look::{Look, Paper};
 use super::triangles::Fills;
-use super::{Look, Paper};
 use crate::shown::Shown;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};

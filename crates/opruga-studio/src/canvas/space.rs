@@ -1,7 +1,7 @@
 //! A scene of space: drawn by the same renderer as the pictures of the command line, on a thread of its own, into a
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
-use super::Look;
+use super::look::Look;
 use crate::shown::Shown;
 use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};

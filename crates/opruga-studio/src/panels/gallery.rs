@@ -51,7 +51,7 @@ impl Gallery {
             .collapsible(false)
             .resizable(false)
             .anchor(egui::Align2::CENTER_CENTER, Vec2::ZERO)
-            .fixed_size([columns as f32 * 272.0, tall])
+            .fixed_size([columns as f32 * 272.0 + 14.0, tall])
             .show(ui.ctx(), |ui| {
                 ScrollArea::vertical().max_height(tall).auto_shrink([false, true]).show(ui, |ui| {
                     ui.set_width(columns as f32 * 272.0);

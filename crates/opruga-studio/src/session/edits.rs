@@ -282,7 +282,7 @@ impl Session {
     }
 
     /// Undoes the first half of what was refused in its second.
-    fn back_to(&mut self, past: super::Past) -> Result<(), Refusal> {
+    fn back_to(&mut self, past: super::travel::Past) -> Result<(), Refusal> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, frame)?;
         self.pins = past.pins;

@@ -1,0 +1,54 @@
+//! The colours of the canvas, and what everything that is drawn needs.
+
+use crate::shown::Shown;
+use egui::{Color32, Rect, Ui};
+
+/// What everything that is drawn needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Look<'a> {
+    pub(crate) painter: &'a egui::Painter,
+    pub(crate) shown: &'a Shown,
+    /// Where the scene is.
+    pub(crate) rect: Rect,
+    pub(crate) paper: &'a Paper,
+    /// The ends of the colours.
+    pub(crate) range: [f64; 2],
+}
+
+/// Colours of the canvas in a theme.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Paper {
+    pub(crate) background: Color32,
+    pub(crate) grid: Color32,
+    pub(crate) ink: Color32,
+    pub(crate) soft: Color32,
+    pub(crate) solid: Color32,
+    pub(crate) solid_edge: Color32,
+    pub(crate) dark: bool,
+}
+
+impl Paper {
+    pub(crate) fn of(ui: &Ui) -> Paper {
+        if ui.visuals().dark_mode {
+            Paper {
+                background: Color32::from_rgb(24, 26, 31),
+                grid: Color32::from_rgb(36, 39, 46),
+                ink: Color32::from_rgb(226, 229, 235),
+                soft: Color32::from_rgb(142, 148, 160),
+                solid: Color32::from_rgb(48, 52, 61),
+                solid_edge: Color32::from_rgb(118, 126, 140),
+                dark: true,
+            }
+        } else {
+            Paper {
+                background: Color32::from_rgb(252, 252, 253),
+                grid: Color32::from_rgb(236, 238, 242),
+                ink: Color32::from_rgb(38, 42, 50),
+                soft: Color32::from_rgb(108, 114, 124),
+                solid: Color32::from_rgb(226, 228, 232),
+                solid_edge: Color32::from_rgb(116, 122, 132),
+                dark: false,
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Back and forth in time: keyframes, other futures, undo and redo.
+
+use super::pointer::Pinned;
+use super::{KEYFRAME_BYTES, Refusal, Session, read};
+use crate::document::Document;
+use crate::engine;
+use crate::keyframes::Keyframes;
+use crate::shown::Severity;
+
+/// A moment that can be gone back to.
+#[derive(Clone, Debug)]
+pub(super) struct Past {
+    /// What was done after it.
+    pub(super) label: String,
+    pub(super) document: Document,
+    pub(super) own_commands: usize,
+    pub(super) frame: u64,
+    pub(super) pins: Vec<Pinned>,
+}
+
+impl Session {
+    /// Goes to a frame: to the nearest keyframe before it, and from there frame by frame in the coming ticks.
+    pub(super) fn seek(&mut self, frame: u64) {
+        let frame = frame.min(self.latest);
+        let now = self.engine.frames();
+        if let Some((kept, state)) = self.keyframes.before(frame)
+            && (frame < now || kept > now)
+            && let Err(error) = self.engine.rewind(state)
+        {
+            self.refuse(&error, None);
+            return;
+        }
+        self.goal = (frame > self.engine.frames()).then_some(frame);
+        self.pacing.rest();
+    }
+
+    /// What is done now replaces what was recorded later: the future is written anew from here.
+    pub(super) fn branch(&mut self) -> Result<(), Refusal> {
+        let now = self.engine.frames();
+        if now >= self.latest {
+            return Ok(());
+        }
+        let mut document = self.document.clone();
+        document.cut(self.own_commands, self.engine.time());
+        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
+        let mut engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Refusal::World)?;
+        (self.document, self.engine) = (document, engine);
+        self.cut_pins();
+        self.keyframes.forget_after(now);
+        self.latest = now;
+        self.goal = None;
+        Ok(())
+    }
+
+    /// A point to come back to.
+    pub(super) fn past(&self, label: &str) -> Past {
+        Past {
+            label: label.into(),
+            document: self.document.clone(),
+            own_commands: self.own_commands,
+            frame: self.engine.frames(),
+            pins: self.pins.clone(),
+        }
+    }
+
+    /// Remembers the moment before something was done.
+    pub(super) fn remember(&mut self, past: Past) {
+        // A slider that is drawn is one edit.
+        let same = |last: &Past| last.label == past.label && last.frame == past.frame;
+        if !self.undo.last().is_some_and(same) {
+            self.undo.push(past);
+        }
+        self.redo.clear();
+        if self.undo.len() > 100 {
+            self.undo.remove(0);
+        }
+    }
+
+    /// Builds the world of a document and goes to a frame that it shares with the present course of things.
+    pub(super) fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Refusal> {
+        self.release();
+        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
+        let engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        let shared = frame.min(self.engine.frames().max(self.latest));
+        let state = self.keyframes.before(shared).map(|(_, state)| state.to_vec());
+        let mut engine = engine;
+        // Where the start itself was changed there is no common past, and the way goes from the start.
+        let common = frame > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
+        (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
+        if common {
+            self.keyframes.forget_after(self.engine.frames());
+        } else {
+            self.keyframes = Keyframes::new(KEYFRAME_BYTES);
+            self.keep();
+        }
+        self.pins.clear();
+        self.latest = frame;
+        self.goal = (frame > self.engine.frames()).then_some(frame);
+        self.pacing.rest();
+        Ok(())
+    }
+
+    pub(super) fn step_back(&mut self) -> Result<(), Refusal> {
+        let Some(past) = self.undo.last().cloned() else { return Ok(()) };
+        let present = Past { label: past.label.clone(), ..self.past("") };
+        self.take(past.document, past.own_commands, past.frame)?;
+        self.pins = past.pins;
+        self.undo.pop();
+        // What is redone begins where it was done.
+        self.redo.push(Past { frame: present.frame, ..present });
+        self.tell(Severity::Told, format!("undo: {}, t = {:.2} s", past.label, self.time_of(past.frame)), None);
+        Ok(())
+    }
+
+    pub(super) fn step_forward(&mut self) -> Result<(), Refusal> {
+        let Some(future) = self.redo.last().cloned() else { return Ok(()) };
+        let present = Past { label: future.label.clone(), ..self.past("") };
+        self.take(future.document, future.own_commands, future.frame)?;
+        self.pins = future.pins;
+        self.redo.pop();
+        self.undo.push(present);
+        self.tell(Severity::Told, format!("redo: {}, t = {:.2} s", future.label, self.time_of(future.frame)), None);
+        Ok(())
+    }
+
+    pub(super) fn time_of(&self, frame: u64) -> f64 {
+        frame as f64 * self.engine.frame_seconds()
+    }
+
+    pub(super) fn reset(&mut self) -> Result<(), Refusal> {
+        let past = self.past("reset");
+        let mut document = self.document.clone();
+        let recorded = document.commands() > self.own_commands;
+        document.keep_commands(self.own_commands);
+        self.take(document, self.own_commands, 0)?;
+        if recorded {
+            self.remember(past);
+        }
+        Ok(())
+    }
+}
