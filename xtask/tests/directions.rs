@@ -57,7 +57,15 @@ fn crates_depend_on_lower_layers_only() {
 #[test]
 fn physics_crates_do_no_input_or_output() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace has a folder");
-    for name in ["opruga-math", "opruga-mesh", "opruga-core", "opruga-solve", "opruga-models", "opruga-integrators", "opruga-collide"] {
+    for name in [
+        "opruga-math",
+        "opruga-mesh",
+        "opruga-core",
+        "opruga-solve",
+        "opruga-models",
+        "opruga-integrators",
+        "opruga-collide",
+    ] {
         let mut folders = vec![root.join("crates").join(name).join("src")];
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(&folder).expect("a folder of sources") {

@@ -77,11 +77,14 @@ fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) 
     let folder = OutputFolder::open(&folder, if call.force { Existing::Replace } else { Existing::Refuse })?;
     folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes).as_bytes()))?;
     files.push("modes.csv");
-    if !call.no_pictures && let Some(png) = draw_shapes(&mut world, body, &modes)? {
+    if !call.no_pictures
+        && let Some(png) = draw_shapes(&mut world, body, &modes)?
+    {
         folder.write("modes.png", false, |out| out.write_all(&png))?;
         files.push("modes.png");
     }
-    let object = json!({"schema": 1, "scene": source.name, "body": name, "time": world.time(), "rows": rows, "files": files});
+    let object =
+        json!({"schema": 1, "scene": source.name, "body": name, "time": world.time(), "rows": rows, "files": files});
     let text = format!("{}\n", serde_json::to_string_pretty(&object).unwrap_or_default());
     folder.write("modes.json", false, |out| out.write_all(text.as_bytes()))?;
     if call.json {

@@ -167,8 +167,8 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
     let mut refused: Vec<(&str, Vec<&str>)> = Vec::new();
     for (model, integrator, _) in pairs.iter().filter(|pair| !pair.2) {
         match refused.iter_mut().find(|row| row.0 == *model) {
-            Some(row) => row.1.push(integrator),
-            None => refused.push((model, vec![integrator])),
+            Some(row) => row.1.push(*integrator),
+            None => refused.push((*model, vec![*integrator])),
         }
     }
     let _ = writeln!(text, "every model goes with every integrator, but");

@@ -586,7 +586,13 @@ impl<const D: usize> System<D> {
     }
 }
 
-pub(crate) fn view<const D: usize>(state: &State<D>, nodes: usize, layout: Layout, stage: Stage, time: f64) -> View<'_, D> {
+pub(crate) fn view<const D: usize>(
+    state: &State<D>,
+    nodes: usize,
+    layout: Layout,
+    stage: Stage,
+    time: f64,
+) -> View<'_, D> {
     let (x, v) = match stage {
         Stage::Current => (&state.x, &state.v),
         Stage::Work(k) => (&state.work[k][0], &state.work[k][1]),

@@ -60,9 +60,7 @@ fn path_of(error: &WorldError) -> String {
             None => place.clone(),
         },
         WorldError::UnstableStep { .. } => "time.substeps".into(),
-        WorldError::Step { body, .. }
-        | WorldError::Diverged { body, .. }
-        | WorldError::NotConverged { body, .. } => {
+        WorldError::Step { body, .. } | WorldError::Diverged { body, .. } | WorldError::NotConverged { body, .. } => {
             format!("body.{}", body.split('[').next().unwrap_or(body))
         }
         WorldError::Path { path, .. } => body(path).unwrap_or_default(),

@@ -1,6 +1,7 @@
 //! Assembly against a dense matrix, and all solvers against one another.
 
 use super::*;
+use opruga_math::Lane;
 use crate::{BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Preconditioner, conjugate_gradients};
 
 /// A chain of springs in the plane with a gas that couples all of its nodes; `order` reverses the calls.
@@ -87,7 +88,7 @@ fn every_solver_finds_the_same_solution() {
         let mut b = vec![0.0; 2 * nodes];
         matrix.multiply(&wanted, &mut b);
         let check = |x: &[f64], name: &str| {
-            let error = x.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let error = x.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, Lane::larger);
             assert!(error < 1e-9, "{name}, {nodes} nodes: {error}");
         };
         let mut cholesky = Cholesky::default();

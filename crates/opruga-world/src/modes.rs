@@ -129,12 +129,14 @@ impl<const D: usize> World<D> {
             }
             shift *= 10.0;
             if shift > 1e3 * fastest {
-                return Err(refuse("modes.indefinite", "the stiffness of this state has no natural frequencies".into()));
+                return Err(refuse(
+                    "modes.indefinite",
+                    "the stiffness of this state has no natural frequencies".into(),
+                ));
             }
         }
         let wanted = count.saturating_sub(rigid.len());
-        let found =
-            lowest_modes(wanted, &mass, shift, &known, |x| factor.solve(x), |x, y| stiffness.multiply(x, y));
+        let found = lowest_modes(wanted, &mass, shift, &known, |x| factor.solve(x), |x, y| stiffness.multiply(x, y));
         rigid.truncate(count);
         rigid.extend(found.into_iter().map(|mode| Mode {
             square: mode.square,

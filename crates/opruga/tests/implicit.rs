@@ -1,4 +1,5 @@
 //! Implicit integrators and statics on whole scenes: rest, sliding, impact, sag, catenary, snapshots, refusals.
+#![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 mod common;
 
@@ -37,7 +38,8 @@ fn mean(world: &World<2>, of: impl Fn(u32) -> f64) -> f64 {
 #[test]
 fn a_stiff_block_falls_comes_to_rest_and_stays() {
     for rule in RULES {
-        let mut world = built(plane(&(head(1.0 / 60.0, substeps(rule), -9.81, rule) + BLOCK + &floor(-0.05, 0.4, 0.0))));
+        let mut world =
+            built(plane(&(head(1.0 / 60.0, substeps(rule), -9.81, rule) + BLOCK + &floor(-0.05, 0.4, 0.0))));
         for frame in 0..240 {
             frames(&mut world, 1);
             let lowest = nodes(&world).iter().map(|x| x[1]).fold(f64::INFINITY, f64::min);
@@ -78,8 +80,8 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
         // A rod of two nodes stands at the limit itself, under every rule.
         let rod = "[[body]]\nname = \"rod\"\nshape = { kind = \"line\", from = [0.0, 0.0], to = [0.4, 0.0], segments = 1 }\n\
             mass = 2.0\nmodels = [ { kind = \"mass_spring\", stiffness = 2e5 } ]\n";
-        let head = head(1.0 / 60.0, 1, 0.0, rule)
-            .replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
+        let head =
+            head(1.0 / 60.0, 1, 0.0, rule).replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
         let mut world = built(plane(&(head + rod + &floor(0.0, 0.5, 0.0))));
         frames(&mut world, 600);
         assert!(world.position(0, 0)[0].abs() < 1e-4, "{rule}: {:?}", world.position(0, 0));
@@ -189,9 +191,10 @@ fn a_run_that_is_taken_up_again_ends_with_the_same_bits() {
 #[test]
 fn all_linear_solvers_lead_to_the_same_motion() {
     let run = |solver: &str| {
-        let text = head(1.0 / 60.0, 1, -9.81, "backward_euler")
-            .replace("kind = \"backward_euler\"\n", &format!("kind = \"backward_euler\"\nlinear_solver = \"{solver}\"\n"))
-            + "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 64, center = [0.0, 0.7] }\n\
+        let text = head(1.0 / 60.0, 1, -9.81, "backward_euler").replace(
+            "kind = \"backward_euler\"\n",
+            &format!("kind = \"backward_euler\"\nlinear_solver = \"{solver}\"\n"),
+        ) + "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 64, center = [0.0, 0.7] }\n\
                mass = 1.0\nmodels = [ { kind = \"mass_spring\", stiffness = 4e3, damping = 1.0 },\n\
                { kind = \"pressure\", nRT = 100.0, ambient = 10.0 }, { kind = \"bending\", stiffness = 0.2, damping = 0.01 } ]\n"
             + &floor(0.0, 0.5, 0.0);
@@ -244,7 +247,8 @@ fn refusals_say_what_is_wrong_and_what_helps() {
 
     // One iteration does not do.
     let turning = |fields: &str| {
-        let text = head(0.2, 1, -9.81, "backward_euler").replace("kind = \"backward_euler\"\n", &format!("kind = \"backward_euler\"\n{fields}"));
+        let text = head(0.2, 1, -9.81, "backward_euler")
+            .replace("kind = \"backward_euler\"\n", &format!("kind = \"backward_euler\"\n{fields}"));
         text + &BLOCK.replace("mass = 2.0\n", "mass = 2.0\nangular_velocity = 5.0\n")
     };
     let mut world = built(plane(&turning("iterations = 2\n")));
@@ -252,13 +256,15 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     let error = world.frame().unwrap_err();
     assert_eq!(error.code(), "run.not_converged");
     let text = error.to_string();
-    for part in ["did not converge in 2 iterations at t = 0 s", "out of balance by", "allowed:", "hint: more substeps"] {
+    for part in ["did not converge in 2 iterations at t = 0 s", "out of balance by", "allowed:", "hint: more substeps"]
+    {
         assert!(text.contains(part), "{text}");
     }
     assert_eq!((nodes(&world), world.time()), (before, 0.0));
     // Two other answers to the same question.
     for (policy, code) in [("accept", "step.not_converged"), ("halve", "step.halved")] {
-        let fields = format!("iterations = {}\nwhen_not_converged = \"{policy}\"\n", if policy == "accept" { 2 } else { 4 });
+        let fields =
+            format!("iterations = {}\nwhen_not_converged = \"{policy}\"\n", if policy == "accept" { 2 } else { 4 });
         let mut world = built(plane(&turning(&fields)));
         frames(&mut world, 5);
         let counted = world.warnings().iter().find(|w| w.code == code).map(|w| w.count);
@@ -294,7 +300,9 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
     let models = |dimension: usize, kind: &str| match (kind, dimension) {
         ("mass_spring", _) => Some("{ kind = \"mass_spring\", stiffness = 100.0, damping = 0.5 }"),
         ("pressure", _) => Some("{ kind = \"pressure\", nRT = 20.0 }, { kind = \"mass_spring\", stiffness = 100.0 }"),
-        ("bending", _) => Some("{ kind = \"bending\", stiffness = 0.1 }, { kind = \"mass_spring\", stiffness = 100.0 }"),
+        ("bending", _) => {
+            Some("{ kind = \"bending\", stiffness = 0.1 }, { kind = \"mass_spring\", stiffness = 100.0 }")
+        }
         ("drag", _) => Some("{ kind = \"drag\", rate = 1.0 }, { kind = \"mass_spring\", stiffness = 100.0 }"),
         ("as_published", 2) => Some("{ kind = \"as_published\" }"),
         // Others have tests of their own.
@@ -308,7 +316,11 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
                 2 => ("kind = \"ring\", radius = 1.0, vertices = 12", "[0.0, -1.0]"),
                 _ => ("kind = \"icosphere\", radius = 1.0, subdivisions = 1", "[0.0, -1.0, 0.0]"),
             };
-            let pins = if integrator == "equilibrium" { "pin = [ { select = { nodes = [0, 3, 5] }, axes = \"all\" } ]\n" } else { "" };
+            let pins = if integrator == "equilibrium" {
+                "pin = [ { select = { nodes = [0, 3, 5] }, axes = \"all\" } ]\n"
+            } else {
+                ""
+            };
             let pins = pins.replace("all", if dimension == 2 { "xy" } else { "xyz" });
             let text = format!(
                 "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1.0\nframe = 0.002\nsubsteps = 4\n\
@@ -316,13 +328,20 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
                  shape = {{ {shape} }}\nnode_mass = 1.0\nmodels = [ {models} ]\n{pins}"
             );
             let built = match common::read(&text) {
-                Ok(opruga::blueprint::AnyBlueprint::Plane(b)) => World::new(b, opruga::Options::default()).map(|mut w| frames(&mut w, 3)),
-                Ok(opruga::blueprint::AnyBlueprint::Space(b)) => World::new(b, opruga::Options::default()).map(|mut w| frames(&mut w, 3)),
+                Ok(opruga::blueprint::AnyBlueprint::Plane(b)) => {
+                    World::new(b, opruga::Options::default()).map(|mut w| frames(&mut w, 3))
+                }
+                Ok(opruga::blueprint::AnyBlueprint::Space(b)) => {
+                    World::new(b, opruga::Options::default()).map(|mut w| frames(&mut w, 3))
+                }
                 Err(errors) => panic!("{model} with {integrator}: {}", errors[0]),
             };
             match built {
                 Ok(()) => assert!(fits, "{model} with {integrator} in {dimension}D"),
-                Err(error) => assert!(!fits && error.code() == "integrator.needs", "{model} with {integrator} in {dimension}D: {error}"),
+                Err(error) => assert!(
+                    !fits && error.code() == "integrator.needs",
+                    "{model} with {integrator} in {dimension}D: {error}"
+                ),
             }
             tried += 1;
         }

@@ -30,7 +30,15 @@ pub(super) fn follow<const D: usize>(
         return Err(StepError::Model { model: SPEC.kind, message });
     }
     let start = room.u.clone();
-    room.contacting.hold(&room.u, 1.0, &room.held, &room.x0, &mut room.free, &mut room.projectors, &mut room.prescribed);
+    room.contacting.hold(
+        &room.u,
+        1.0,
+        &room.held,
+        &room.x0,
+        &mut room.free,
+        &mut room.projectors,
+        &mut room.prescribed,
+    );
     let mut way = length * (system.nodes as f64).sqrt();
     let mut solved = Solved::default();
     for _ in 0..=MOST_HALVINGS {

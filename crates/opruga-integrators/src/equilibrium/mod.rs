@@ -178,7 +178,8 @@ impl Equilibrium {
         for (v, u) in room.v1.iter_mut().zip(&room.u) {
             *v = u / h;
         }
-        self.enter_work(system, room, h)?;
+        let before_load = system.history.numbers[LOAD];
+        self.enter_work(system, room, h, [before_load, load])?;
         system.evaluate(Stage::Current, h, 0.0, &mut room.force)?;
         let after = system.stored_energy(Stage::Current, h);
         let given: f64 = system.work.user.iter().sum::<f64>() - room.work_before;
@@ -199,17 +200,24 @@ impl Equilibrium {
         Ok(())
     }
 
-    /// Moves the system to the end, entering what loads and pins do on the way; velocities are zero then.
-    fn enter_work<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
+    /// Moves the system to the end, entering what loads and pins do on the way, with the parts of the load that are on at
+    /// both ends; velocities are zero then.
+    fn enter_work<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        h: f64,
+        loads: [f64; 2],
+    ) -> Result<(), StepError> {
         let damping = system.work.damping;
         room.work_before = system.work.user.iter().sum();
         let moving = room.u1.clone();
         room.u1.fill(0.0);
         commit(system, room);
-        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
+        system.evaluate(Stage::Current, 0.0, 0.5 * h * loads[0], &mut room.force)?;
         room.u1.copy_from_slice(&moving);
         commit(system, room);
-        system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
+        system.evaluate(Stage::Current, h, 0.5 * h * loads[1], &mut room.force)?;
         system.work.damping = damping;
         room.v1.fill(0.0);
         commit(system, room);

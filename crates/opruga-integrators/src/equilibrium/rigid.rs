@@ -214,7 +214,8 @@ fn swings<const D: usize>(system: &System<D>, motion: &Motion<D>, center: &[f64;
 fn simplest(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let mut done = 0;
     for column in (0..n).rev() {
-        let Some(pivot) = (done..rows.len()).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs())) else {
+        let Some(pivot) = (done..rows.len()).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))
+        else {
             break;
         };
         if rows[pivot][column].abs() < 1e-7 {

@@ -204,7 +204,8 @@ fn find_direction<const D: usize>(
     moves: bool,
     first_norm: &mut f64,
 ) -> Result<(u32, f64), u32> {
-    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } = room;
+    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } =
+        room;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
     if let Keep::Raised(part) = keep {
@@ -228,7 +229,8 @@ fn find_direction<const D: usize>(
     *first_norm = norm.larger(*first_norm);
     // Far from the solution a rough direction does (Eisenstat and Walker 1996).
     let share = if *first_norm > 0.0 && !settings.budget { (norm / *first_norm).larger(1e-9) } else { 1.0 };
-    let products = linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
+    let products =
+        linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
     let slope = -dot(right, step);
     if moves {
@@ -326,12 +328,7 @@ fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
 }
 
 /// The incremental potential and the size of its parts [J].
-fn potential<const D: usize>(
-    system: &System<D>,
-    room: &Room<D>,
-    balance: &Balance,
-    trial: bool,
-) -> Option<(f64, f64)> {
+fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balance, trial: bool) -> Option<(f64, f64)> {
     let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
     let u = if trial { &room.trial } else { &room.u };
     let mut inertia = 0.0;

@@ -116,7 +116,15 @@ impl<const D: usize> Rule<D> for Newmark {
                 room.z[k] = theta * way - (theta * (v + h * (1.0 - gamma) * a) + alpha_f * v) / rate;
             }
         }
-        Balance { sigma: (1.0 - alpha_m) / (beta * h * h * theta), beta: rate, theta, time: theta * h, h, load: 1.0, impulse: gamma / (1.0 - alpha_m) }
+        Balance {
+            sigma: (1.0 - alpha_m) / (beta * h * h * theta),
+            beta: rate,
+            theta,
+            time: theta * h,
+            h,
+            load: 1.0,
+            impulse: gamma / (1.0 - alpha_m),
+        }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
         for k in 0..room.u.len() {

@@ -37,7 +37,9 @@ fn rules() -> Vec<(Box<dyn Integrator<2>>, f64)> {
 #[test]
 fn every_kind_is_registered_once() {
     let names: Vec<_> = crate::all::<2>().iter().map(|kind| kind.spec().kind).collect();
-    assert_eq!(names, [
+    assert_eq!(
+        names,
+        [
             "symplectic_euler",
             "explicit_euler",
             "heun",
@@ -48,7 +50,8 @@ fn every_kind_is_registered_once() {
             "implicit_midpoint",
             "newmark",
             "equilibrium"
-        ]);
+        ]
+    );
     for kind in crate::all::<3>() {
         let built = kind.build(&Values::defaults(kind.spec(), 3)).unwrap();
         assert_eq!(built.name(), kind.spec().kind);
