@@ -116,7 +116,8 @@ pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
     let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
     // Pictures of no moment are told apart by their titles; that of the first stands above them all.
-    let own = |picture: &&Picture| if picture.title == pictures[0].title { String::new() } else { picture.title.clone() };
+    let own =
+        |picture: &&Picture| if picture.title == pictures[0].title { String::new() } else { picture.title.clone() };
     let moments = times.iter().all(|time| time.is_finite());
     let captions = if moments { time_texts(&times) } else { pictures.iter().map(own).collect() };
     captioned_strip(pictures, &captions, view, style)

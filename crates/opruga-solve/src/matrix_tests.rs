@@ -1,8 +1,8 @@
 //! Assembly against a dense matrix, and all solvers against one another.
 
 use super::*;
-use opruga_math::Lane;
 use crate::{BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Preconditioner, conjugate_gradients};
+use opruga_math::Lane;
 
 /// A chain of springs in the plane with a gas that couples all of its nodes; `order` reverses the calls.
 fn deliver(nodes: usize, order: bool, sink: &mut BlockMatrix<2>) {
@@ -181,7 +181,7 @@ fn modes_of_a_free_ring_come_in_pairs() {
     // A ring of masses on springs, one coordinate each: ω² = 4 sin²(πk/N), k = 0, 1, 1, 2, 2, …
     let nodes = 40;
     let mut matrix = BlockMatrix::<1>::default();
-    let mut fill = |matrix: &mut BlockMatrix<1>, shift: f64| {
+    let fill = |matrix: &mut BlockMatrix<1>, shift: f64| {
         matrix.assemble(nodes, 0, |sink| {
             for a in 0..nodes {
                 let b = (a + 1) % nodes;

@@ -178,7 +178,11 @@ impl<const D: usize> World<D> {
 
     /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; `commands` says how many there are,
     /// and whether those that had not begun may be more or fewer.
-    fn read_rest(&self, reader: &mut Reader<'_>, (commands, other_future): (usize, bool)) -> Result<Rest<D>, WorldError> {
+    fn read_rest(
+        &self,
+        reader: &mut Reader<'_>,
+        (commands, other_future): (usize, bool),
+    ) -> Result<Rest<D>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
@@ -277,8 +281,7 @@ impl<const D: usize> World<D> {
     fn commands_then(commands: &[CommandBlueprint<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(command, progress): (&CommandBlueprint<D>, &Progress<D>)| {
             let gone = command.action.body().is_some_and(|body| rest.alive.get(body) == Some(&false));
-            let progress =
-                if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
+            let progress = if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
             Running { progress, ..Running::waiting(command.clone()) }
         };
         commands.iter().zip(&rest.progress).map(running).collect()
@@ -348,12 +351,7 @@ impl<const D: usize> World<D> {
         Ok(true)
     }
 
-    fn go_to(
-        &mut self,
-        bytes: &[u8],
-        commands: &[CommandBlueprint<D>],
-        other_future: bool,
-    ) -> Result<(), WorldError> {
+    fn go_to(&mut self, bytes: &[u8], commands: &[CommandBlueprint<D>], other_future: bool) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
         let (frames, changes) = Self::read_head(&mut reader)?;
         let changed = !changes.is_empty() || !self.changes.is_empty();

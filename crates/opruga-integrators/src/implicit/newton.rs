@@ -155,10 +155,8 @@ pub(crate) fn solve<const D: usize>(
         clamped = settings.budget || (clamped && solved.correction > 1e-2 * room.extent);
 
         // What the constraints would take says who stays held.
-        if system.contacts.is_some() {
-            if solved.iterations < MOST_DECISIONS {
-                changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
-            }
+        if system.contacts.is_some() && solved.iterations < MOST_DECISIONS {
+            changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
         }
         if !changed && (solved.correction <= goal || at_rounding(system, room, balance, settings, size)) {
             solved.converged = true;

@@ -279,7 +279,11 @@ impl<const D: usize> Potential<D> for Pressure {
         };
         let counted = |code, message, first: usize| Count { code, message, count: sum(first) as u64 };
         vec![
-            counted("pressure.limited", "a gas was held at its `largest_pressure`, counted per substep and body", WIDTH),
+            counted(
+                "pressure.limited",
+                "a gas was held at its `largest_pressure`, counted per substep and body",
+                WIDTH,
+            ),
             counted(
                 "pressure.inverted",
                 "a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open \
