@@ -4,7 +4,7 @@ use super::{Refusal, Session};
 use crate::engine::Given;
 use opruga::WorldError;
 
-/// Newtons for each metre between a node and the pointer that pushes it, for each kilogram … see [`Session::push_now`].
+/// The force of a push for each metre between the node and the pointer [N/m].
 const PUSH_STIFFNESS: f64 = 20.0;
 
 /// What a press of the pointer does.
