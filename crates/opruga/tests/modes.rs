@@ -10,7 +10,7 @@ use common::{built, frames, head, plane};
 #[test]
 fn a_chain_swings_along_itself_as_a_bar() {
     let (springs, stiffness, mass) = (20, 800.0, 0.05);
-    let text = head(0.01, 1, 0.0, "verlet")
+    let text = head(0.001, 1, 0.0, "verlet")
         + &format!(
             "[[body]]\nname = \"chain\"\nshape = {{ kind = \"line\", from = [0.0, 0.0], to = [2.0, 0.0], segments = {springs} }}\n\
              mass = {:?}\nmodels = [ {{ kind = \"mass_spring\", stiffness = {stiffness:?} }} ]\n\

@@ -2,6 +2,8 @@
 //! the integrators.
 
 use super::*;
+use crate::integrator::Amplification;
+use crate::integrator::Amplification;
 use crate::potential::{Potential, Views};
 use crate::state::Parameter;
 use crate::system::Pin;
