@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::integrator::Amplification;
-use crate::integrator::Amplification;
 use crate::potential::{Potential, Views};
 use crate::state::Parameter;
 use crate::system::Pin;
