@@ -465,7 +465,6 @@ mod tests {
                 }
             }
         }
-        println!("{smallest}° to {largest}°");
         assert!(smallest >= SMALLEST_DIHEDRAL_ANGLE && largest <= LARGEST_DIHEDRAL_ANGLE, "{smallest}° to {largest}°");
         // The bounds are nearly met, so they could not be promised any better.
         assert!(smallest < SMALLEST_DIHEDRAL_ANGLE + 0.5 && largest > LARGEST_DIHEDRAL_ANGLE - 1.0);

@@ -30,6 +30,8 @@ pub(crate) struct Running<const D: usize> {
     pub(crate) progress: Progress<D>,
     /// The path of a drag, shared with the pull that it becomes; empty for all others.
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
+    /// Whether it was given by [`World::act`], and stands among those of the scene.
+    pub(crate) acted: bool,
 }
 
 impl<const D: usize> Running<D> {
@@ -39,7 +41,11 @@ impl<const D: usize> Running<D> {
             Action::Drag { path, .. } => path.clone(),
             _ => Vec::new(),
         };
-        Running { command, progress: Progress::Waiting, path: Arc::new(RwLock::new(path)) }
+        Running { command, progress: Progress::Waiting, path: Arc::new(RwLock::new(path)), acted: false }
+    }
+    /// The same command before its time has come.
+    pub(crate) fn anew(&self) -> Running<D> {
+        Running { acted: self.acted, ..Running::waiting(self.command.clone()) }
     }
 }
 
@@ -88,7 +94,7 @@ impl<const D: usize> World<D> {
         self.write_down(|| Input::Act);
         // Where a reader of the scene puts it: in the order of time, behind those that begin with it.
         let number = self.running.iter().rposition(|r| r.command.at <= at).map_or(0, |last| last + 1);
-        self.running.insert(number, Running::waiting(command));
+        self.running.insert(number, Running { acted: true, ..Running::waiting(command) });
         let outcome = self.begin(number).and_then(|body| self.rebuild(&body.into_iter().collect()));
         if let Err(error) = outcome {
             self.running.remove(number);

@@ -115,7 +115,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let commands = self.running.iter().map(|r| r.command.clone()).collect();
+        let commands = self.running.iter().map(Running::anew).collect();
         self.restored(bytes, commands, false)
     }
 
@@ -125,7 +125,7 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// As [`World::restore`].
     pub fn restore_with(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
-        let commands = self.blueprint.commands.iter().chain(given).cloned().collect();
+        let commands = self.blueprint.commands.iter().chain(given).cloned().map(Running::waiting).collect();
         self.restored(bytes, commands, false)
     }
 
@@ -135,16 +135,11 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// As [`World::restore`].
     pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let commands = self.running.iter().map(|r| r.command.clone()).collect();
+        let commands = self.running.iter().map(Running::anew).collect();
         self.restored(bytes, commands, true)
     }
 
-    fn restored(
-        &mut self,
-        bytes: &[u8],
-        commands: Vec<CommandBlueprint<D>>,
-        other_future: bool,
-    ) -> Result<(), WorldError> {
+    fn restored(&mut self, bytes: &[u8], commands: Vec<Running<D>>, other_future: bool) -> Result<(), WorldError> {
         if self.go_to_alike(bytes, &commands, other_future)? {
             return Ok(());
         }
@@ -176,8 +171,8 @@ impl<const D: usize> World<D> {
         Ok((frames, (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?))
     }
 
-    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; `commands` says how many there are,
-    /// and whether those that had not begun may be more or fewer.
+    /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; those are known, and
+    /// with another future those that had not begun may be others.
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
@@ -213,8 +208,10 @@ impl<const D: usize> World<D> {
             rest.states.insert(number, BodyState { x, v, memory, history });
         }
         let count = reader.length()?;
-        // Commands of the scene cannot be missing; those of a program may have come later.
-        if !other_future && !(self.blueprint.commands.len()..=commands).contains(&count) {
+        // Commands of the scene cannot be missing, nor those that stand among them; others of a program may have come later.
+        let acted = commands.iter().rposition(|known| known.acted).map_or(0, |last| last + 1);
+        let least = std::cmp::Ord::max(self.blueprint.commands.len(), acted);
+        if !other_future && !(least..=commands.len()).contains(&count) {
             return refuse("it has another number of commands");
         }
         for _ in 0..count {
@@ -234,10 +231,10 @@ impl<const D: usize> World<D> {
         }
         if other_future {
             // Commands stand in the order of time: those that have begun come first.
-            if rest.progress.iter().skip(commands).any(|progress| *progress != Progress::Waiting) {
+            if rest.progress.iter().skip(commands.len()).any(|progress| *progress != Progress::Waiting) {
                 return refuse("it has another number of commands");
             }
-            rest.progress.resize(commands, Progress::Waiting);
+            rest.progress.resize(commands.len(), Progress::Waiting);
         }
         let mut numbers = [0.0; 8];
         for x in &mut numbers {
@@ -278,28 +275,23 @@ impl<const D: usize> World<D> {
     }
 
     /// Commands with how far they had come, as far as that is known.
-    fn commands_then(commands: &[CommandBlueprint<D>], rest: &Rest<D>) -> Vec<Running<D>> {
-        let running = |(command, progress): (&CommandBlueprint<D>, &Progress<D>)| {
-            let gone = command.action.body().is_some_and(|body| rest.alive.get(body) == Some(&false));
+    fn commands_then(commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
+        let running = |(known, progress): (&Running<D>, &Progress<D>)| {
+            let gone = known.command.action.body().is_some_and(|body| rest.alive.get(body) == Some(&false));
             let progress = if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
-            Running { progress, ..Running::waiting(command.clone()) }
+            Running { progress, ..known.anew() }
         };
         commands.iter().zip(&rest.progress).map(running).collect()
     }
 
     /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
-    fn go_to_alike(
-        &mut self,
-        bytes: &[u8],
-        commands: &[CommandBlueprint<D>],
-        other_future: bool,
-    ) -> Result<bool, WorldError> {
+    fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
         let (frames, changes) = Self::read_head(&mut reader)?;
         if changes != self.changes.iter().map(Change::told).collect::<Vec<_>>() {
             return Ok(false);
         }
-        let rest = self.read_rest(&mut reader, (commands.len(), other_future))?;
+        let rest = self.read_rest(&mut reader, commands, other_future)?;
         let fits = |number: &usize| {
             let (island, lane) = self.place[*number];
             let (state, system) = (&rest.states[number], &self.islands[island].system);
@@ -351,14 +343,14 @@ impl<const D: usize> World<D> {
         Ok(true)
     }
 
-    fn go_to(&mut self, bytes: &[u8], commands: &[CommandBlueprint<D>], other_future: bool) -> Result<(), WorldError> {
+    fn go_to(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
         let (frames, changes) = Self::read_head(&mut reader)?;
         let changed = !changes.is_empty() || !self.changes.is_empty();
         // Bodies that commands add are found by the numbers of those.
-        self.running = commands.iter().cloned().map(Running::waiting).collect();
+        self.running = commands.iter().map(Running::anew).collect();
         self.replay(changes)?;
-        let rest = self.read_rest(&mut reader, (commands.len(), other_future))?;
+        let rest = self.read_rest(&mut reader, commands, other_future)?;
         self.running = Self::commands_then(commands, &rest);
         self.alive = rest.alive;
         self.generation.resize(self.alive.len(), 0);

@@ -17,7 +17,7 @@
 //!     let mut tape = Tape::begin(&file, true, &header, &mut world)?;
 //!     for frame in 0..20 {
 //!         if frame == 10 {
-//!             world.set("body.ball.models.mass_spring.stiffness", 900.0.into())?;
+//!             world.set("body.ball.models.mass_spring.stiffness", opruga::core::spec::Value::Number(900.0))?;
 //!         }
 //!         tape.step(&mut world)?;
 //!     }
