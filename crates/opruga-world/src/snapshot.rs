@@ -176,7 +176,8 @@ impl<const D: usize> World<D> {
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
-        (commands, other_future): (usize, bool),
+        commands: &[Running<D>],
+        other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != self.blueprint.bodies.len() as u64 {
