@@ -209,9 +209,9 @@ impl<const D: usize> World<D> {
             rest.states.insert(number, BodyState { x, v, memory, history });
         }
         let count = reader.length()?;
-        // Commands of the scene cannot be missing, nor those that stand among them; others of a program may have come later.
-        let acted = commands.iter().rposition(|known| known.acted).map_or(0, |last| last + 1);
-        let least = std::cmp::Ord::max(self.blueprint.commands.len(), acted);
+        // Commands of a program may have come later, where they stand behind those of the scene and not among them.
+        let acted = commands.iter().any(|known| known.acted);
+        let least = if acted { commands.len() } else { self.blueprint.commands.len() };
         if !other_future && !(least..=commands.len()).contains(&count) {
             return refuse("it has another number of commands");
         }
