@@ -55,7 +55,7 @@ const FRAME: f64 = 20_000.0;
 /// What a node, a cell and a facet of space add to a step of an explicit rule, at least [ns].
 const WORK: [f64; 3] = [1.3, 3.0, 4.0];
 /// How much more a step of an implicit rule takes, at least.
-const IMPLICIT: f64 = 50.0;
+const IMPLICIT: f64 = 500.0;
 /// The part of a run that its recording may take.
 const SHARE: f64 = 0.06;
 /// The most frames from one state to the next: as many are computed to see one of them.

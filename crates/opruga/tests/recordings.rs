@@ -127,7 +127,7 @@ fn the_replay_of_every_scene_has_the_hash_of_its_run() {
 fn is_replayed<const D: usize>(name: &str, blueprint: &Blueprint<D>) {
     // A state in three, so that some frames are computed; large scenes take a while.
     let nodes: usize = blueprint.bodies.iter().map(|body| body.mesh.nodes()).sum();
-    let frames = if nodes > 50_000 { 1 } else { 5 };
+    let frames = if nodes * blueprint.time.substeps as usize > 300_000 { 1 } else { 4 };
     let path = file(&format!("scene-{name}"));
     let new = || World::new(blueprint.clone(), Options::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut run = new();
