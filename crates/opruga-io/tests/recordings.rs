@@ -144,7 +144,7 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
         let mut writer = Writer::new(&mut memory, &header).expect("memory does not fail");
         for frame in frames.clone() {
             inputs(frame).iter().for_each(|input| writer.input(frame, input).expect("before its frame"));
-            if (frame - frames.start) % 5 == 0 || frame + 1 == frames.end {
+            if (frame - frames.start).is_multiple_of(5) || frame + 1 == frames.end {
                 writer.push(frame, &state(frame)).expect("in order");
             }
         }

@@ -259,7 +259,8 @@ impl<R: Read + Seek> Recording<R> {
             // One past the last state, and the next one at most.
             let next = self.frames.end..self.frames.end.saturating_add(self.header.every);
             // A state nearer to the one before than others are is the last.
-            let ended = !self.index.is_empty() && (self.frames.end - 1 - self.frames.start) % self.header.every > 0;
+            let ended =
+                !self.index.is_empty() && !(self.frames.end - 1 - self.frames.start).is_multiple_of(self.header.every);
             let begins = self.index.is_empty() && head.kind == Kind::Whole;
             let follows = next.contains(&head.frame) && !ended || begins;
             match head.kind {

@@ -93,7 +93,8 @@ impl<W: Target> Writer<W> {
             return Err(out_of_order(frame));
         }
         // A state nearer to the one before than others are is the last.
-        let whole_steps = |[first, _]: &[u64; 2]| self.last.is_some_and(|last| (last - first) % self.every == 0);
+        let whole_steps =
+            |[first, _]: &[u64; 2]| self.last.is_some_and(|last| (last - first).is_multiple_of(self.every));
         if !self.index.first().is_none_or(whole_steps) {
             return Err(out_of_order(frame));
         }
