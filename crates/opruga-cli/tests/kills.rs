@@ -18,8 +18,8 @@ use std::time::Duration;
 const RECORDINGS: u64 = 90;
 const CHECKPOINTS: u64 = 70;
 const SWEEPS: u64 = 40;
-/// The longest time that a run is left alone [µs].
-const LONGEST: u64 = 160_000;
+/// The longest time that a run is left alone then [µs].
+const LONGEST: u64 = 100_000;
 
 /// The states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
 struct Undisturbed(Mutex<(World<2>, Vec<Vec<u8>>)>);
@@ -52,9 +52,12 @@ impl Undisturbed {
     }
 }
 
-/// Waits a time that follows from a number alone, and kills.
-fn killed(folder: &Path, arguments: &[&str], round: u64) {
+/// Waits until a file is there (every fourth time it does not), then a time that follows from a number alone, and kills.
+fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64) {
     let mut child = program(folder, arguments).spawn().expect("the program runs");
+    if !round.is_multiple_of(4) {
+        until(file, || folder.join(file).exists() || child.try_wait().is_ok_and(|ended| ended.is_some()));
+    }
     // SplitMix64.
     let mut z = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -90,7 +93,7 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
         let (out, file) = (format!("o{round}"), format!("r{round}"));
         let every = ["--record-every=1", "--record-every=3"][round as usize % 2];
         let call = ["run", "pressures", "--seconds=1e5", "--no-pictures", "--out", &out, "--record", &file, every];
-        killed(folder, &call, round);
+        killed(folder, &call, &file, round);
         // It gets its name with its head.
         let Ok(file) = std::fs::File::open(folder.join(&file)) else { return };
         let mut recording = Recording::open(file).unwrap_or_else(|error| panic!("round {round}: {error}"));
@@ -105,7 +108,7 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
         most.fetch_max(recording.frames().end, Ordering::Relaxed);
     });
     let (begun, most) = (begun.into_inner(), most.into_inner());
-    assert!(begun > RECORDINGS / 10 && most > 3, "{begun} recordings had begun, with up to {most} frames");
+    assert!(begun > RECORDINGS / 2 && most > 3, "{begun} recordings had begun, with up to {most} frames");
 }
 
 #[test]
@@ -126,7 +129,7 @@ fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
             "--out",
             &out,
         ];
-        killed(folder, &call, round);
+        killed(folder, &call, &format!("{out}/checkpoint"), round);
         for name in ["checkpoint", "checkpoint.previous"] {
             let Ok(bytes) = std::fs::read(folder.join(&out).join(name)) else { continue };
             let checkpoint = Checkpoint::read(&bytes).unwrap_or_else(|error| panic!("round {round}, {name}: {error}"));
@@ -136,7 +139,7 @@ fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
         }
     });
     let found = found.into_inner();
-    assert!(found > CHECKPOINTS / 10, "{found} checkpoints were written");
+    assert!(found > CHECKPOINTS / 2, "{found} checkpoints were written");
     // The last that has one goes on.
     let last = (0..CHECKPOINTS).rev().find(|round| folder.join(format!("o{round}/checkpoint")).exists()).expect("one");
     let checkpoint = format!("o{last}/checkpoint");
@@ -153,7 +156,7 @@ fn a_sweep_that_is_killed_again_and_again_comes_to_its_end() {
         ["sweep", "ball", "--set=body.ball.mass=0.5..2:60", "--metric=bounce_height", "--seconds=2", "--threads=2", out]
     };
     for round in 0..SWEEPS {
-        killed(folder, &call("--out=killed"), round);
+        killed(folder, &call("--out=killed"), "killed/results.csv", round);
     }
     for out in ["--out=killed", "--out=whole"] {
         let output = opruga(folder, &call(out));
