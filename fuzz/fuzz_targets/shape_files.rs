@@ -10,7 +10,7 @@ use std::sync::Arc;
 static EULER: Spec =
     Spec { kind: "symplectic_euler", summary: "", documentation: "", dimensions: &[2, 3], fields: &[] };
 
-const SHAPES: [(u8, &str, &str); 17] = [
+const SHAPES: [(u8, &str, &str); 19] = [
     (2, "a.svg", "kind = \"svg\", spacing = 0.2, size = 1.0, filling = \"triangles\""),
     (2, "a.svg", "kind = \"svg\", spacing = 0.1, size = 1.0, overlap = \"union\""),
     (2, "a.json", "kind = \"map\", spacing = 0.1, size = 1.0, overlap = \"even_odd\""),
@@ -27,6 +27,12 @@ const SHAPES: [(u8, &str, &str); 17] = [
     (3, "a.vtk", "kind = \"mesh\", inverted = \"turn\""),
     (3, "a.vtu", "kind = \"mesh\", inverted = \"turn\""),
     (3, "a.mesh", "kind = \"mesh\", inverted = \"turn\""),
+    (
+        2,
+        "a.svg",
+        "kind = \"svg\", spacing = 0.2, size = 1.0, filling = \"lattice\", overlap = \"union\", colours = true",
+    ),
+    (2, "a.svg", "kind = \"svg\", spacing = 0.2, size = 1.0, overlap = \"even_odd\", colours = true"),
     (3, "a.ele", "kind = \"mesh\", inverted = \"turn\""),
 ];
 
@@ -41,7 +47,9 @@ fuzz_target!(|bytes: &[u8]| {
     let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
     let nodes: Arc<[u8]> = Arc::from(&b"4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"[..]);
     let files = Files::held([(name.to_string(), Arc::from(bytes)), ("a.node".to_string(), nodes)]);
-    if let Err(errors) = read(text.as_bytes(), "fuzz.toml", &catalogue, &Options { limits, files, ..Options::default() }) {
+    if let Err(errors) =
+        read(text.as_bytes(), "fuzz.toml", &catalogue, &Options { limits, files, ..Options::default() })
+    {
         for error in errors {
             assert!(!error.file.is_empty());
             assert!(error.to_string().chars().all(|c| c == '\n' || !c.is_control()));

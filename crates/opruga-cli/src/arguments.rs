@@ -271,12 +271,18 @@ pub(crate) struct Run {
     /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
-    /// Record every frame to this file, for `opruga replay`
+    /// Record the run to this file, for `opruga replay`
     ///
-    /// The file holds the scene and needs no other. A run that is killed leaves all frames up to its last twentieth of a
-    /// second. --force replaces a file that is there.
+    /// The file holds the scene and needs no other. A run that is killed leaves all frames up to the last state that was
+    /// kept a twentieth of a second before. --force replaces a file that is there.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
+    /// Keep one state in so many frames of the recording; 1: all
+    ///
+    /// Those between are computed again when they are asked for. Without this option so many that recording takes less
+    /// than a tenth of the run, at most 32.
+    #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) record_every: Option<u32>,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,

@@ -7,7 +7,7 @@ use opruga::World;
 use opruga::io::recording::{Asset, Header, Recording, RecordingError};
 use opruga::io::safe_write::WriteError;
 use opruga::io::{Files, SceneError};
-use opruga::recordings::Tape;
+use opruga::recordings::{Tape, states_apart};
 use std::fs::File;
 use std::path::Path;
 
@@ -18,6 +18,7 @@ pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
 pub(crate) fn begin<const D: usize>(
     path: &Path,
     force: bool,
+    every: Option<u32>,
     source: &Source,
     calling: &Calling,
     world: &mut World<D>,
@@ -28,6 +29,7 @@ pub(crate) fn begin<const D: usize>(
         file: source.file.clone(),
         scene: source.bytes.clone(),
         frame: world.blueprint().time.frame,
+        every: every.map_or_else(|| states_apart(world), u64::from),
         overrides: calling.overrides.clone(),
         lenient: calling.lenient,
         allow_unstable: calling.allow_unstable,

@@ -146,7 +146,8 @@ impl Job<'_> {
             files: self.files,
         };
         let recorded = call.record.as_deref();
-        let tape = recorded.map(|path| recordings::begin(path, call.force, source, &calling, &mut world));
+        let every = call.record_every;
+        let tape = recorded.map(|path| recordings::begin(path, call.force, every, source, &calling, &mut world));
         let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = interrupt::asked_to_stop();

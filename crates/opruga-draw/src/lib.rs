@@ -31,7 +31,9 @@ pub use eye::{Eye, Lens, scene as draw_scene};
 pub use fitting::Fitting;
 pub use image::Image;
 pub use layout::Style;
-pub use picture::{ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture};
+pub use picture::{
+    AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
+};
 pub use plot::{Axis, Chart, HeatMap, HeatPanel, Level, Line, Marker, Panel};
 pub use strip::{StripStyle, best_count, captioned_strip, spread, strip};
 pub use ticks::{decades, format_tick, format_value, nice_length, nice_step, nice_ticks, scientific};

@@ -61,9 +61,20 @@ pub(crate) fn draw_marks(
 ) {
     for body in &picture.bodies {
         let few = body.pinned.len() <= SUPPORTS;
+        // Marks that would lie on one another are one.
+        let apart = if few { 12.0 } else { 7.0 } * unit;
+        let mut marked: Vec<[f32; 2]> = Vec::new();
         for &node in &body.pinned {
-            if let Some(point) = project(body.positions[node as usize]) {
-                if few { support(canvas, point, unit) } else { canvas.disc(point, 2.2 * unit, INK) }
+            let near = |a: &[f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
+            if let Some(point) = project(body.positions[node as usize])
+                && !marked.iter().any(|other| near(other, point))
+            {
+                if few {
+                    support(canvas, point, unit)
+                } else {
+                    canvas.disc(point, 2.2 * unit, INK)
+                }
+                marked.push(point);
             }
         }
     }

@@ -67,6 +67,19 @@ pub enum Facets {
     Triangles(Vec<[u32; 3]>),
 }
 
+/// An area that is painted on a flat body.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct AreaPicture {
+    /// Red, green, blue and opacity; the body's own colours, cut off at the area, where this is absent.
+    pub colour: Option<[u8; 4]>,
+    /// The points that bound the area [m].
+    pub positions: Vec<[f64; 3]>,
+    /// The places behind the last point of each closed line; a line within another bounds a hole.
+    pub ends: Vec<usize>,
+    /// The area as triangles between its points, for those who cannot fill what lines bound; may be empty.
+    pub triangles: Vec<[u32; 3]>,
+}
+
 /// One deformable body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPicture {
@@ -84,6 +97,8 @@ pub struct BodyPicture {
     pub colour: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
+    /// The areas which are drawn in two dimensions instead of the outline, one over another; may be empty.
+    pub areas: Vec<AreaPicture>,
     /// The nodes which are held in place.
     pub pinned: Vec<u32>,
     /// A name that is written under the body; may be empty.
@@ -100,6 +115,7 @@ impl Default for BodyPicture {
             scalar: Vec::new(),
             colour: None,
             nodes_drawn: false,
+            areas: Vec::new(),
             pinned: Vec::new(),
             label: String::new(),
         }
@@ -215,6 +231,14 @@ impl BodyPicture {
             Facets::Edges(edges) => Box::new(edges.iter().flatten().copied()),
             Facets::Triangles(triangles) => Box::new(triangles.iter().flatten().copied()),
         };
+        for area in &self.areas {
+            let (points, last) = (area.positions.len(), area.ends.last().copied().unwrap_or(0));
+            let beyond = area.triangles.iter().flatten().find(|point| **point as usize >= points);
+            if last != points || !area.ends.is_sorted() || beyond.is_some() {
+                let node = beyond.copied().unwrap_or(last as u32);
+                return Err(DrawError::Node { body, nodes: points, part: "areas", node });
+            }
+        }
         let parts: [(&'static str, Option<u32>); 4] = [
             ("facets", wrong(facets)),
             ("cells", wrong(Box::new(self.cells.iter().flatten().copied()))),

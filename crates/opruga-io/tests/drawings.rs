@@ -194,6 +194,79 @@ fn parts_that_overlap_are_joined_where_the_scene_says_so() {
     assert!(refused.hint.is_some_and(|hint| hint.contains("union")));
 }
 
+/// What a drawing of two parts is painted with: inherited, by style, in per cent, from a gradient, or not at all.
+#[test]
+fn parts_are_painted_in_their_fill_colours() {
+    let painted = |inside: &str| {
+        let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 4.0, overlap = \"union\", colours = true";
+        let (mesh, notices) = plane(shape, "a.svg", drawing(inside).as_bytes()).unwrap_or_else(|e| panic!("{}", e[0]));
+        let colours: Vec<[u8; 4]> =
+            mesh.skin.as_ref().map_or_else(Vec::new, |skin| skin.areas.iter().filter_map(|area| area.colour).collect());
+        (colours, notices.into_iter().map(|n| n.about.code).collect::<Vec<_>>())
+    };
+    let whole = "<rect width=\"8\" height=\"8\" fill=\"#fff\"/>";
+    for (inside, wanted) in [
+        ("<rect x=\"1\" width=\"4\" height=\"4\"/>", [0, 0, 0, 255]),
+        ("<rect x=\"1\" width=\"4\" height=\"4\" fill=\"#DD2E44\"/>", [221, 46, 68, 255]),
+        ("<rect x=\"1\" width=\"4\" height=\"4\" fill=\"#269\" fill-opacity=\"0.5\"/>", [34, 102, 153, 128]),
+        (
+            "<g fill=\"gold\" opacity=\".4\"><rect x=\"1\" width=\"4\" height=\"4\" opacity=\"50%\"/></g>",
+            [255, 215, 0, 51],
+        ),
+        ("<g fill=\"red\"><rect x=\"1\" width=\"4\" height=\"4\" style=\"fill: rgb(1, 2, 3)\"/></g>", [1, 2, 3, 255]),
+        ("<g color=\"lime\"><rect x=\"1\" width=\"4\" height=\"4\" fill=\"currentColor\"/></g>", [0, 255, 0, 255]),
+        ("<rect x=\"1\" width=\"4\" height=\"4\" fill=\"url(#none) blue\"/>", [0, 0, 255, 255]),
+    ] {
+        assert_eq!(painted(&format!("{whole}{inside}")), (vec![[255, 255, 255, 255], wanted], vec![]), "{inside}");
+    }
+    // What is not filled is not painted.
+    let none = painted(&format!("{whole}<path d=\"M1 1h2v2h-2z\" fill=\"none\"/>"));
+    assert_eq!(none, (vec![[255; 4]], vec!["svg.stroke"]));
+    let stops = "<stop stop-color=\"black\"/><stop offset=\"1\" stop-color=\"#204060\" stop-opacity=\"0\"/>";
+    let gradient = format!(
+        "<defs><linearGradient id=\"a\">{stops}</linearGradient><radialGradient id=\"b\" href=\"#a\"/></defs>\
+         <circle r=\"3\" fill=\"url(#b)\"/>"
+    );
+    assert_eq!(painted(&gradient), (vec![[16, 32, 48, 128]], vec!["svg.gradient"]));
+    let styled = "<style>.a { fill: red }</style><circle r=\"3\" class=\"a\"/>";
+    assert_eq!(painted(styled), (vec![[0, 0, 0, 255]], vec!["svg.style"]));
+    // Colours are refused where they cannot be read, if they are wanted; else nobody looks at them.
+    for bad in ["#12", "url(#nobody)", "rgb(1,2)", "context-stroke"] {
+        let text = drawing(&format!("\n<circle r=\"2\" fill=\"{bad}\"/>"));
+        let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 4.0, colours = true";
+        let error = &plane(shape, "a.svg", text.as_bytes()).expect_err(bad)[0];
+        assert_eq!((error.code, error.line, error.value.as_deref()), ("svg.colour", Some(3), Some(bad)));
+        assert!(svg(&text).is_ok(), "{bad}");
+    }
+}
+
+/// Squares around a drawing carry it as it is, with detail that is finer than they are.
+#[test]
+fn a_coarse_lattice_carries_a_fine_outline() {
+    let spikes: String = (0..400)
+        .map(|k| {
+            let (angle, r) = (2.0 * PI * f64::from(k) / 400.0, if k % 2 == 0 { 10.0 } else { 9.0 });
+            format!("{:.6},{:.6} ", r * angle.cos(), r * angle.sin())
+        })
+        .collect();
+    let text = drawing(&format!("<polygon points=\"{spikes}\"/>"));
+    let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 2.0, filling = \"lattice\"";
+    let (mesh, notices) = plane(shape, "a.svg", text.as_bytes()).expect("a lattice");
+    assert!(notices.is_empty() && mesh.nodes() < 50 && mesh.cells.quadrilaterals.len() > 9, "{}", mesh.nodes());
+    let skin = mesh.skin.as_ref().expect("the outline");
+    assert_eq!((skin.areas.len(), skin.areas[0].colour, skin.areas[0].rings[0].len()), (1, None, 400));
+    // 200 spikes between radii 1 and 0.9: ½ · 400 · 0.9 · sin(2π/400).
+    let points = skin.positions(&mesh.positions.iter().map(|p| [p[0], p[1], 0.0]).collect::<Vec<_>>());
+    let ring = &skin.areas[0].rings[0];
+    let twice: f64 = (0..400)
+        .map(|k| {
+            let (a, b) = (points[ring[k] as usize], points[ring[(k + 1) % 400] as usize]);
+            a[0] * b[1] - a[1] * b[0]
+        })
+        .sum();
+    assert!((0.5 * twice.abs() / (180.0 * (2.0 * PI / 400.0).sin()) - 1.0).abs() < 1e-4, "{twice}");
+}
+
 #[test]
 fn small_parts_are_dropped_only_where_the_scene_says_so() {
     let text = drawing("<rect width=\"4\" height=\"4\"/><circle r=\"0.1\" cx=\"5\"/>");

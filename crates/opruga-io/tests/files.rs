@@ -2,7 +2,10 @@
 
 use opruga_io::checkpoint::{Checkpoint, CheckpointError};
 use opruga_io::safe_write::{Existing, Failing, OutputFolder, Target, safe_write, safe_write_through};
+use opruga_io::series::{Format, Shape, write_vtk_series};
 use opruga_io::tables::{FinalBody, NumberTable, Summary, write_final};
+use opruga_io::tracks::{Track, write_glb};
+use opruga_mesh::Mesh;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -57,6 +60,68 @@ fn writers() -> Vec<(&'static str, Writer)> {
         ("checkpoint", Box::new(move |out| checkpoint.write(out))),
         ("mine.toml", Box::new(|out| out.write_all(opruga_io::template::commented("mine").as_bytes()))),
     ]
+}
+
+/// Every writer of meshes, of frames for other programs, and of motions.
+fn exports() -> Vec<(String, Writer)> {
+    let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [1; 3]).and_then(Mesh::into_simplices).expect("a cube");
+    let mut all: Vec<(String, Writer)> = Vec::new();
+    for ending in ["msh", "vtk", "vtu", "mesh", "mfem", "ele"] {
+        for (ending, bytes) in opruga_io::meshes::write(&mesh, ending).expect("it is written").files {
+            all.push((format!("cube.{ending}"), Box::new(move |out| out.write_all(&bytes))));
+        }
+    }
+    for format in [Format::Vtk, Format::Vtu, Format::Obj, Format::Ply] {
+        let mesh = mesh.clone();
+        let write = move |out: &mut dyn Write| {
+            let velocities = vec![[0.1; 3]; mesh.nodes()];
+            let shape = Shape {
+                name: "cube",
+                mesh: &mesh,
+                positions: &mesh.positions,
+                velocities: &velocities,
+                translation: [0.0; 3],
+                cell_fields: &[],
+            };
+            format.write(out, "a cube", 0.5, &[shape])
+        };
+        all.push((format!("frame.{}", format.ending()), Box::new(write)));
+    }
+    let mut track = Track::new("cube", &mesh);
+    (0..2).for_each(|k| track.add(f64::from(k), &mesh.positions));
+    let other = track.clone();
+    all.push(("motion.pc2".into(), Box::new(move |out| other.write_pc2(out))));
+    let other = track.clone();
+    all.push(("motion.mdd".into(), Box::new(move |out| other.write_mdd(out))));
+    all.push(("motion.glb".into(), Box::new(move |out| write_glb(out, "a cube", std::slice::from_ref(&track)))));
+    all.push(("frames.vtk.series".into(), Box::new(|out| write_vtk_series(out, &[("frame.vtk".into(), 0.5)]))));
+    all
+}
+
+/// Row 83 for exports: at every byte a full disk leaves the old file whole.
+#[test]
+fn a_full_disk_leaves_no_half_export() {
+    let folder = folder("exports");
+    for (name, writer) in exports() {
+        let path = folder.join(&name);
+        let mut whole = Vec::new();
+        writer(&mut whole).expect("memory does not fail");
+        assert!(!whole.is_empty(), "{name}");
+        safe_write(&path, false, |w| w.write_all(b"old")).expect("the first");
+        for k in 0..whole.len() as u64 {
+            let error = safe_write_through(&path, true, |file| Failing::after(k, file), &writer).expect_err("full");
+            assert_eq!((error.code, error.bytes, error.exit_code()), ("write.failed", k, 4), "{name}");
+        }
+        assert_eq!(std::fs::read(&path).expect("still there"), b"old", "{name}");
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
+        #[cfg(target_os = "linux")]
+        {
+            let mut full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
+            assert!(writer(&mut full).is_err(), "{name}: the error of the device is passed on");
+        }
+        std::fs::remove_file(&path).expect("the file is there");
+    }
+    std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
 /// Rows 83 and 91: a drive that is full, broken, gone from the network or over its quota, at any byte of any output.

@@ -41,6 +41,7 @@ fn header() -> Header {
         file: "scenes/balls.toml".into(),
         scene: b"format = \"opruga-1\"\n".to_vec(),
         frame: 1.0 / 60.0,
+        every: 1,
         overrides: vec![("time.substeps".into(), "64".into()), ("world.gravity".into(), "[0, 0]".into())],
         lenient: true,
         allow_unstable: false,
@@ -132,6 +133,57 @@ fn frames_out_of_order_are_refused_and_left_out() {
     writer.push(4, &state(4)).expect("the next one");
     writer.finish().expect("memory does not fail");
     assert_eq!(open(&memory.0).expect("a recording").frames(), 3..5);
+}
+
+/// One state in five, and the last: what lies between is told from what is not there; inputs keep their frames.
+#[test]
+fn states_are_kept_as_far_apart_as_the_header_says() {
+    let written = |frames: core::ops::Range<u64>, closed: bool| {
+        let mut memory = Memory::default();
+        let header = Header { every: 5, ..header() };
+        let mut writer = Writer::new(&mut memory, &header).expect("memory does not fail");
+        for frame in frames.clone() {
+            inputs(frame).iter().for_each(|input| writer.input(frame, input).expect("before its frame"));
+            if (frame - frames.start).is_multiple_of(5) || frame + 1 == frames.end {
+                writer.push(frame, &state(frame)).expect("in order");
+            }
+        }
+        assert!(writer.push(frames.end + 5, &state(0)).is_err(), "it lies too far behind");
+        writer.flush().expect("memory does not fail");
+        if closed {
+            writer.finish().expect("memory does not fail");
+        }
+        memory.0
+    };
+    for (frames, closed) in [(60..93, true), (60..93, false), (60..91, true), (3..700, true), (3..700, false)] {
+        let bytes = written(frames.clone(), closed);
+        let mut recording = open(&bytes).expect("a recording");
+        assert_eq!((recording.frames(), recording.header().every), (frames.clone(), 5));
+        assert!(!matches!(recording.ending(), Ending::Damaged(_)), "{:?}", recording.ending());
+        for frame in frames.clone().rev().chain(frames.clone()) {
+            let wanted = if frame + 1 == frames.end { frame } else { frame - (frame - frames.start) % 5 };
+            assert_eq!(recording.kept(frame), Ok(wanted));
+            match recording.read(frame) {
+                Ok(read) => assert!(wanted == frame && read == state(frame), "{frame}"),
+                Err(error) => assert_eq!((wanted == frame, error.code()), (false, "recording.not_kept")),
+            }
+        }
+        assert!(recording.kept(frames.end).is_err());
+        let wanted: Vec<u64> = frames.flat_map(|frame| inputs(frame).into_iter().map(move |_| frame)).collect();
+        assert_eq!(recording.inputs().collect::<Vec<_>>(), wanted);
+        for (number, frame) in wanted.into_iter().enumerate() {
+            assert!(inputs(frame).contains(&recording.input(number).expect("an input")));
+        }
+    }
+    // Cut off anywhere it ends with a state that is kept; nothing follows the last one.
+    let whole = written(60..93, false);
+    for length in 400..whole.len() {
+        let Ok(mut recording) = open(&whole[..length]) else { continue };
+        assert!(matches!(recording.ending(), Ending::Open { .. }), "{length}");
+        if let Some(last) = recording.frames().last() {
+            assert_eq!(recording.read(last), Ok(&state(last)[..]), "{length}");
+        }
+    }
 }
 
 /// Row 79: cut off at any byte, as by a kill, a recording loses the chunk that was cut and nothing else.
@@ -228,10 +280,10 @@ fn other_files_and_other_versions_are_refused() {
         assert_eq!(open(bytes).err(), Some(RecordingError::NotOne));
     }
     let mut newer = recorded(0..2, true);
-    newer[8] = 3;
+    newer[8] = 99;
     let sum = crc32fast::hash(&newer[..20]);
     newer[20..24].copy_from_slice(&sum.to_le_bytes());
-    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 3 }));
+    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 99 }));
 }
 
 /// Row 83: the disk fails at any byte, or only when the bytes shall last: an error with the number of bytes, and a file

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 const HEART: &[u8] = include_bytes!("../../../scenes/shapes/heart.svg");
 const FISH: &[u8] = include_bytes!("../../../scenes/shapes/fish.svg");
+const GRADIENTS: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg"><style>.a{}</style><radialGradient id="b" href="#a"/><linearGradient id="a"><stop stop-color="red"/><stop stop-color="#123" stop-opacity="30%"/></linearGradient><g fill="url(#b)" opacity=".5"><circle r="4" class="a"/><rect width="5" height="3" style="fill: rgb(1, 20, 3)"/></g></svg>"##;
 const FONT: &[u8] = include_bytes!("../../../scenes/shapes/inter-black-subset.otf");
 const SMALL_MAP: &[u8] = br#"{"type":"Topology","transform":{"scale":[0.5,0.5],"translate":[0,0]},"arcs":[[[4,0],[0,4]],[[4,4],[-4,0],[0,-4],[4,0]]],"objects":{"one":{"type":"MultiPolygon","arcs":[[[0,1]]],"properties":{"name":"a"}}}}"#;
 const GEOJSON: &[u8] = br#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"a"},"geometry":{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}}]}"#;
@@ -35,7 +36,7 @@ const ELE: &[u8] = b"1 4 1\n1 1 2 3 4 2.5\n";
 const NODE: &[u8] = b"4 3 0 1\n1 0 0 0 0\n2 1 0 0 3\n3 0 1 0 3\n4 0 0 1 -1\n";
 
 /// How many samples there are.
-const SAMPLES: usize = 19;
+const SAMPLES: usize = 22;
 
 /// Dimension, shape, name of the file, contents.
 fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
@@ -43,10 +44,16 @@ fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
     let outline = |kind: &str, more: &str| leaked(format!("kind = \"{kind}\", {more}"));
     let joined = "spacing = 0.1, size = 1.0, overlap = \"union\"";
     let filled = "spacing = 0.2, size = 1.0, filling = \"triangles\"";
+    let lattice = "spacing = 0.2, size = 1.0, filling = \"lattice\"";
+    let painted = "spacing = 0.2, size = 1.0, filling = \"lattice\", overlap = \"union\", colours = true";
+    let gradients = "spacing = 0.2, size = 1.0, overlap = \"union\", colours = true";
     let mending = "inverted = \"turn\", unreferenced = \"leave_out\"";
     vec![
         (2, outline("svg", filled), "a.svg", HEART),
         (2, outline("svg", joined), "a.svg", FISH),
+        (2, outline("svg", painted), "a.svg", FISH),
+        (2, outline("svg", gradients), "a.svg", GRADIENTS),
+        (2, outline("map", lattice), "a.json", GEOJSON),
         (2, outline("map", filled), "a.json", SMALL_MAP),
         (2, outline("map", joined), "a.json", GEOJSON),
         (2, outline("text", "spacing = 0.2, size = 1.0, text = \"oB\""), "a.otf", FONT),
@@ -73,6 +80,15 @@ fn sound<const D: usize>(mesh: &Mesh<D>) {
     // Cells may touch along an edge, which is sound for elements, but bounds no chamber.
     if mesh.cells.is_empty() {
         mesh.chambers().expect("closed chambers, or none");
+    }
+    if let Some(skin) = &mesh.skin {
+        let nodes = mesh.nodes() as u32;
+        assert!(skin.carriers.iter().flatten().all(|node| *node < nodes));
+        assert!(skin.weights.iter().flatten().all(|weight| weight.is_finite()));
+        let points = skin.carriers.len() as u32;
+        let named =
+            skin.areas.iter().flat_map(|area| area.rings.iter().flatten().chain(area.triangles.iter().flatten()));
+        assert!(named.copied().all(|point| point < points));
     }
     let upright = mesh.cell_measures().iter().all(|measure| measure.least >= 0.0);
     assert!(upright && mesh.unreferenced_nodes().is_empty());

@@ -321,6 +321,68 @@ fn bad_obj_files_are_refused_with_their_line() {
     assert_eq!(refused("a.obj", band.as_bytes()).code, "mesh.non_orientable");
 }
 
+/// Rows 26 and 38: what is odd but can be meant is counted, with the worst of it and a guess at the unit.
+#[test]
+fn slivers_and_odd_scales_are_told() {
+    let codes = |text: &str, more: &str| -> Vec<(&'static str, Option<String>)> {
+        let shape = format!("kind = \"surface\", file = \"a.obj\"{more}");
+        let (_, notices) = space(&shape, &[("a.obj", text.as_bytes())]).unwrap_or_else(|e| panic!("{}", e[0]));
+        notices.into_iter().map(|n| (n.about.code, n.about.value)).collect()
+    };
+    // A tetrahedron whose sides are long and whose front is thin.
+    let needle =
+        |thin: f64| format!("v 0 0 0\nv 1 0 0\nv 0 {thin} 0\nv 0 0 {thin}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    assert_eq!(codes(&needle(0.1), ""), []);
+    assert_eq!(codes(&needle(1e-4), ""), [("mesh.sliver", Some("3".into()))]);
+    assert_eq!(refused("a.obj", needle(1e-11).as_bytes()).code, "mesh.degenerate_face");
+    // The cube, 2 units wide, in other units.
+    let cube = |scale: f64| {
+        let mut text = String::new();
+        CORNERS.iter().for_each(|c| text += &format!("v {:e} {:e} {:e}\n", scale * c[0], scale * c[1], scale * c[2]));
+        SQUARES.iter().for_each(|[a, b, c, d]| text += &format!("f {} {} {} {}\n", a + 1, b + 1, c + 1, d + 1));
+        text
+    };
+    for (scale, wanted) in [(1.0, None), (1e5, Some("200000")), (1e-6, Some("0.000002"))] {
+        let told: Vec<_> = wanted.map(|value| ("mesh.scale", Some(value.to_string()))).into_iter().collect();
+        assert_eq!(codes(&cube(scale), ""), told, "{scale}");
+        assert_eq!(codes(&cube(scale), ", size = 2.0"), [], "whoever says the size has seen it");
+    }
+    for scale in [1e30, 1e-30, 1e200, 1e-200, 1e308] {
+        match surface("a.obj", cube(scale).as_bytes()) {
+            Ok((mesh, notices)) => {
+                assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()), "{scale}");
+                assert_eq!(notices[0].about.code, "mesh.scale", "{scale}");
+            }
+            Err(errors) => assert_eq!(errors[0].file, "a.obj", "{scale}: {}", errors[0]),
+        }
+    }
+}
+
+/// Row 35: a shell inside another is a cavity of one chamber, shells beside one another are chambers each.
+#[test]
+fn shells_are_chambers_and_shells_in_them_cavities() {
+    let cubes = |scales: [f64; 2], apart: f64| {
+        let mut text = String::new();
+        for (k, scale) in scales.into_iter().enumerate() {
+            for c in CORNERS {
+                let [x, y, z] = c.map(|x| scale * x);
+                text += &format!("v {} {y} {z}\n", x + apart * k as f64);
+            }
+        }
+        for first in [1, 9] {
+            SQUARES.iter().for_each(|[a, b, c, d]| {
+                text += &format!("f {} {} {} {}\n", a + first, b + first, c + first, d + first);
+            });
+        }
+        surface("a.obj", text.as_bytes()).unwrap_or_else(|e| panic!("{}", e[0])).0
+    };
+    let (nested, beside) = (cubes([1.0, 0.5], 0.0), cubes([1.0, 0.5], 4.0));
+    assert_eq!((nested.components().expect("closed").len(), nested.chambers().expect("one").len()), (2, 1));
+    assert!((nested.enclosed_volume() - 7.0).abs() < 1e-12, "{}", nested.enclosed_volume());
+    assert_eq!((beside.components().expect("closed").len(), beside.chambers().expect("two").len()), (2, 2));
+    assert!((beside.enclosed_volume() - 9.0).abs() < 1e-12, "{}", beside.enclosed_volume());
+}
+
 /// Row 23: headers that promise more than the file holds, before anything is allocated.
 #[test]
 fn sizes_are_compared_before_memory_is_asked_for() {

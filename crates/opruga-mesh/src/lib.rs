@@ -66,7 +66,7 @@ pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
 pub use polygon::Polygon;
 pub use quadratic::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES, triangle_parts};
 pub use quality::{CellMeasure, CellQuality};
-pub use skin::Skin;
+pub use skin::{Area, Skin};
 pub use soup::{Turned, weld};
 pub use sphere::MAXIMUM_SUBDIVISIONS;
 pub use stuffing::{LARGEST_DIHEDRAL_ANGLE, SMALLEST_DIHEDRAL_ANGLE};

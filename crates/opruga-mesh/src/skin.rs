@@ -6,12 +6,25 @@ use crate::{Mesh, MeshError};
 /// Points that move with a body without being part of its physics: each is a mean of four of its nodes.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Skin {
-    /// Triangles between the points of the skin, outward.
+    /// In space: triangles between the points of the skin, outward.
     pub triangles: Vec<[u32; 3]>,
+    /// In the plane: areas between the points of the skin, painted one over another.
+    pub areas: Vec<Area>,
     /// The nodes that carry each point.
     pub carriers: Vec<[u32; 4]>,
     /// Their weights, which add up to 1.
     pub weights: Vec<[f64; 4]>,
+}
+
+/// An area of a drawing.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Area {
+    /// Red, green, blue and opacity; none for the colour of the body.
+    pub colour: Option<[u8; 4]>,
+    /// The points of the skin along each closed line that bounds the area; one inside another bounds a hole.
+    pub rings: Vec<Vec<u32>>,
+    /// The area at rest as triangles between these points.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Skin {

@@ -7,7 +7,7 @@ use crate::blueprint::{BodyBlueprint, PinBlueprint};
 use crate::collide::Picture as Placed;
 use crate::core::potential::{Account, CellState};
 use crate::draw::{
-    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
+    AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
 };
 use crate::mesh::{EdgeSet, Mesh, Skin, triangle_parts};
 
@@ -65,7 +65,7 @@ pub enum Quantity {
     VonMises,
     /// The volume of finite elements over that at rest, the mean of the cells at each node.
     VolumeRatio,
-    /// Nothing: bodies have a colour each.
+    /// Nothing: bodies have a colour each, drawings their own.
     Plain,
 }
 
@@ -81,8 +81,13 @@ impl Quantity {
         Quantity::Plain,
     ];
 
-    /// What the colours of some bodies tell by themselves: stress where all are made of finite elements, else strain.
+    /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
+    /// all are made of finite elements, else strain.
     fn of<const D: usize>(bodies: &[BodyBlueprint<D>]) -> Quantity {
+        let mut areas = bodies.iter().filter_map(|body| body.mesh.skin.as_ref()).flat_map(|skin| &skin.areas);
+        if areas.any(|area| area.colour.is_some()) {
+            return Quantity::Plain;
+        }
         let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.kind() == "fem");
         if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
     }
@@ -272,10 +277,12 @@ impl Scenery {
                 .map(|c| [f64::from(c[0]), f64::from(c[1]), c.get(2).map_or(0.0, |z| f64::from(*z))])
                 .collect();
             let scalar: Vec<f64> = scalars.by_ref().take(fixed.nodes).collect();
-            if let (Some(skin), None) = (&fixed.skin, &fixed.springs) {
+            let skin = fixed.skin.as_ref().filter(|_| fixed.springs.is_none());
+            if let Some(skin) = skin.filter(|_| self.dimension == 3) {
                 bodies.push(skinned(skin, &positions, &scalar, &fixed.label));
                 continue;
             }
+            let areas = skin.map_or_else(Vec::new, |skin| areas(skin, &positions, moment.quantity));
             bodies.push(BodyPicture {
                 scalar,
                 positions,
@@ -283,7 +290,8 @@ impl Scenery {
                 cells: fixed.cells.clone(),
                 segments: fixed.springs.as_ref().unwrap_or(&fixed.segments).clone(),
                 colour: None,
-                nodes_drawn: fixed.nodes_drawn || fixed.springs.is_some(),
+                nodes_drawn: (fixed.nodes_drawn && areas.is_empty()) || fixed.springs.is_some(),
+                areas,
                 pinned: fixed.pinned.clone(),
                 label: fixed.label.clone(),
             });
@@ -357,11 +365,29 @@ fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> 
         facets: Facets::Triangles(skin.triangles.clone()),
         cells: Vec::new(),
         segments: Vec::new(),
-        colour: None,
-        nodes_drawn: false,
-        pinned: Vec::new(),
         label: label.into(),
+        ..BodyPicture::default()
     }
+}
+
+/// The areas of a drawing that a flat body carries: those with colours of their own where the colours of the body tell
+/// nothing, else its silhouette.
+fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPicture> {
+    let painted = quantity == Quantity::Plain && skin.areas.iter().any(|area| area.colour.is_some());
+    let seen = skin.areas.iter().filter(|area| area.colour.is_some() == painted);
+    let points = skin.positions(positions);
+    let drawn = seen.map(|area| {
+        let mut picture = AreaPicture { colour: area.colour, ..AreaPicture::default() };
+        for ring in &area.rings {
+            picture.positions.extend(ring.iter().map(|point| points[*point as usize]));
+            picture.ends.push(picture.positions.len());
+        }
+        // Its points were counted ring by ring.
+        let first = area.rings.first().and_then(|ring| ring.first()).copied().unwrap_or(0);
+        picture.triangles = area.triangles.iter().map(|t| t.map(|point| point - first)).collect();
+        picture
+    });
+    drawn.collect()
 }
 
 /// Whether y counts downwards in a plane: gravity says so, or where there is none, the floor.

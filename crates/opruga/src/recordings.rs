@@ -23,7 +23,8 @@
 //!     }
 //!     tape.finish(&mut world)?;
 //!
-//!     // Another world shows any frame of it, or computes it again.
+//!     // Another world shows any frame of it, or computes it again. `Header::every` keeps fewer states: those between are
+//!     // computed as they are asked for.
 //!     let mut again = World::new(blueprint, Options::default())?;
 //!     let mut playback = Playback::of(Recording::open(std::fs::File::open(&file)?)?, 20)?;
 //!     playback.show(&mut again, 3)?;
@@ -37,18 +38,64 @@
 //! ```
 
 use crate::{World, WorldError};
+use opruga_core::spec::Values;
 use opruga_io::recording::{Header, Recording, RecordingError, RecordingFile};
 use opruga_io::safe_write::WriteError;
-use opruga_world::Input;
-use opruga_world::blueprint::CommandBlueprint;
+use opruga_world::blueprint::{BodyBlueprint, CommandBlueprint};
+use opruga_world::{Input, Registry};
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 
-/// A recording that is being written: every frame of a world, and what the program does to it.
+/// What it takes to write a byte of a state, with its coding [ns].
+const BYTE: f64 = 2.1;
+/// What it takes to keep a state, however small [ns].
+const STATE: f64 = 3_000.0;
+/// What a frame takes, however small [ns].
+const FRAME: f64 = 20_000.0;
+/// What a node, a cell and a facet of space add to a step of an explicit rule, at least [ns].
+const WORK: [f64; 3] = [1.3, 3.0, 4.0];
+/// How much more a step of an implicit rule takes, at least.
+const IMPLICIT: f64 = 500.0;
+/// The part of a run that its recording may take.
+const SHARE: f64 = 0.06;
+/// The most frames from one state to the next: as many are computed to see one of them.
+const FARTHEST: f64 = 32.0;
+
+/// How many frames a state is to be kept, where nobody says it: so many that a run is less than a tenth slower by it, but
+/// at most 32. It follows from the scene alone, by what work and writing take on a common machine: the same run gives the
+/// same recording everywhere.
+pub fn states_apart<const D: usize>(world: &World<D>) -> u64 {
+    let blueprint = world.blueprint();
+    let registry = Registry::<D>::default();
+    let implicit = |values: &Values| {
+        let built = registry.integrator(values.kind()).and_then(|kind| kind.build(values).ok());
+        built.is_some_and(|integrator| integrator.needs().hessian)
+    };
+    let step = |body: &BodyBlueprint<D>| {
+        let mesh = &body.mesh;
+        let facets = if D == 3 { mesh.facets.len() + mesh.sheets.len() } else { 0 };
+        let counts = [mesh.nodes(), mesh.cells.len(), facets].map(|count| count as f64);
+        let work: f64 = counts.iter().zip(WORK).map(|(count, each)| count * each).sum();
+        let rule = body.integrator.as_ref().unwrap_or(&blueprint.integrator);
+        if implicit(rule) { IMPLICIT * work } else { work }
+    };
+    let frame = FRAME + f64::from(blueprint.time.substeps) * blueprint.bodies.iter().map(step).sum::<f64>();
+    let nodes: usize = blueprint.bodies.iter().map(|body| body.mesh.nodes()).sum();
+    // Positions and velocities.
+    let state = STATE + BYTE * (nodes * 2 * D * 8) as f64;
+    let apart = (state / (SHARE * frame)).ceil();
+    if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
+}
+
+/// A recording that is being written: states of a world, and what the program does to it.
 #[derive(Debug)]
 pub struct Tape {
     file: RecordingFile,
     path: PathBuf,
+    /// From one frame whose state is kept to the next.
+    every: u64,
+    /// The first frame, and the last that was kept.
+    kept: [u64; 2],
 }
 
 /// Why a recording was not written, or not played.
@@ -80,8 +127,9 @@ impl Tape {
         let file = RecordingFile::create(path, force, header)?;
         world.keep_inputs();
         drop(world.take_inputs());
-        let mut tape = Tape { file, path: path.to_path_buf() };
-        tape.push(world)?;
+        let first = world.frames();
+        let mut tape = Tape { file, path: path.to_path_buf(), every: header.every, kept: [first; 2] };
+        tape.keep(world)?;
         Ok(tape)
     }
 
@@ -94,13 +142,22 @@ impl Tape {
         Ok(self.push(world)?)
     }
 
-    /// Adds the present frame of the world, and before it what the program has done since the last one.
+    /// Adds the present frame of the world, and before it what the program has done since the last one. Its state is kept
+    /// where its turn has come.
     ///
     /// # Errors
     /// [`WriteError`] where the file cannot be written, or for what cannot be recorded: bodies and forces that the program
     /// has made itself (`recording.input`). The frames before are whole.
     pub fn push<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), WriteError> {
         self.inputs(world, world.frames())?;
+        match (world.frames() - self.kept[0]).is_multiple_of(self.every) {
+            true => self.keep(world),
+            false => Ok(()),
+        }
+    }
+
+    fn keep<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {
+        self.kept[1] = world.frames();
         self.file.push(world.frames(), |out| world.snapshot_into(out))
     }
 
@@ -119,11 +176,14 @@ impl Tape {
         Ok(())
     }
 
-    /// Writes the end; what the program did after the last frame is in it.
+    /// Writes the state of the last frame and the end; what the program did after that frame is in it.
     ///
     /// # Errors
     /// As [`Tape::push`].
     pub fn finish<const D: usize>(mut self, world: &mut World<D>) -> Result<u64, WriteError> {
+        if world.frames() > self.kept[1] {
+            self.keep(world)?;
+        }
         self.inputs(world, world.frames() + 1)?;
         self.file.finish()
     }
@@ -135,6 +195,8 @@ pub struct Playback<R, const D: usize> {
     recording: Recording<R>,
     /// What the program did, each with the frame that followed.
     inputs: Vec<(u64, Input<D>)>,
+    /// The frame that was shown last, and the hash of its state, where the next one may be computed from it.
+    shown: Option<(u64, u64)>,
 }
 
 impl<R: Read + Seek, const D: usize> Playback<R, D> {
@@ -148,22 +210,47 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
         for (number, frame) in frames.into_iter().enumerate() {
             inputs.push((frame, Input::from_bytes(&recording.input(number)?)?));
         }
-        Ok(Playback { recording, inputs })
+        Ok(Playback { recording, inputs, shown: None })
     }
 
-    /// The bytes of a frame, as [`World::snapshot`] gives them.
+    /// Whether the state of a frame is in the recording, and not only what it is computed from.
+    pub fn keeps(&self, frame: u64) -> bool {
+        self.recording.kept(frame) == Ok(frame)
+    }
+
+    /// The bytes of a frame whose state is kept, as [`World::snapshot`] gives them.
     ///
     /// # Errors
-    /// [`RecordingError`] where there is no such frame, or it is damaged.
+    /// [`RecordingError`] where there is no such state, or it is damaged.
     pub fn state(&mut self, frame: u64) -> Result<&[u8], RecordingError> {
         self.recording.read(frame)
     }
 
-    /// Brings a world to a frame, without a step.
+    /// Brings a world to a frame: without a step where its state is kept, else by steps from the last one that is.
     ///
     /// # Errors
-    /// [`TapeError`]; the world stays as it was.
+    /// [`TapeError`]; if that is not a refused step, the world stays as it was.
     pub fn show(&mut self, world: &mut World<D>, frame: u64) -> Result<(), TapeError> {
+        let kept = self.recording.kept(frame)?;
+        let here = self.shown.filter(|(at, hash)| {
+            (kept..=frame).contains(at) && world.frames() == *at && world.state_hash() == *hash && *at > kept
+        });
+        let from = match here {
+            Some((at, _)) => at,
+            None => {
+                self.restore(world, kept)?;
+                kept
+            }
+        };
+        for next in from + 1..=frame {
+            self.step(world, next)?;
+        }
+        self.shown = (frame > kept).then(|| (frame, world.state_hash()));
+        Ok(())
+    }
+
+    /// Brings a world to a frame whose state is kept.
+    fn restore(&mut self, world: &mut World<D>, frame: u64) -> Result<(), TapeError> {
         let given: Vec<CommandBlueprint<D>> = self
             .inputs
             .iter()

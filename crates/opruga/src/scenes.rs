@@ -38,6 +38,9 @@ scenes![
     "cantilever",
     "cooks-membrane",
     "jelly",
+    "drawings",
+    "heart-solid",
+    "spot-solid",
 ];
 
 macro_rules! shapes {

@@ -62,9 +62,16 @@ fn handle(world: &mut World<2>, frame: u64) {
 
 #[test]
 fn what_a_program_does_is_in_the_recording_and_is_done_again() {
-    let path = file("handled");
+    for every in [1, 7, 64] {
+        is_done_again(every);
+    }
+}
+
+fn is_done_again(every: u64) {
+    let path = file(&format!("handled-{every}"));
     let mut recorded = world("pressures");
-    let mut tape = Tape::begin(&path, true, &header("pressures"), &mut recorded).expect("a file");
+    let header = Header { every, ..header("pressures") };
+    let mut tape = Tape::begin(&path, true, &header, &mut recorded).expect("a file");
     let mut hashes = vec![recorded.state_hash()];
     let frames = 30;
     for frame in 1..=frames {
@@ -82,14 +89,17 @@ fn what_a_program_does_is_in_the_recording_and_is_done_again() {
     for frame in 1..=frames {
         playback.step(&mut again, frame).expect("a frame");
         assert_eq!(again.state_hash(), hashes[frame as usize], "frame {frame}");
-        assert_eq!(playback.state(frame).expect("a state"), again.snapshot(), "frame {frame}");
+        assert_eq!(playback.keeps(frame), frame.is_multiple_of(every) || frame == frames, "frame {frame}");
+        if playback.keeps(frame) {
+            assert_eq!(playback.state(frame).expect("a state"), again.snapshot(), "frame {frame}");
+        }
     }
     let mut alone = world("pressures");
     (0..frames).for_each(|_| alone.frame().expect("a frame"));
     assert_ne!(alone.state_hash(), hashes[frames as usize]);
     // Shown in any order, and gone on with from any of them.
     let mut shown = world("pressures");
-    for frame in [12, 3, 29, 0, 21, 20, 8, 30] {
+    for frame in [12, 3, 4, 6, 29, 0, 21, 20, 8, 30] {
         playback.show(&mut shown, frame).expect("a frame");
         assert_eq!(shown.state_hash(), hashes[frame as usize], "frame {frame}");
         if frame < frames {
@@ -97,6 +107,49 @@ fn what_a_program_does_is_in_the_recording_and_is_done_again() {
             assert_eq!(shown.state_hash(), hashes[frame as usize + 1], "after frame {frame}");
         }
     }
+    std::fs::remove_file(path).expect("the file is there");
+}
+
+/// Every scene that comes with the library: its recording shows, and computes again, the bits of its run.
+#[test]
+fn the_replay_of_every_scene_has_the_hash_of_its_run() {
+    for name in scenes::names() {
+        let text = scenes::find(name).expect("a scene");
+        let options = scene::Options { files: scenes::files(), ..scene::Options::default() };
+        match scene::read(text.as_bytes(), name, &catalogue(), &options) {
+            Ok((AnyBlueprint::Plane(blueprint), _)) => is_replayed(name, &blueprint),
+            Ok((AnyBlueprint::Space(blueprint), _)) => is_replayed(name, &blueprint),
+            Err(errors) => panic!("{}", errors[0]),
+        }
+    }
+}
+
+fn is_replayed<const D: usize>(name: &str, blueprint: &Blueprint<D>) {
+    // A state in three, so that some frames are computed; large scenes take a while.
+    let nodes: usize = blueprint.bodies.iter().map(|body| body.mesh.nodes()).sum();
+    let frames = if nodes * blueprint.time.substeps as usize > 300_000 { 1 } else { 4 };
+    let path = file(&format!("scene-{name}"));
+    let new = || World::new(blueprint.clone(), Options::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let mut run = new();
+    let mut tape = Tape::begin(&path, true, &Header { every: 3, ..header(name) }, &mut run).expect("a file");
+    let mut hashes = vec![run.state_hash()];
+    for _ in 0..frames {
+        tape.step(&mut run).unwrap_or_else(|error| panic!("{name}: {error}"));
+        hashes.push(run.state_hash());
+    }
+    tape.finish(&mut run).expect("an end");
+    let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
+    let mut playback = Playback::<_, D>::of(recording, frames as u64).expect("whole");
+    let mut again = new();
+    for frame in (0..=frames).rev() {
+        playback.show(&mut again, frame as u64).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(again.state_hash(), hashes[frame], "{name}, frame {frame}");
+    }
+    for (frame, hash) in hashes.iter().enumerate().skip(1) {
+        playback.step(&mut again, frame as u64).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(again.state_hash(), *hash, "{name}, frame {frame}");
+    }
+    assert_eq!(again.snapshot(), run.snapshot(), "{name}");
     std::fs::remove_file(path).expect("the file is there");
 }
 
@@ -113,6 +166,21 @@ fn what_cannot_be_recorded_is_an_error_and_the_frames_before_stay() {
     let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
     assert_eq!(recording.frames(), 0..2);
     std::fs::remove_file(path).expect("the file is there");
+}
+
+/// States are kept as far apart as a run's speed asks for: the crowd's are, those of a slow scene are not.
+#[test]
+fn states_of_fast_scenes_are_kept_farther_apart() {
+    let apart = |name: &str| opruga::recordings::states_apart(&world(name));
+    assert!(
+        apart("thousand-balls") > 8 && apart("heart-solid") == 1,
+        "{} {}",
+        apart("thousand-balls"),
+        apart("heart-solid")
+    );
+    for name in ["ball", "heart", "giant-ring"] {
+        assert!((1..=32).contains(&apart(name)), "{name}: {}", apart(name));
+    }
 }
 
 /// A state that differs in motion alone is put into the islands that are there; the bits are those of islands built anew.

@@ -2,7 +2,7 @@
 
 use super::Projection;
 use super::loops::{Loop, chain};
-use super::shade;
+use super::{areas, shade};
 use crate::canvas::{Canvas, paint};
 use crate::colour::{BODIES, ColourMap, INK, darker, mix};
 use crate::picture::{BodyPicture, Facets, Picture};
@@ -60,7 +60,7 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
         }
         let base = body.colour.unwrap_or(body_colour(index, picture.bodies.len()));
         let size = (high[0] - low[0]).max(high[1] - low[1]);
-        Drawing { body, pixels: &pixels, low, high, size, unit, base, scalars: &scalars }.draw(canvas);
+        Drawing { body, pixels: &pixels, low, high, size, unit, base, scalars: &scalars, projection }.draw(canvas);
     }
 }
 
@@ -89,6 +89,8 @@ struct Drawing<'a> {
     base: [u8; 3],
     /// The colours of scalars.
     scalars: &'a Scalars,
+    /// How points become pixels.
+    projection: &'a Projection,
 }
 
 impl Drawing<'_> {
@@ -105,6 +107,11 @@ impl Drawing<'_> {
             Facets::Edges(_) => &[],
         };
         let cells = if body.cells.is_empty() { surface } else { &body.cells };
+        if !body.areas.is_empty() {
+            self.carried(canvas, cells);
+            self.nodes(canvas);
+            return;
+        }
         let outline = self.outline(&loops);
         let fill =
             if coloured { self.scalars.colour(Scalars::mean(body, 0..body.positions.len() as u32)) } else { self.base };
@@ -127,6 +134,21 @@ impl Drawing<'_> {
             }
         }
         self.nodes(canvas);
+    }
+
+    /// Draws the areas that the body carries: the colours of its nodes within those that have none of their own.
+    fn carried(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
+        for area in self.body.areas.iter().filter(|area| area.colour.is_none()) {
+            let Some(path) = areas::path(area, self.projection) else { continue };
+            if self.body.scalar.is_empty() {
+                canvas.fill(&path, &paint(self.base, 1.0));
+            } else {
+                self.fill_within(canvas, cells, Some(&path));
+            }
+            let width = (0.03 * self.size).clamp(0.5, 1.7 * self.unit);
+            canvas.stroke(&path, width, &paint(darker(self.base), 0.95));
+        }
+        areas::draw(canvas, &self.body.areas, self.projection);
     }
 
     /// The path of the loops, without points which fall on the same pixel.
@@ -152,8 +174,14 @@ impl Drawing<'_> {
         builder.finish()
     }
 
-    /// Fills cells with the colours of their nodes, cut off at the outline.
+    /// Fills cells with the colours of their nodes, cut off at the outline of small bodies.
     fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
+        // A line as thick as on large bodies hides the hard edge of cells; there, folds are not taken for holes.
+        self.fill_within(canvas, cells, outline.filter(|_| self.size < 48.0));
+    }
+
+    /// Fills cells with the colours of their nodes, cut off at an outline.
+    fn fill_within(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
         let limit = [canvas.pixmap.width() as f32, canvas.pixmap.height() as f32];
         let low: [f32; 2] = std::array::from_fn(|axis| (self.low[axis] - 2.0).floor().clamp(0.0, limit[axis]));
         let high: [f32; 2] = std::array::from_fn(|axis| (self.high[axis] + 2.0).ceil().clamp(0.0, limit[axis]));
@@ -162,7 +190,7 @@ impl Drawing<'_> {
         };
         let places: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.place(scalar)).collect();
         // The first pass reaches beyond the cells, so that the soft edge of the outline has a colour to take.
-        let passes: &[f32] = if outline.is_some() && self.size < 48.0 { &[1.5, 0.01] } else { &[0.01] };
+        let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
                 let corners = cell.map(|node| {
@@ -175,8 +203,7 @@ impl Drawing<'_> {
         let shift = Transform::from_translate(low[0], low[1]);
         let shader = Pattern::new(scratch.as_ref(), SpreadMode::Pad, FilterQuality::Nearest, 1.0, shift);
         let paint = Paint { shader, anti_alias: true, ..Paint::default() };
-        // A line as thick as on large bodies hides the hard edge of cells; there, folds are not taken for holes.
-        match outline.filter(|_| self.size < 48.0) {
+        match outline {
             Some(outline) => canvas.fill(outline, &paint),
             None => {
                 let all = tiny_skia::Rect::from_ltrb(low[0], low[1], high[0], high[1]).map(PathBuilder::from_rect);

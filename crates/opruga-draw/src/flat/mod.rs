@@ -1,5 +1,6 @@
 //! Pictures in two dimensions.
 
+mod areas;
 mod bodies;
 mod colliders;
 mod loops;
@@ -75,7 +76,52 @@ pub(crate) fn scene(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{BodyPicture, ColliderPicture, Facets};
+    use crate::colour::ColourMap;
+    use crate::picture::{AreaPicture, BodyPicture, ColliderPicture, Facets, Legend};
+
+    /// A square with a square hole, as an area.
+    fn frame(colour: Option<[u8; 4]>) -> AreaPicture {
+        let square = |s: f64| [[-s, -s, 0.0], [s, -s, 0.0], [s, s, 0.0], [-s, s, 0.0]];
+        let positions = square(1.0).into_iter().chain(square(0.5)).collect();
+        AreaPicture { colour, positions, ends: vec![4, 8], triangles: Vec::new() }
+    }
+
+    #[test]
+    fn areas_are_painted_one_over_another_with_their_holes() {
+        let dot = AreaPicture {
+            colour: Some([0, 0, 255, 255]),
+            positions: vec![[-0.2, -0.2, 0.0], [0.2, -0.2, 0.0], [0.0, 0.3, 0.0]],
+            ends: vec![3],
+            triangles: Vec::new(),
+        };
+        let positions = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
+        let cells = vec![[0, 1, 2], [0, 2, 3]];
+        let legend =
+            Legend { label: String::new(), unit: String::new(), range: Some([0.0, 1.0]), map: ColourMap::Viridis };
+        let at = |areas: Vec<AreaPicture>, scalar: Vec<f64>| {
+            let body =
+                BodyPicture { positions: positions.clone(), cells: cells.clone(), scalar, areas, ..Default::default() };
+            let picture = Picture { bodies: vec![body], legend: Some(legend.clone()), ..Default::default() };
+            picture.check().expect("it fits together");
+            let view = View::fit([&picture]).expect("a view");
+            let (image, scale) = scene(&picture, &view, [255; 3], [200, 200], 1.0).expect("an image");
+            move |x: f64, y: f64| image.pixel((100.0 + scale * x) as u32, (100.0 - scale * y) as u32)
+        };
+        let painted = at(vec![frame(Some([255, 0, 0, 255])), dot], Vec::new());
+        assert_eq!(painted(0.75, 0.0), [255, 0, 0]);
+        assert_eq!(painted(0.0, 0.0), [0, 0, 255], "the dot in the hole");
+        assert_eq!([painted(0.4, 0.4), painted(1.5, 0.0)], [[255; 3]; 2], "the hole, and the body around the drawing");
+        // Without a colour: those of the nodes, cut off at the area.
+        let shaded = at(vec![frame(None)], vec![1.0; 4]);
+        assert_eq!(shaded(0.75, 0.0), [253, 231, 37]);
+        assert_eq!([shaded(0.0, 0.0), shaded(1.5, 0.0)], [[255; 3]; 2]);
+        // Half of the colour over white.
+        assert_eq!(at(vec![frame(Some([0, 0, 0, 128]))], Vec::new())(0.75, 0.0), [127; 3]);
+        let mut broken = frame(None);
+        broken.ends = vec![4, 7];
+        let body = BodyPicture { positions: positions.clone(), areas: vec![broken], ..Default::default() };
+        assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
+    }
 
     #[test]
     fn a_scene_whose_y_counts_downwards_is_drawn_with_its_floor_below() {

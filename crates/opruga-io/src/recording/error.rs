@@ -39,6 +39,14 @@ pub enum RecordingError {
         /// The first frame, and one past the last.
         frames: core::ops::Range<u64>,
     },
+    /// The state of that frame is not in it: it is computed from one before.
+    #[error("the recording keeps one state in {every} frames, and not that of frame {frame}")]
+    NotKept {
+        /// The frame that was asked for.
+        frame: u64,
+        /// From one state to the next.
+        every: u64,
+    },
     /// The system could not read it.
     #[error("the recording cannot be read: {0}")]
     Read(String),
@@ -53,6 +61,7 @@ impl RecordingError {
             RecordingError::CutOff { .. } => "recording.cut_off",
             RecordingError::Damaged { .. } => "recording.damaged",
             RecordingError::NoFrame { .. } => "recording.no_frame",
+            RecordingError::NotKept { .. } => "recording.not_kept",
             RecordingError::Read(_) => "read.failed",
         }
     }
@@ -73,6 +82,9 @@ impl From<&RecordingError> for SceneError {
                 said.value(frame.to_string()).allowed(format!("frames {} to {}", frames.start, frames.end - 1))
             }
             RecordingError::NoFrame { frame, .. } => said.value(frame.to_string()).allowed("none: it has no frames"),
+            RecordingError::NotKept { frame, every } => {
+                said.value(frame.to_string()).allowed(format!("every {every}th frame, and the last"))
+            }
             RecordingError::Version { found } => {
                 said.value(found.to_string()).allowed(format!("a recording of version {VERSION}"))
             }

@@ -3,7 +3,7 @@
 use super::error::RecordingError;
 
 /// The version that is written.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 pub(super) const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
 /// Bytes before the header.
@@ -14,7 +14,7 @@ pub(super) const CHUNK: usize = 40;
 pub(super) const TRAILER: usize = 20;
 
 /// What a recording says of its run, before the first frame.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// The program that wrote it, with its version.
     pub program: String,
@@ -26,6 +26,9 @@ pub struct Header {
     pub scene: Vec<u8>,
     /// The length of a frame [s].
     pub frame: f64,
+    /// From one frame whose state is kept to the next; those between are computed again. The first frame and the last
+    /// are kept whatever their number. At least 1: every frame.
+    pub every: u64,
     /// What was set in the scene by the call, each a path and a value.
     pub overrides: Vec<(String, String)>,
     /// Whether unknown fields are warnings.
@@ -34,6 +37,23 @@ pub struct Header {
     pub allow_unstable: bool,
     /// The files that the scene names.
     pub assets: Vec<Asset>,
+}
+
+impl Default for Header {
+    fn default() -> Header {
+        Header {
+            program: String::new(),
+            name: String::new(),
+            file: String::new(),
+            scene: Vec::new(),
+            frame: 0.0,
+            every: 1,
+            overrides: Vec::new(),
+            lenient: false,
+            allow_unstable: false,
+            assets: Vec::new(),
+        }
+    }
 }
 
 /// A file that a scene names, as it was when the run began.
@@ -57,6 +77,7 @@ impl Header {
         }
         part(&self.scene);
         part(&self.frame.to_le_bytes());
+        part(&self.every.to_le_bytes());
         part(&[u8::from(self.lenient), u8::from(self.allow_unstable)]);
         part(&(self.overrides.len() as u64).to_le_bytes());
         for (path, value) in &self.overrides {
@@ -87,6 +108,7 @@ impl Header {
             file: text(part()?)?,
             scene: part()?.to_vec(),
             frame: f64::from_le_bytes(*part()?.as_array()?),
+            every: count(part()?)?,
             ..Header::default()
         };
         let [lenient, allow_unstable] = *part()?.as_array::<2>()?;
@@ -97,7 +119,8 @@ impl Header {
         for _ in 0..count(part()?)? {
             header.assets.push(Asset { name: text(part()?)?, bytes: part()?.to_vec() });
         }
-        (bytes.is_empty() && header.frame.is_finite() && header.frame > 0.0).then_some(header)
+        let sound = header.frame.is_finite() && header.frame > 0.0 && (1..=u64::from(u32::MAX)).contains(&header.every);
+        (bytes.is_empty() && sound).then_some(header)
     }
 }
 
@@ -154,7 +177,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<(Header, u32), RecordingError> {
 pub(super) enum Kind {
     /// A state by itself.
     Whole,
-    /// The difference of a state from the one of the chunk before.
+    /// The difference of a state from the one kept before.
     Difference,
     /// What the program did before the step that led to a frame.
     Input,

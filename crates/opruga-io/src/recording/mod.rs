@@ -6,11 +6,12 @@
 //! 8    4  version               little-endian, as all numbers
 //! 12   8  bytes of the header
 //! 20   4  CRC-32 of bytes 0 … 19
-//! 24      the header: program, scene, how the run was called, files that the scene had named; then CRC-32 of it
+//! 24      the header: program, scene, how the run was called, files that the scene had named, how many frames a state is
+//!         kept; then CRC-32 of it
 //!
-//! every frame is a chunk:
+//! every state is a chunk: that of the first frame, of every so manieth behind it, and of the last:
 //! 0    4  "FRAM"                "INPT": something that a program did
-//! 4    4  0: the state itself, 1: its difference from the frame before, 3: an input
+//! 4    4  0: the state itself, 1: its difference from the chunk before, 3: an input
 //! 8    8  the number of the frame; of an input, the frame that follows
 //! 16   8  bytes of the state
 //! 24   8  bytes of the payload

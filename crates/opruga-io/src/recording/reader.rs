@@ -82,6 +82,22 @@ impl<R: Read + Seek> Recording<R> {
         self.frames.clone()
     }
 
+    /// The last frame up to a given one whose state is kept: those behind it are to be computed from that.
+    ///
+    /// # Errors
+    /// [`RecordingError::NoFrame`].
+    pub fn kept(&self, frame: u64) -> Result<u64, RecordingError> {
+        if !self.frames.contains(&frame) {
+            return Err(RecordingError::NoFrame { frame, frames: self.frames() });
+        }
+        let first = self.frames.start;
+        Ok(if frame + 1 == self.frames.end {
+            frame
+        } else {
+            first + (frame - first) / self.header.every * self.header.every
+        })
+    }
+
     /// How its file ends.
     pub fn ending(&self) -> &Ending {
         &self.ending
@@ -118,18 +134,19 @@ impl<R: Read + Seek> Recording<R> {
         Ok(fits.then_some(payload))
     }
 
-    /// The state of a frame. Frames one after the other are read once each, others from the last that stands for itself.
+    /// The state of a frame that is kept ([`Recording::kept`]). Frames one after the other are read once each, others from
+    /// the last that stands for itself.
     ///
     /// # Errors
-    /// [`RecordingError`] if there is no such frame, or if a chunk on the way to it is damaged.
+    /// [`RecordingError`] if there is no state of that frame, or if a chunk on the way to it is damaged.
     pub fn read(&mut self, frame: u64) -> Result<&[u8], RecordingError> {
-        if !self.frames.contains(&frame) {
-            return Err(RecordingError::NoFrame { frame, frames: self.frames() });
+        if self.kept(frame)? != frame {
+            return Err(RecordingError::NotKept { frame, every: self.header.every });
         }
         let [whole, place] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
         let (mut next, mut place) = match self.read {
             Some((read, _)) if read == frame => return Ok(&self.state),
-            Some((read, behind)) if (whole..frame).contains(&read) => (read + 1, behind),
+            Some((read, behind)) if (whole..frame).contains(&read) => (self.behind(read), behind),
             _ => (whole, place),
         };
         self.read = None;
@@ -139,8 +156,14 @@ impl<R: Read + Seek> Recording<R> {
                 self.read = Some((frame, place));
                 return Ok(&self.state);
             }
-            next += 1;
+            next = self.behind(next);
         }
+    }
+
+    /// The frame of the next state behind one.
+    fn behind(&self, frame: u64) -> u64 {
+        let last = self.frames.end - 1;
+        if last - frame < self.header.every { last } else { frame + self.header.every }
     }
 
     /// Goes from a frame to the next by the chunk at a place; returns the place behind it.
@@ -153,7 +176,8 @@ impl<R: Read + Seek> Recording<R> {
                 break (head, behind);
             }
             // What came before the frame is read by those who do it again.
-            if head.frame != frame || behind > self.end {
+            let between = frame.saturating_sub(self.header.every)..=frame;
+            if !between.contains(&head.frame) || behind > self.end {
                 return Err(damaged);
             }
             place = behind;
@@ -232,12 +256,18 @@ impl<R: Read + Seek> Recording<R> {
                 break Ending::Open { lost: left };
             }
             let behind = place + CHUNK as u64 + head.payload;
-            let follows = head.frame == self.frames.end || self.index.is_empty() && head.kind == Kind::Whole;
+            // One past the last state, and the next one at most.
+            let next = self.frames.end..self.frames.end.saturating_add(self.header.every);
+            // A state nearer to the one before than others are is the last.
+            let ended =
+                !self.index.is_empty() && !(self.frames.end - 1 - self.frames.start).is_multiple_of(self.header.every);
+            let begins = self.index.is_empty() && head.kind == Kind::Whole;
+            let follows = next.contains(&head.frame) && !ended || begins;
             match head.kind {
                 // Its end is missing, or is not one, else there would have been no need to come here.
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
                 Kind::Index => break damaged(length),
-                Kind::Input if head.frame == self.frames.end || self.index.is_empty() => {
+                Kind::Input if next.contains(&head.frame) || self.index.is_empty() => {
                     self.inputs.push([head.frame, place]);
                     place = behind;
                     continue;

@@ -5,7 +5,7 @@ use super::format::{self, ChunkHead, Header, Kind};
 use crate::safe_write::{Counted, Target};
 use std::io::{self, Write as _};
 
-/// Frames from one that stands for itself to the next: as many are read, at most, to see one of them.
+/// States from one that stands for itself to the next: as many are read, at most, to see one of them.
 const GROUP: u64 = 64;
 
 /// Writes a recording. What [`Writer::flush`] has returned from is whole in the file, whatever happens afterwards.
@@ -18,8 +18,12 @@ pub struct Writer<W> {
     /// The bytes of the file, with those not given to it yet.
     place: u64,
     previous: Vec<u8>,
-    /// The frame that comes next; none before the first.
-    next: Option<u64>,
+    /// From one frame whose state is kept to the next.
+    every: u64,
+    /// The last frame whose state was kept; none before the first.
+    last: Option<u64>,
+    /// The frame of the last input.
+    input: u64,
     /// Frame and place of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
     /// Frame and place of the inputs.
@@ -36,13 +40,15 @@ impl<W: Target> Writer<W> {
         let place = pending.len() as u64;
         let out = Counted { inner: target, bytes: 0 };
         let (previous, index, inputs) = (Vec::new(), Vec::new(), Vec::new());
-        let mut writer = Writer { out, identity, pending, place, previous, next: None, index, inputs };
+        let every = header.every;
+        let mut writer = Writer { out, identity, pending, place, previous, every, last: None, input: 0, index, inputs };
         writer.flush()?;
         writer.sync()?;
         Ok(writer)
     }
 
-    /// Adds the state of a frame. Frames follow one another without gaps; the first may have any number.
+    /// Adds the state of a frame: the first, which may have any number, or one so far behind the last as the header says;
+    /// nearer ones end the recording.
     ///
     /// # Errors
     /// A frame out of its order; it is left out. The file is not written to before [`Writer::flush`].
@@ -63,14 +69,16 @@ impl<W: Target> Writer<W> {
         Ok(())
     }
 
-    /// Adds something that a program did; it belongs to the frame that is pushed next.
+    /// Adds something that a program did before the step to a frame, which lies behind the last state.
     ///
     /// # Errors
     /// A frame out of its order; it is left out.
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
-        if self.next.is_some_and(|next| next != frame) || frame == u64::MAX {
+        self.check_order(frame)?;
+        if frame < self.input {
             return Err(out_of_order(frame));
         }
+        self.input = frame;
         self.inputs.push([frame, self.place]);
         let from = self.begin();
         self.pending.extend_from_slice(bytes);
@@ -80,10 +88,17 @@ impl<W: Target> Writer<W> {
 
     /// Adds the chunk of a state.
     fn code(&mut self, frame: u64, state: &[u8]) -> io::Result<()> {
-        if self.next.is_some_and(|next| next != frame) || frame == u64::MAX {
+        self.check_order(frame)?;
+        if frame < self.input {
             return Err(out_of_order(frame));
         }
-        let begun = self.index.last().is_some_and(|[first, _]| frame - first < GROUP);
+        // A state nearer to the one before than others are is the last.
+        let whole_steps =
+            |[first, _]: &[u64; 2]| self.last.is_some_and(|last| (last - first).is_multiple_of(self.every));
+        if !self.index.first().is_none_or(whole_steps) {
+            return Err(out_of_order(frame));
+        }
+        let begun = self.index.last().is_some_and(|[first, _]| (frame - first) / self.every < GROUP);
         let kind = if begun && self.previous.len() == state.len() { Kind::Difference } else { Kind::Whole };
         if kind == Kind::Whole {
             self.index.push([frame, self.place]);
@@ -92,8 +107,14 @@ impl<W: Target> Writer<W> {
         let from = self.begin();
         codec::encode(state, &self.previous, &mut self.pending);
         self.end(from, kind, frame, state.len() as u64);
-        self.next = Some(frame + 1);
+        self.last = Some(frame);
         Ok(())
+    }
+
+    /// Refuses a frame that does not lie among those behind the last state, up to the next one.
+    fn check_order(&self, frame: u64) -> io::Result<()> {
+        let follows = self.last.is_none_or(|last| frame > last && frame - last <= self.every);
+        if follows && frame < u64::MAX { Ok(()) } else { Err(out_of_order(frame)) }
     }
 
     /// Leaves room for the head of a chunk, whose payload follows; returns where it begins.
@@ -146,7 +167,7 @@ impl<W: Target> Writer<W> {
         self.pending.extend((self.index.len() as u64).to_le_bytes());
         self.pending.extend(numbers.flat_map(|n| n.to_le_bytes()));
         let bytes = self.pending.len() - from - format::CHUNK;
-        self.end(from, Kind::Index, self.next.unwrap_or(0), bytes as u64);
+        self.end(from, Kind::Index, self.last.map_or(0, |last| last + 1), bytes as u64);
         self.pending.extend(format::trailer(place, self.identity));
         self.flush()?;
         self.sync()

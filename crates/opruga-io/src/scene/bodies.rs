@@ -1,5 +1,6 @@
-//! `[[body]]`: shape, mass, models, pins and copies.
+//! `[[body]]`: shape, mass, models and pins.
 
+use super::copies::{Copies, copies, write_out};
 use super::cost::Cost;
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
@@ -7,7 +8,7 @@ use super::{place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
 use crate::shapes::Loaded;
-use opruga_core::spec::{Allowed, Value, Values, nearest};
+use opruga_core::spec::Values;
 use opruga_mesh::{Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
@@ -22,13 +23,13 @@ pub(crate) struct Bodies<const D: usize> {
     /// Number of an `add` command → place of its body in the list, and when it is added.
     pub(crate) later: BTreeMap<usize, (usize, f64)>,
     /// Name → place in the list.
-    names: BTreeMap<String, usize>,
+    pub(super) names: BTreeMap<String, usize>,
     /// Name of a body with copies → the place of the first, and how far each is from where the body would lie.
-    copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
+    pub(super) copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
     /// What all of them would cost.
     cost: Cost,
     /// Names of bodies that could not be made: a reference to them is no further error.
-    broken: Vec<String>,
+    pub(super) broken: Vec<String>,
     /// Places of bodies that were made, but have errors in their fields.
     pub(crate) unsound: BTreeSet<usize>,
 }
@@ -53,21 +54,6 @@ struct Draft<'n, const D: usize> {
     shaped: bool,
     /// Whether nothing is wrong with it at all.
     sound: bool,
-}
-
-/// Rows, columns and layers.
-#[derive(Clone, Copy)]
-struct Copies<const D: usize> {
-    count: [u32; D],
-    spacing: [f64; D],
-    first: [f64; D],
-    jitter: f64,
-}
-
-impl<const D: usize> Copies<D> {
-    fn total(&self) -> u64 {
-        self.count.iter().fold(1u64, |product, n| product.saturating_mul(u64::from(*n)))
-    }
 }
 
 /// Reads all bodies, checks what they cost, and then makes their meshes.
@@ -96,7 +82,13 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
             continue;
         };
         let first = bodies.list.len();
-        write_out(&mut bodies, &draft, body, seed, number as u64);
+        match draft.copies {
+            Some(copies) => write_out(&mut bodies, copies, body, seed, number as u64),
+            None => {
+                bodies.names.entry(body.name.clone()).or_insert(first);
+                bodies.list.push(body);
+            }
+        }
         if !draft.sound {
             bodies.unsound.extend(first..bodies.list.len());
         }
@@ -290,34 +282,6 @@ fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
     Some((PinBlueprint { select, axes, motion }, place_of(node, "select"), join(path, "select")))
 }
 
-fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Copies<D>> {
-    let values = reader.fields(node, path, &schema::COPIES, None);
-    let count = node.get("count")?;
-    let here = join(path, "count");
-    let Data::Array(items) = &count.data else {
-        reader.wrong_type(count, &here, "a list of whole numbers such as [10, 5]");
-        return None;
-    };
-    if items.is_empty() || items.len() > D {
-        let error = SceneError::new("scene.length", format!("`count` has {} numbers", items.len()))
-            .path(here)
-            .value(count.shown());
-        reader.report(count.place, error.allowed(format!("1 to {D} whole numbers from 1")));
-        return None;
-    }
-    let mut number = [1u32; D];
-    let range = Allowed::Integer { least: 1, greatest: i64::from(u32::MAX) };
-    let mut sound = true;
-    for (k, item) in items.iter().enumerate() {
-        match reader.plain(item, &join(&here, &k.to_string()), "count", &range) {
-            Some(Value::Integer(n)) => number[k] = u32::try_from(n).unwrap_or(1),
-            _ => sound = false,
-        }
-    }
-    let jitter = values.number("jitter").unwrap_or(0.0);
-    sound.then(|| Copies { count: number, spacing: values.vector("spacing"), first: values.vector("first"), jitter })
-}
-
 /// The same name twice: both places are named.
 fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
     let mut seen: BTreeMap<&str, Place> = BTreeMap::new();
@@ -432,144 +396,4 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         selectors::check(reader, *place, path, &pin.select, &body);
     }
     Some(body)
-}
-
-/// Adds a body and its copies to the list. Places in selectors move along with every copy.
-fn write_out<const D: usize>(
-    bodies: &mut Bodies<D>,
-    draft: &Draft<'_, D>,
-    body: BodyBlueprint<D>,
-    seed: u64,
-    number: u64,
-) {
-    let Some(copies) = draft.copies else {
-        bodies.names.entry(body.name.clone()).or_insert(bodies.list.len());
-        bodies.list.push(body);
-        return;
-    };
-    let mut random = SplitMix(seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
-    let first = bodies.list.len();
-    let mut offsets = Vec::new();
-    for k in 0..copies.total() {
-        let mut rest = k;
-        let offset: [f64; D] = core::array::from_fn(|a| {
-            let along = rest % u64::from(copies.count[a]);
-            rest /= u64::from(copies.count[a]);
-            let jitter = if copies.jitter > 0.0 { copies.jitter * (2.0 * random.unit() - 1.0) } else { 0.0 };
-            copies.first[a] + along as f64 * copies.spacing[a] + jitter
-        });
-        offsets.push(offset);
-        let name = format!("{}[{k}]", body.name);
-        bodies.names.entry(name.clone()).or_insert(bodies.list.len());
-        bodies.list.push(BodyBlueprint {
-            name,
-            translation: core::array::from_fn(|a| body.translation[a] + offset[a]),
-            pins: body
-                .pins
-                .iter()
-                .map(|pin| PinBlueprint { select: pin.select.moved(offset), ..pin.clone() })
-                .collect(),
-            ..body.clone()
-        });
-    }
-    bodies.copied.insert(body.name, (first, offsets));
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014): a small generator with the same numbers everywhere.
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// A number in [0, 1), evenly spread.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / 18_446_744_073_709_551_616.0
-    }
-}
-
-impl<const D: usize> Bodies<D> {
-    /// The bodies that `body = …` of a table names, and how far selectors move along: all copies by their common name.
-    pub(crate) fn targets(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Vec<(usize, [f64; D])>> {
-        if let Some((first, offsets)) = table.get("body").and_then(Node::text).and_then(|name| self.copied.get(name)) {
-            return Some(offsets.iter().enumerate().map(|(k, offset)| (first + k, *offset)).collect());
-        }
-        self.reference(reader, table, path).map(|body| vec![(body, [0.0; D])])
-    }
-
-    /// The place of the body that `body = …` of a table names.
-    pub(crate) fn reference(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<usize> {
-        let node = table.get("body")?;
-        let here = join(path, "body");
-        match &node.data {
-            Data::Integer(Some(k), _) => {
-                if let Ok(k) = usize::try_from(*k)
-                    && k < self.initial
-                {
-                    return Some(k);
-                }
-                if self.broken.is_empty() {
-                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}"))
-                        .path(here)
-                        .value(k.to_string());
-                    reader.report(node.place, error.allowed(self.allowed()));
-                }
-                None
-            }
-            Data::Text(name) => match self.names.get(name) {
-                Some(k) => Some(*k),
-                None => {
-                    self.unknown(reader, node.place, here, name, &[]);
-                    None
-                }
-            },
-            _ => {
-                reader.wrong_type(node, &here, "the name of a body or its number");
-                None
-            }
-        }
-    }
-
-    /// Whether a body, all copies of a body, or one of `others` has this name.
-    pub(crate) fn knows(&self, name: &str) -> bool {
-        self.names.contains_key(name) || self.copied.contains_key(name)
-    }
-
-    /// The first body that a name means, copies by their common name too.
-    pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
-        let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));
-        k.and_then(|k| self.list.get(*k)).or_else(|| name.parse::<usize>().ok().and_then(|k| self.list.get(k)))
-    }
-
-    /// Reports a name that no body has.
-    pub(crate) fn unknown(&self, reader: &mut Reader<'_>, place: Place, path: String, name: &str, others: &[&str]) {
-        if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
-            return; // the body is there, but has errors of its own
-        }
-        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name)))
-            .path(path)
-            .value(visible(name));
-        error.allowed = Some(self.allowed());
-        let base = name.split('[').next().unwrap_or(name);
-        error = match self.copied.get(base) {
-            Some((_, copies)) => {
-                let count = copies.len();
-                error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1))
-            }
-            None => error.nearest(nearest(
-                name,
-                self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()),
-            )),
-        };
-        reader.report(place, error);
-    }
-
-    fn allowed(&self) -> String {
-        match self.list.len() {
-            0 => "the scene has no bodies".into(),
-            n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
-            n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),
-        }
-    }
 }

@@ -6,10 +6,12 @@
 
 mod actions;
 mod bodies;
+mod copies;
 mod cost;
 mod parameters;
 mod plain;
 mod reader;
+mod references;
 mod selectors;
 mod shape;
 

@@ -22,7 +22,8 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     for contour in contours(&grid, threshold) {
         curves.polygon(&contour);
     }
-    Ok(Drawing { curves, y_down: true, source: None, places: Vec::new(), notices: Vec::new() })
+    let (places, painted, notices) = (Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves, y_down: true, source: None, places, painted, notices })
 }
 
 /// Values from 0 to 1, with a border of zeros.

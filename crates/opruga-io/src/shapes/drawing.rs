@@ -5,7 +5,8 @@ use super::{Content, Loaded, Problem};
 use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_mesh::outline::{self, OutlineError, Overlap, Ring};
+use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
+use opruga_mesh::{Mesh, MeshError};
 
 /// Curves are followed within this part of the spacing.
 const TOLERANCE: f64 = 0.002;
@@ -18,6 +19,8 @@ pub(super) struct Drawing<'a> {
     /// The file, if it is a text, and where each part stands in it.
     pub(super) source: Option<&'a Source<'a>>,
     pub(super) places: Vec<(usize, usize)>,
+    /// The colours of the parts, if they are wanted: red, green, blue, opacity.
+    pub(super) painted: Vec<Option<[u8; 4]>>,
     pub(super) notices: Vec<SceneError>,
 }
 
@@ -31,6 +34,55 @@ impl Drawing<'_> {
     }
 }
 
+/// What fills an outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Inside {
+    /// Nothing: it is a skin of edges.
+    Nothing,
+    /// Triangles that follow it, of sides about so long [m].
+    Triangles(f64),
+    /// Squares around it, of this side [m].
+    Squares(f64),
+}
+
+/// A drawing at its final size.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    /// What the body is made of.
+    pub(super) rings: Vec<Ring>,
+    pub(super) inside: Inside,
+    /// What it carries for pictures.
+    pub(super) painted: Vec<Painted>,
+}
+
+impl Outline {
+    /// About how many nodes the body will have.
+    pub(super) fn node_count(&self) -> u64 {
+        match self.inside {
+            Inside::Nothing => self.rings.iter().map(|ring| ring.points.len() as u64).sum(),
+            Inside::Triangles(spacing) => outline::node_estimate(&self.rings, spacing),
+            Inside::Squares(spacing) => outline::squares_estimate(&self.rings, spacing),
+        }
+    }
+
+    /// The body, with what it carries.
+    ///
+    /// # Errors
+    /// What fillings refuse.
+    pub(super) fn mesh(&self) -> Result<Mesh<2>, SceneError> {
+        let too_many = |e: MeshError| refused(&OutlineError::Mesh(e));
+        let mut mesh = match self.inside {
+            Inside::Nothing => outline::skin(&self.rings).map_err(too_many)?,
+            Inside::Triangles(spacing) => outline::filled(&self.rings, spacing).map_err(|e| refused(&e))?.0,
+            Inside::Squares(spacing) => outline::squares(&self.rings, spacing).map_err(|e| refused(&e))?,
+        };
+        if !self.painted.is_empty() {
+            outline::carry(&mut mesh, &self.rings, &self.painted).map_err(|e| refused(&e))?;
+        }
+        Ok(mesh)
+    }
+}
+
 /// Size, overlaps, holes and spacing, as the scene asks for.
 pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded, Problem> {
     let spacing = shape.number("spacing").unwrap_or(1.0);
@@ -41,6 +93,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         return Err(error.allowed("outlines that enclose area, of an extent from 1e-150 to 1e150").into());
     }
     let mut rings = drawing.curves.flatten(TOLERANCE * spacing * extent / size);
+    let mut painted = painted(&drawing.painted, &rings);
 
     // Strokes and points enclose nothing.
     let before = rings.len();
@@ -56,7 +109,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         Some("even_odd") => rings = outline::joined(&rings, Overlap::EvenOdd),
         _ => {}
     }
-    let mut rings = place(rings, &drawing, shape)?;
+    let mut rings = place(rings, &mut painted, &drawing, shape)?;
 
     let least = shape.number("drop_below").unwrap_or(0.0);
     let before = rings.len();
@@ -70,16 +123,43 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         let error = SceneError::new("shape.no_area", "no outline is left").value(least.to_string());
         return Err(Problem::new(if before > 0 { "drop_below" } else { "file" }, error));
     }
+    let inside = match shape.text("filling") {
+        Some("triangles") => Inside::Triangles(spacing),
+        Some("lattice") => {
+            // The squares carry the outline itself, as fine as it is; nobody has to hold its points.
+            painted.insert(0, Painted { rings: rings.clone(), colour: None });
+            let outline = Outline { rings, inside: Inside::Squares(spacing), painted };
+            return Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) });
+        }
+        _ => Inside::Nothing,
+    };
     let rings = outline::resampled(&rings, spacing).map_err(|e| {
-        let hint = "take a smaller `spacing`, a larger `size`, or `drop_below`";
+        let hint = "take a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`";
         Problem::new("spacing", refused(&e).value(spacing.to_string()).hint(hint))
     })?;
-    let filling = (shape.text("filling") == Some("triangles")).then_some(spacing);
-    Ok(Loaded { notices: drawing.notices, content: Content::Outline { rings, filling } })
+    let outline = Outline { rings, inside, painted };
+    Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
+}
+
+/// The parts of a drawing that have a colour, in the order in which they are painted.
+fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
+    let mut all: Vec<Painted> = colours.iter().map(|c| Painted { rings: Vec::new(), colour: *c }).collect();
+    for ring in rings {
+        if let Some(part) = all.get_mut(ring.part as usize) {
+            part.rings.push(ring.clone());
+        }
+    }
+    all.retain(|part| part.colour.is_some() && !part.rings.is_empty());
+    all
 }
 
 /// Turns holes the other way and brings the drawing to its size and place.
-fn place(mut rings: Vec<Ring>, drawing: &Drawing<'_>, shape: &Values) -> Result<Vec<Ring>, Problem> {
+fn place(
+    mut rings: Vec<Ring>,
+    painted: &mut [Painted],
+    drawing: &Drawing<'_>,
+    shape: &Values,
+) -> Result<Vec<Ring>, Problem> {
     outline::nest(&mut rings).map_err(|e| match &e {
         OutlineError::Meeting { parts, .. } => {
             let hint = "`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses";
@@ -95,7 +175,7 @@ fn place(mut rings: Vec<Ring>, drawing: &Drawing<'_>, shape: &Values) -> Result<
     let factor = shape.number("size").unwrap_or(1.0) / larger(high[0] - low[0], high[1] - low[1]);
     let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
     let up = if drawing.y_down { -factor } else { factor };
-    for ring in &mut rings {
+    for ring in rings.iter_mut().chain(painted.iter_mut().flat_map(|area| &mut area.rings)) {
         for point in &mut ring.points {
             *point = [center[0] + factor * (point[0] - middle[0]), center[1] + up * (point[1] - middle[1])];
         }

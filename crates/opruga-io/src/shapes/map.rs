@@ -101,7 +101,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
         let message = format!("{} points and lines are left out", reader.others);
         notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
     }
-    Ok(Drawing { curves, y_down: false, source: Some(source), places, notices })
+    Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), notices })
 }
 
 /// The arcs of a topology, in degrees.

@@ -17,6 +17,7 @@ mod obj;
 mod ply;
 mod stl;
 mod svg;
+mod svg_fill;
 mod svg_path;
 mod text;
 mod triangles;
@@ -26,7 +27,6 @@ use crate::meshes;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_mesh::outline::{self, Ring};
 use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes::{self, Filling, Made, Transform};
 use std::any::Any;
@@ -45,8 +45,8 @@ pub(crate) struct Loaded {
 
 #[derive(Clone, Debug)]
 enum Content {
-    /// Rings at their final size, and the spacing of a filling.
-    Outline { rings: Vec<Ring>, filling: Option<f64> },
+    /// A drawing.
+    Outline(drawing::Outline),
     /// A surface at its final size, the length of edges that it is remeshed to, and what fills it.
     Surface { mesh: Box<Mesh<3>>, remesh: Option<f64>, filling: Option<Filling> },
     /// Cells of the plane.
@@ -87,7 +87,7 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
     match shape.kind() {
         "svg" => {
             let source = text_of(&name, &bytes)?;
-            drawing::loaded(svg::read(&source, shape.text("path"))?, shape)
+            drawing::loaded(svg::read(&source, shape.text("path"), shape.flag("colours"))?, shape)
         }
         "map" => {
             let source = text_of(&name, &bytes)?;
@@ -162,8 +162,7 @@ impl Loaded {
     /// About how many nodes the body will have.
     pub(crate) fn node_count(&self) -> u64 {
         match &self.content {
-            Content::Outline { rings, filling: Some(spacing) } => outline::node_estimate(rings, *spacing),
-            Content::Outline { rings, filling: None } => rings.iter().map(|ring| ring.points.len() as u64).sum(),
+            Content::Outline(outline) => outline.node_count(),
             Content::Surface { mesh, filling: Some(filling), .. } => mesh.lattice_estimate(filling.spacing()),
             Content::Surface { mesh, remesh: Some(length), .. } => mesh.remesh_estimate(*length),
             Content::Surface { mesh, .. } | Content::Space(mesh) => mesh.nodes() as u64,
@@ -178,10 +177,7 @@ impl Loaded {
     pub(crate) fn mesh<const D: usize>(&self, transform: &Transform<'_>) -> Result<Made<D>, SceneError> {
         let refuse = |refusal: MeshError| SceneError::new("scene.shape", refusal.to_string());
         let made: Box<dyn Any> = match &self.content {
-            Content::Outline { rings, filling } => Box::new(match filling {
-                None => outline::skin(rings).map_err(refuse)?,
-                Some(spacing) => outline::filled(rings, *spacing).map_err(|e| drawing::refused(&e))?.0,
-            }),
+            Content::Outline(outline) => Box::new(outline.mesh()?),
             Content::Surface { mesh, remesh, filling } => {
                 let surface = match remesh {
                     None => (**mesh).clone(),

@@ -2,13 +2,14 @@
 //!
 //! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, `switch` and through `use`, with `transform`. What
 //! carries no outline (`title`, `style`, `defs`, gradients …) is passed over; what would be drawn but has no outline here (`text`, `image`, strokes,
-//! clips and masks) is refused or counted. Every part of the drawing follows the even-odd rule.
+//! clips and masks) is refused or counted. Every part of the drawing follows the even-odd rule. Fill colours are read where the scene wants them.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.
 
 use super::curves::{Affine, Curves, IDENTITY, Point, after, smaller};
 use super::drawing::Drawing;
+use super::svg_fill::{Fill, Fills};
 use super::svg_path::Pen;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -46,11 +47,11 @@ const NOT_DRAWN: [&str; 17] = [
     "set",
 ];
 
-/// Reads a whole drawing, or the element with an id.
+/// Reads a whole drawing, or the element with an id; its fill colours too where they are wanted.
 ///
 /// # Errors
-/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.unknown_id`, with line and column.
-pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>) -> Result<Drawing<'a>, SceneError> {
+/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.unknown_id`, `svg.colour`, with line and column.
+pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) -> Result<Drawing<'a>, SceneError> {
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, entity_resolver: None };
     let document = Document::parse_with_options(source.text, options).map_err(|e| syntax(source, &e))?;
     let root = document.root_element();
@@ -67,22 +68,24 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>) -> Result<Drawi
         document: &document,
         curves: Curves::default(),
         places: Vec::new(),
+        fills: Fills::of(&document, source, colours),
         open: 0,
         unfilled: 0,
         images: 0,
     };
     match id {
-        None => reader.children(root, &IDENTITY, &mut Vec::new(), true)?,
+        None => reader.children(root, &IDENTITY, &mut Vec::new(), Fill::FIRST)?,
         Some(id) => {
             let wanted = document.descendants().find(|node| node.attribute("id") == Some(id));
             let Some(wanted) = wanted else { return Err(reader.unknown(root, id, "svg.unknown_id")) };
             // The element keeps the transforms around it.
-            let mut map = IDENTITY;
+            let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
             let ancestors: Vec<Node<'_, '_>> = wanted.ancestors().skip(1).filter(Node::is_element).collect();
             for ancestor in ancestors.into_iter().rev() {
                 map = after(&map, &reader.transform(ancestor)?);
+                fill = reader.fills.within(ancestor, fill)?;
             }
-            reader.element_at(wanted, &map, &mut Vec::new(), true)?;
+            reader.element_at(wanted, &map, &mut Vec::new(), fill)?;
         }
     }
     let mut notices = Vec::new();
@@ -94,7 +97,14 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>) -> Result<Drawi
     notice(reader.open, "svg.open_path", "open paths are closed by a straight line");
     notice(reader.unfilled, "svg.stroke", "shapes without fill are read by their outlines, not by their strokes");
     notice(reader.images, "svg.image", "images are left out");
-    Ok(Drawing { curves: reader.curves, y_down: true, source: Some(source), places: reader.places, notices })
+    notice(reader.fills.gradients, "svg.gradient", "gradients are painted in the mean of their colours");
+    notice(
+        reader.fills.styled,
+        "svg.style",
+        "elements have a class whose style sheet is not read: their colours may be others",
+    );
+    let painted = reader.fills.painted;
+    Ok(Drawing { curves: reader.curves, y_down: true, source: Some(source), places: reader.places, painted, notices })
 }
 
 /// What the XML reader refuses.
@@ -124,6 +134,7 @@ struct Reader<'a, 'd> {
     curves: Curves,
     /// Where each part stands in the file.
     places: Vec<(usize, usize)>,
+    fills: Fills<'a, 'd>,
     open: usize,
     unfilled: usize,
     images: usize,
@@ -147,10 +158,10 @@ impl<'a> Reader<'a, '_> {
         node: Node<'_, '_>,
         map: &Affine,
         path: &mut Vec<usize>,
-        filled: bool,
+        fill: Fill,
     ) -> Result<(), SceneError> {
         for child in node.children().filter(Node::is_element) {
-            self.element_at(child, map, path, filled)?;
+            self.element_at(child, map, path, fill)?;
         }
         Ok(())
     }
@@ -161,7 +172,7 @@ impl<'a> Reader<'a, '_> {
         node: Node<'_, '_>,
         map: &Affine,
         path: &mut Vec<usize>,
-        filled: bool,
+        fill: Fill,
     ) -> Result<(), SceneError> {
         let name = node.tag_name().name();
         if path.len() >= DEEPEST {
@@ -182,7 +193,7 @@ impl<'a> Reader<'a, '_> {
                 return Err(error.value(word).hint("apply it in the drawing program"));
             }
         }
-        let filled = style("fill").map_or(filled, |fill| fill != "none");
+        let fill = self.fills.within(node, fill)?;
         let map = after(map, &self.transform(node)?);
         let id = node.id().get_usize();
         path.push(id);
@@ -198,9 +209,9 @@ impl<'a> Reader<'a, '_> {
                     );
                     return Err(error.value("svg").hint("make it a group <g> with a transform"));
                 }
-                self.children(node, &map, path, filled)?;
+                self.children(node, &map, path, fill)?;
             }
-            "use" => self.used(node, &map, path, filled)?,
+            "use" => self.used(node, &map, path, fill)?,
             "path" | "rect" | "circle" | "ellipse" | "polygon" | "polyline" => {
                 let mut curves = Curves::of_part(self.places.len() as u32);
                 match name {
@@ -209,7 +220,8 @@ impl<'a> Reader<'a, '_> {
                     "circle" | "ellipse" => self.ellipse(node, name, &mut curves)?,
                     _ => self.points(node, name, &mut curves)?,
                 }
-                self.unfilled += usize::from(!filled);
+                self.unfilled += usize::from(!fill.filled);
+                self.fills.paint(fill);
                 self.curves.append(curves, &map);
                 let range = node.range();
                 self.places.push((range.start, range.end));
@@ -234,13 +246,7 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// `use`: the element that it names, moved.
-    fn used(
-        &mut self,
-        node: Node<'_, '_>,
-        map: &Affine,
-        path: &mut Vec<usize>,
-        filled: bool,
-    ) -> Result<(), SceneError> {
+    fn used(&mut self, node: Node<'_, '_>, map: &Affine, path: &mut Vec<usize>, fill: Fill) -> Result<(), SceneError> {
         let link =
             node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href"))).unwrap_or("");
         let Some(id) = link.strip_prefix('#') else {
@@ -266,7 +272,7 @@ impl<'a> Reader<'a, '_> {
                 return Err(error.value("viewBox").hint("make it a group <g>"));
             }
             path.push(goal.id().get_usize());
-            self.children(goal, &map, path, filled)?;
+            self.children(goal, &map, path, fill)?;
             path.pop();
             return Ok(());
         }
@@ -274,7 +280,7 @@ impl<'a> Reader<'a, '_> {
         if self.places.len() > MOST_PARTS {
             return Err(self.error(node, "shape.too_large", "the drawing has too many parts".into()).value(id));
         }
-        self.element_at(goal, &map, path, filled)
+        self.element_at(goal, &map, path, fill)
     }
 
     /// Where a part of an attribute's value stands in the file.
@@ -441,7 +447,7 @@ impl<'a> Reader<'a, '_> {
 }
 
 /// A property of an element: in its `style`, or as an attribute.
-fn style<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
+pub(super) fn style<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
     let in_style = node.attribute("style").and_then(|style| {
         style.split(';').find_map(|rule| {
             let (word, value) = rule.split_once(':')?;

@@ -76,5 +76,6 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         pen.from += f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
         last = Some(glyph);
     }
-    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places: Vec::new(), notices: Vec::new() })
+    let (places, painted, notices) = (Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places, painted, notices })
 }

@@ -11,6 +11,10 @@ use std::collections::BTreeMap;
 
 /// A triangle whose area is below this part of its longest edge squared is refused.
 const THIN: f64 = 1e-10;
+/// Below this part of its longest edge squared a triangle is a sliver: an angle of a tenth of a degree.
+const SLIVER: f64 = 1e-3;
+/// Extents of surfaces that nobody wonders at [m].
+const USUAL: [f64; 2] = [1e-4, 1e4];
 
 /// What a reader found.
 #[derive(Debug, Default)]
@@ -143,6 +147,7 @@ pub(super) fn loaded(
         let allowed = format!("an area above {THIN:e} of its longest edge squared");
         return Err(named(found.at(source, facet, error.allowed(allowed))));
     }
+    notices.extend(slivers(&mesh));
     let unused = mesh.drop_unreferenced();
     if unused > 0 {
         let message = format!("{unused} vertices that no triangle names are left out");
@@ -152,6 +157,9 @@ pub(super) fn loaded(
     if !mesh.facets.is_empty() {
         let of_file = |facet: &u32| (*facet as usize) < given;
         compare(&mesh, &found, of_file, source, shape, &mut notices).map_err(named)?;
+    }
+    if shape.number("size").is_none() {
+        notices.extend(odd_scale(&mesh));
     }
     place(&mut mesh, shape).map_err(named)?;
     let filling = match shapes::filling(shape) {
@@ -169,6 +177,43 @@ pub(super) fn loaded(
         return Err(Problem::new("remesh", error.hint("close it with `open = \"cap\"`")));
     }
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
+}
+
+/// Triangles that are so thin that springs and bending along them take small steps of time: how many, and the thinnest.
+fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
+    let thinness = |facet: &[u32; 3]| {
+        let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);
+        let normal = cross(minus(b, a), minus(c, a));
+        let longest = [minus(b, a), minus(c, b), minus(a, c)].into_iter().map(|e| dot(e, e)).fold(0.0, larger);
+        0.5 * dot(normal, normal).sqrt() / longest
+    };
+    let (mut count, mut worst) = (0, (f64::INFINITY, 0));
+    for (number, facet) in mesh.facets.iter().enumerate() {
+        let thinness = thinness(facet);
+        count += usize::from(thinness < SLIVER);
+        worst = if thinness < worst.0 { (thinness, number) } else { worst };
+    }
+    let message = format!(
+        "{count} of {} triangles are slivers; the thinnest is triangle {}, with an area of {:e} of its longest edge squared",
+        mesh.facets.len(),
+        worst.1,
+        worst.0
+    );
+    let about = SceneError::new("mesh.sliver", message).value(count.to_string());
+    (count > 0).then(|| about.allowed(format!("areas from {SLIVER:e}")).hint("`remesh` makes nearly equilateral ones"))
+}
+
+/// A surface whose file is probably not in metres.
+fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
+    let (low, high) = mesh.bounds();
+    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, larger);
+    if (USUAL[0]..=USUAL[1]).contains(&extent) {
+        return None;
+    }
+    let unit = if extent > USUAL[1] { "millimetres: `scale = 0.001`" } else { "kilometres: `scale = 1000.0`" };
+    let about = SceneError::new("mesh.scale", format!("the surface is {extent} m large")).value(extent.to_string());
+    let about = about.allowed(format!("{:e} m to {:e} m, where `size` is not given", USUAL[0], USUAL[1]));
+    Some(about.hint(format!("perhaps it is in {unit}; `size` gives the length that is meant")))
 }
 
 /// The surface with edges of a wanted length.

@@ -109,6 +109,24 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
     Ok((mesh, quality))
 }
 
+/// The inside of rings that do not meet as triangles between their points, which are counted ring by ring; no points are added.
+///
+/// # Errors
+/// [`OutlineError::TooCoarse`] where rings meet, [`OutlineError::Empty`] without rings.
+pub(super) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, OutlineError> {
+    let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty)?;
+    let extent = distance(low, high);
+    let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
+    let failed = |part: u32, place| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], place };
+    let (mut triangulation, _) = constrained(rings, &[], shrink, failed)?;
+    // A refinement that may add nothing tells which triangles lie outside.
+    let nothing = RefinementParameters::<f64>::new().with_max_additional_vertices(0).exclude_outer_faces(true);
+    let mut outside = triangulation.refine(nothing).excluded_faces;
+    outside.sort_unstable();
+    let inner = triangulation.inner_faces().filter(|face| outside.binary_search(&face.fix()).is_err());
+    Ok(inner.map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32)).collect())
+}
+
 /// The triangulation of rings and of points inside them, with the edges of the rings; and how many points the rings have.
 ///
 /// All points are given at once: one by one, those of a long straight side have no triangle to lie in, and each new one

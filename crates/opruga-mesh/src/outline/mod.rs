@@ -3,23 +3,28 @@
 //! ```text
 //! rings as drawn ─nest→ outer rings and holes ─resampled→ equal edges ─skin→ a skin of edges
 //!                                                                    └─filled→ triangles inside
+//!                     └─squares→ equal squares around, which carry the rings
 //! ```
 //! Holes follow the even-odd rule: a point is inside where a ray from it to infinity meets the rings an odd number of times. Rings that meet are
 //! refused, or joined beforehand by [`joined`].
 
+mod carrying;
 mod crossing;
 mod error;
 mod filling;
 mod nesting;
 mod overlap;
 mod resample;
+mod squares;
 
+pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
 pub use error::OutlineError;
 pub use filling::{Quality, SMALLEST_ANGLE, filled, node_estimate};
 pub use nesting::nest;
 pub use overlap::{Overlap, joined};
 pub use resample::resampled;
+pub use squares::{squares, squares_estimate};
 
 use crate::{Mesh, MeshError};
 

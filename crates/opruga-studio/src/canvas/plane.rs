@@ -57,6 +57,13 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, fills: &mut Fills, selected: O
         } else {
             body.scalar.iter().map(|s| map.at(*s, range)).collect()
         };
+        if body.areas.iter().any(|area| area.colour.is_some()) {
+            flush_below(painter, &mut filled);
+            painter.add(Shape::mesh(drawing(body, &project)));
+            body.pinned.iter().for_each(|node| pin(painter, at[*node as usize], paper));
+            label(painter, &body.label, &at, paper);
+            continue;
+        }
         let triangles = if body.cells.is_empty() { fills.of(place, body) } else { &body.cells };
         let strength = if body.cells.is_empty() { 0.34 } else { 0.62 };
         let first = filled.vertices.len() as u32;
@@ -104,6 +111,19 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, fills: &mut Fills, selected: O
         painter.add(Shape::mesh(lines));
     }
     arrows(painter, shown, flat, &project);
+}
+
+/// The areas that a body carries, in their own colours, one over another.
+fn drawing(body: &BodyPicture, project: &impl Fn([f64; 3]) -> Pos2) -> Mesh {
+    let mut mesh = Mesh::default();
+    for area in &body.areas {
+        let Some([r, g, b, opacity]) = area.colour else { continue };
+        let (first, color) = (mesh.vertices.len() as u32, Color32::from_rgba_unmultiplied(r, g, b, opacity));
+        let corner = |p: &[f64; 3]| Vertex { pos: project(*p), uv: egui::epaint::WHITE_UV, color };
+        mesh.vertices.extend(area.positions.iter().map(corner));
+        mesh.indices.extend(area.triangles.iter().flatten().map(|point| first + point));
+    }
+    mesh
 }
 
 /// The name of a body, below it.

@@ -14,10 +14,10 @@ const SIZE: Field =
     Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
 const FILLING: Field = Field::new(
     "filling",
-    Allowed::Choice(&["none", "triangles"]),
+    Allowed::Choice(&["none", "triangles", "lattice"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing.",
+    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing. `lattice`: equal squares that reach a little beyond the outline and carry it for drawing, however fine it is.",
 );
 pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     "filling",
@@ -68,6 +68,13 @@ static SVG: Spec = Spec {
         FILLING,
         OVERLAP,
         DROP_BELOW,
+        Field::new(
+            "colours",
+            Allowed::Boolean,
+            "",
+            Default::Boolean(false),
+            "Whether pictures show the drawing in the fill colours of its parts, one over another, carried by the body; a gradient becomes the mean of its stops.",
+        ),
     ],
 };
 

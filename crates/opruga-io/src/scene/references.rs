@@ -1,0 +1,93 @@
+//! Names of bodies in other tables: which body is meant, and what is said where none is.
+
+use super::bodies::Bodies;
+use super::reader::{Reader, join};
+use crate::document::{Data, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::nearest;
+use opruga_world::blueprint::BodyBlueprint;
+
+impl<const D: usize> Bodies<D> {
+    /// The bodies that `body = …` of a table names, and how far selectors move along: all copies by their common name.
+    pub(crate) fn targets(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Vec<(usize, [f64; D])>> {
+        if let Some((first, offsets)) = table.get("body").and_then(Node::text).and_then(|name| self.copied.get(name)) {
+            return Some(offsets.iter().enumerate().map(|(k, offset)| (first + k, *offset)).collect());
+        }
+        self.reference(reader, table, path).map(|body| vec![(body, [0.0; D])])
+    }
+
+    /// The place of the body that `body = …` of a table names.
+    pub(crate) fn reference(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<usize> {
+        let node = table.get("body")?;
+        let here = join(path, "body");
+        match &node.data {
+            Data::Integer(Some(k), _) => {
+                if let Ok(k) = usize::try_from(*k)
+                    && k < self.initial
+                {
+                    return Some(k);
+                }
+                if self.broken.is_empty() {
+                    let error = SceneError::new("scene.unknown_name", format!("there is no body {k}"))
+                        .path(here)
+                        .value(k.to_string());
+                    reader.report(node.place, error.allowed(self.allowed()));
+                }
+                None
+            }
+            Data::Text(name) => match self.names.get(name) {
+                Some(k) => Some(*k),
+                None => {
+                    self.unknown(reader, node.place, here, name, &[]);
+                    None
+                }
+            },
+            _ => {
+                reader.wrong_type(node, &here, "the name of a body or its number");
+                None
+            }
+        }
+    }
+
+    /// Whether a body, all copies of a body, or one of `others` has this name.
+    pub(crate) fn knows(&self, name: &str) -> bool {
+        self.names.contains_key(name) || self.copied.contains_key(name)
+    }
+
+    /// The first body that a name means, copies by their common name too.
+    pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
+        let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));
+        k.and_then(|k| self.list.get(*k)).or_else(|| name.parse::<usize>().ok().and_then(|k| self.list.get(k)))
+    }
+
+    /// Reports a name that no body has.
+    pub(crate) fn unknown(&self, reader: &mut Reader<'_>, place: Place, path: String, name: &str, others: &[&str]) {
+        if self.broken.iter().any(|b| b.is_empty() || b == name || name.starts_with(&format!("{b}["))) {
+            return; // the body is there, but has errors of its own
+        }
+        let mut error = SceneError::new("scene.unknown_name", format!("there is no body `{}`", visible(name)))
+            .path(path)
+            .value(visible(name));
+        error.allowed = Some(self.allowed());
+        let base = name.split('[').next().unwrap_or(name);
+        error = match self.copied.get(base) {
+            Some((_, copies)) => {
+                let count = copies.len();
+                error.hint(format!("`{base}` has {count} copies: `{base}[0]` … `{base}[{}]`", count - 1))
+            }
+            None => error.nearest(nearest(
+                name,
+                self.names.keys().map(String::as_str).filter(|n| !n.ends_with(']')).chain(others.iter().copied()),
+            )),
+        };
+        reader.report(place, error);
+    }
+
+    fn allowed(&self) -> String {
+        match self.list.len() {
+            0 => "the scene has no bodies".into(),
+            n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
+            n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),
+        }
+    }
+}

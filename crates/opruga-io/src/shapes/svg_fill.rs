@@ -1,0 +1,165 @@
+//! Fill colours of a drawing: inherited from element to element, as the standard says.
+
+use super::svg::style;
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use roxmltree::{Document, Node};
+use svgtypes::{Color, Paint, PaintFallback};
+
+/// How an element is filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fill {
+    /// Whether it is filled at all.
+    pub(super) filled: bool,
+    /// Red, green and blue.
+    colour: [u8; 3],
+    /// How much of what lies below it hides, from 0 to 1: of its colour, and of the groups around it.
+    opacity: f64,
+    /// What `fill-opacity` says, which is inherited and not multiplied.
+    fill_opacity: f64,
+}
+
+impl Fill {
+    /// Where nothing is said: black.
+    pub(super) const FIRST: Fill = Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0 };
+}
+
+/// Reads the fills of elements.
+pub(super) struct Fills<'a, 'd> {
+    document: &'d Document<'a>,
+    source: &'a Source<'a>,
+    /// Whether colours are wanted; else only whether an element is filled.
+    wanted: bool,
+    /// Red, green, blue and opacity of every part of the drawing; none of those that are not filled.
+    pub(super) painted: Vec<Option<[u8; 4]>>,
+    /// How many elements are filled by a gradient.
+    pub(super) gradients: usize,
+    /// How many elements have a class, where the drawing has a style sheet.
+    pub(super) styled: usize,
+    has_sheet: bool,
+}
+
+impl<'a, 'd> Fills<'a, 'd> {
+    pub(super) fn of(document: &'d Document<'a>, source: &'a Source<'a>, wanted: bool) -> Fills<'a, 'd> {
+        let has_sheet = wanted && document.descendants().any(|node| node.tag_name().name() == "style");
+        Fills { document, source, wanted, painted: Vec::new(), gradients: 0, styled: 0, has_sheet }
+    }
+
+    /// The fill of an element inside one with another.
+    ///
+    /// # Errors
+    /// `svg.colour` for what is no fill, where colours are wanted.
+    pub(super) fn within(&mut self, node: Node<'_, '_>, around: Fill) -> Result<Fill, SceneError> {
+        let mut fill = around;
+        if !self.wanted {
+            fill.filled = style(node, "fill").map_or(around.filled, |fill| fill != "none");
+            return Ok(fill);
+        }
+        self.styled += usize::from(self.has_sheet && node.has_attribute("class"));
+        if let Some(text) = style(node, "fill") {
+            let (paint, alpha) = self.colour(node, text, around)?;
+            fill.filled = paint.is_some();
+            (fill.colour, fill.opacity) = (paint.unwrap_or(fill.colour), around.opacity * alpha);
+        }
+        if let Some(text) = style(node, "fill-opacity") {
+            fill.fill_opacity = self.share(node, "fill-opacity", text)?;
+        }
+        if let Some(text) = style(node, "opacity") {
+            fill.opacity *= self.share(node, "opacity", text)?;
+        }
+        Ok(fill)
+    }
+
+    /// Notes the fill of the next part of the drawing.
+    pub(super) fn paint(&mut self, fill: Fill) {
+        let opacity = (fill.opacity * fill.fill_opacity * 255.0).round() as u8;
+        let [red, green, blue] = fill.colour;
+        self.painted.push((self.wanted && fill.filled && opacity > 0).then_some([red, green, blue, opacity]));
+    }
+
+    /// A fill, and the opacity of its colour; no colour for none.
+    fn colour(&mut self, node: Node<'_, '_>, text: &str, around: Fill) -> Result<(Option<[u8; 3]>, f64), SceneError> {
+        let plain = |c: Color| (Some([c.red, c.green, c.blue]), f64::from(c.alpha) / 255.0);
+        match Paint::from_str(text) {
+            Ok(Paint::None) => Ok((None, 1.0)),
+            Ok(Paint::Inherit | Paint::ContextFill) => Ok((around.filled.then_some(around.colour), 1.0)),
+            Ok(Paint::CurrentColor) => {
+                // `color` is inherited.
+                let near = node.ancestors().find_map(|n| style(n, "color"));
+                match near.map(str::parse::<Color>) {
+                    None => Ok(plain(Color::black())),
+                    Some(Ok(colour)) => Ok(plain(colour)),
+                    Some(Err(_)) => Err(self.refused(node, near.unwrap_or(""))),
+                }
+            }
+            Ok(Paint::Color(colour)) => Ok(plain(colour)),
+            Ok(Paint::FuncIRI(id, fallback)) => match (self.gradient(id)?, fallback) {
+                (Some(mean), _) => {
+                    self.gradients += 1;
+                    Ok((Some([mean[0], mean[1], mean[2]]), f64::from(mean[3]) / 255.0))
+                }
+                (None, Some(PaintFallback::Color(colour))) => Ok(plain(colour)),
+                (None, Some(PaintFallback::None)) => Ok((None, 1.0)),
+                (None, _) => Err(self.refused(node, text)),
+            },
+            Ok(Paint::ContextStroke) | Err(_) => Err(self.refused(node, text)),
+        }
+    }
+
+    /// The mean colour of the stops of a gradient; none where there is no such gradient.
+    fn gradient(&self, id: &str) -> Result<Option<[u8; 4]>, SceneError> {
+        let mut next = id;
+        // A gradient may take its stops from another one.
+        for _ in 0..16 {
+            let Some(node) = self.document.descendants().find(|node| node.attribute("id") == Some(next)) else {
+                return Ok(None);
+            };
+            if !matches!(node.tag_name().name(), "linearGradient" | "radialGradient") {
+                return Ok(None);
+            }
+            let (mut sum, mut count) = ([0.0; 4], 0.0);
+            for stop in node.children().filter(|child| child.tag_name().name() == "stop") {
+                let text = style(stop, "stop-color").unwrap_or("black");
+                let colour: Color = text.parse().map_err(|_| self.refused(stop, text))?;
+                let opacity = style(stop, "stop-opacity").map_or(Ok(1.0), |t| self.share(stop, "stop-opacity", t))?;
+                let parts = [colour.red, colour.green, colour.blue, colour.alpha].map(f64::from);
+                sum = [sum[0] + parts[0], sum[1] + parts[1], sum[2] + parts[2], sum[3] + parts[3] * opacity];
+                count += 1.0;
+            }
+            if count > 0.0 {
+                return Ok(Some(sum.map(|s: f64| (s / count).round() as u8)));
+            }
+            let link = node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href")));
+            let Some(other) = link.and_then(|link| link.strip_prefix('#')) else { return Ok(None) };
+            next = other;
+        }
+        Ok(None)
+    }
+
+    /// A number from 0 to 1, or per cent.
+    fn share(&self, node: Node<'_, '_>, name: &str, text: &str) -> Result<f64, SceneError> {
+        let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
+        match number.trim().parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok((x / unit).clamp(0.0, 1.0)),
+            _ => {
+                let error = SceneError::new("svg.colour", format!("`{name}` is no number"));
+                Err(self.mark(node, error).value(visible(text)).allowed("0 to 1"))
+            }
+        }
+    }
+
+    fn refused(&self, node: Node<'_, '_>, text: &str) -> SceneError {
+        let error = SceneError::new("svg.colour", "the fill is no colour that can be painted");
+        let error = self.mark(node, error).value(visible(text));
+        error
+            .allowed("a colour such as #ffac33 or gold, a gradient of this file, none")
+            .hint("`colours = false` reads the outline alone")
+    }
+
+    /// An error at the tag of an element.
+    fn mark(&self, node: Node<'_, '_>, error: SceneError) -> SceneError {
+        let range = node.range();
+        let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
+        self.source.mark(error, range.start, end)
+    }
+}

@@ -1,0 +1,187 @@
+//! A drawing that a body of the plane carries: its areas move with the cells in which they lie.
+
+use super::filling::triangles_between;
+use super::{OutlineError, Overlap, Ring, distance, joined};
+use crate::skin::{Area, Skin};
+use crate::{Mesh, MeshError};
+use std::collections::BTreeMap;
+
+/// An area that is to be painted on a body.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Painted {
+    /// What bounds it; rings inside others are holes by the even-odd rule.
+    pub rings: Vec<Ring>,
+    /// Red, green, blue and opacity; none for the colour of the body.
+    pub colour: Option<[u8; 4]>,
+}
+
+/// Paints areas on a body, one over another: each point belongs to the cell in which it lies, or to the nearest one.
+///
+/// A square carries its points by bilinear weights, a triangle by barycentric ones. A body without cells carries by triangles between the nodes of
+/// its outline `rings`.
+///
+/// # Errors
+/// [`OutlineError::TooCoarse`] where the rings of a body without cells meet, [`OutlineError::Mesh`] for too many points.
+pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<(), OutlineError> {
+    let cells: Vec<Carrier> = if mesh.cells.is_empty() {
+        triangles_between(rings)?.into_iter().map(Carrier::Triangle).collect()
+    } else {
+        let triangles = mesh.cells.triangles.iter().map(|t| Carrier::Triangle(*t));
+        triangles.chain(mesh.cells.quadrilaterals.iter().map(|q| Carrier::Square(*q))).collect()
+    };
+    let Some(grid) = Grid::of(&cells, &mesh.positions) else { return Ok(()) };
+    let mut skin = Skin::default();
+    for area in painted {
+        // Rings that cross themselves are made into such that do not: the area between them is cut into triangles.
+        let rings = area.rings.iter().filter(|ring| ring.points.len() > 2);
+        let one: Vec<Ring> = rings.map(|ring| Ring { part: 0, ..ring.clone() }).collect();
+        let clean = joined(&one, Overlap::EvenOdd);
+        if clean.is_empty() {
+            continue;
+        }
+        let first = skin.carriers.len() as u32;
+        // Rings that touch in a point have no triangulation here; they can still be painted as what they bound.
+        let triangles = triangles_between(&clean).unwrap_or_default();
+        let mut made = Area {
+            colour: area.colour,
+            rings: Vec::new(),
+            triangles: triangles.into_iter().map(|t| t.map(|point| first + point)).collect(),
+        };
+        for ring in &clean {
+            let from = skin.carriers.len() as u32;
+            for point in &ring.points {
+                let (nodes, weights) = grid.carrier(*point);
+                skin.carriers.push(nodes);
+                skin.weights.push(weights);
+            }
+            made.rings.push((from..skin.carriers.len() as u32).collect());
+        }
+        skin.areas.push(made);
+    }
+    if skin.carriers.len() > u32::MAX as usize / 4 {
+        let most = crate::MAXIMUM_NODES;
+        return Err(OutlineError::Mesh(MeshError::TooManyNodes { nodes: skin.carriers.len() as u64, most }));
+    }
+    mesh.skin = Some(skin);
+    Ok(())
+}
+
+/// A cell that carries points.
+#[derive(Clone, Copy, Debug)]
+enum Carrier {
+    Triangle([u32; 3]),
+    /// A square along the axes, counter-clockwise from its lowest corner.
+    Square([u32; 4]),
+}
+
+/// Cells by the places of a grid that their boxes cover.
+struct Grid<'m> {
+    cells: &'m [Carrier],
+    positions: &'m [[f64; 2]],
+    low: [f64; 2],
+    side: f64,
+    /// Columns and rows.
+    counts: [i64; 2],
+    places: BTreeMap<(i64, i64), Vec<u32>>,
+}
+
+impl<'m> Grid<'m> {
+    /// None where there are no cells.
+    fn of(cells: &'m [Carrier], positions: &'m [[f64; 2]]) -> Option<Grid<'m>> {
+        let boxes: Vec<([f64; 2], [f64; 2])> = cells.iter().map(|cell| bounds_of(cell, positions)).collect();
+        let (mut low, mut high) = *boxes.first()?;
+        let mut widest = 0.0;
+        for (from, to) in &boxes {
+            for a in 0..2 {
+                low[a] = if from[a] < low[a] { from[a] } else { low[a] };
+                high[a] = if to[a] > high[a] { to[a] } else { high[a] };
+                widest += (to[a] - from[a]) / (2 * cells.len()) as f64;
+            }
+        }
+        // About as wide as a cell, but no more places than a few for each.
+        let least = distance(low, high) / (2.0 * (cells.len() as f64).sqrt() + 1.0);
+        let side = if widest > least { widest } else { least };
+        let counts = core::array::from_fn(|a| ((high[a] - low[a]) / side).floor() as i64);
+        let mut grid = Grid { cells, positions, low, side, counts, places: BTreeMap::new() };
+        for (number, (from, to)) in boxes.iter().enumerate() {
+            let (from, to) = (grid.place(*from), grid.place(*to));
+            for i in from.0..=to.0 {
+                for j in from.1..=to.1 {
+                    grid.places.entry((i, j)).or_default().push(number as u32);
+                }
+            }
+        }
+        Some(grid)
+    }
+
+    fn place(&self, p: [f64; 2]) -> (i64, i64) {
+        let along = |a: usize| {
+            let place = ((p[a] - self.low[a]) / self.side).floor() as i64;
+            place.clamp(0, self.counts[a])
+        };
+        (along(0), along(1))
+    }
+
+    /// The nodes that carry a point and their weights: of the cell in which its least weight is largest, among those near it.
+    fn carrier(&self, point: [f64; 2]) -> ([u32; 4], [f64; 4]) {
+        let (i, j) = self.place(point);
+        let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };
+        let mut best = (f64::NEG_INFINITY, ([0; 4], [1.0, 0.0, 0.0, 0.0]));
+        for reach in 0..=widest + 1 {
+            let around = (i - reach..=i + reach).flat_map(|i| (j - reach..=j + reach).map(move |j| (i, j)));
+            for cell in around.filter_map(|place| self.places.get(&place)).flatten() {
+                let weighed = self.weigh(&self.cells[*cell as usize], point);
+                if weighed.0 > best.0 {
+                    best = weighed;
+                }
+            }
+            // A cell that holds the point is found at once; one near it within a place more than the first was.
+            if best.0 >= 0.0 || best.0 > f64::NEG_INFINITY && reach > 0 {
+                break;
+            }
+        }
+        best.1
+    }
+
+    /// How far inside a cell a point lies (negative: outside, in widths of the cell), and what carries it.
+    fn weigh(&self, cell: &Carrier, point: [f64; 2]) -> (f64, ([u32; 4], [f64; 4])) {
+        let at = |node: u32| self.positions[node as usize];
+        match *cell {
+            Carrier::Triangle([a, b, c]) => {
+                let twice = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+                    (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1])
+                };
+                let whole = twice(at(a), at(b), at(c));
+                let (u, v) = (twice(point, at(b), at(c)) / whole, twice(at(a), point, at(c)) / whole);
+                let weights = [u, v, 1.0 - u - v, 0.0];
+                (least(&weights[..3]), ([a, b, c, c], weights))
+            }
+            Carrier::Square(nodes) => {
+                let (low, high) = (at(nodes[0]), at(nodes[2]));
+                let [s, t]: [f64; 2] = core::array::from_fn(|k| (point[k] - low[k]) / (high[k] - low[k]));
+                let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t];
+                (least(&[s, t, 1.0 - s, 1.0 - t]), (nodes, weights))
+            }
+        }
+    }
+}
+
+fn least(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(f64::INFINITY, |least, x| if *x < least { *x } else { least })
+}
+
+fn bounds_of(cell: &Carrier, positions: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
+    let nodes: &[u32] = match cell {
+        Carrier::Triangle(nodes) => nodes,
+        Carrier::Square(nodes) => nodes,
+    };
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for node in nodes {
+        let p = positions[*node as usize];
+        for a in 0..2 {
+            low[a] = if p[a] < low[a] { p[a] } else { low[a] };
+            high[a] = if p[a] > high[a] { p[a] } else { high[a] };
+        }
+    }
+    (low, high)
+}

@@ -1,0 +1,127 @@
+//! The inside of closed curves as a lattice of equal squares.
+
+use super::{OutlineError, Ring, bounds};
+use crate::{MAXIMUM_NODES, Mesh, MeshError};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A square by its column and row.
+type Square = (i64, i64);
+
+/// About how many nodes [`squares`] makes: one for each square inside, and those along the rings.
+pub fn squares_estimate(rings: &[Ring], spacing: f64) -> u64 {
+    let inside = rings.iter().map(Ring::area).sum::<f64>().abs() / (spacing * spacing);
+    let border = 2.0 * rings.iter().map(Ring::length).sum::<f64>() / spacing;
+    let nodes = inside + border + 4.0;
+    if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+}
+
+/// The inside of rings that [`super::nest`] has turned as equal squares of side `spacing` [m], which reach a little beyond the rings: those are kept
+/// that a ring runs through or whose middle is inside, and where two would touch in a corner alone, one beside them.
+///
+/// Detail finer than the spacing does not change the squares but by where it reaches: parts less than a square apart become one body. The lattice is
+/// centred in the box of the rings. Nodes run row by row, from below.
+///
+/// # Errors
+/// [`OutlineError::TooFine`] where the lattice would be too large, [`OutlineError::Empty`] without rings.
+pub fn squares(rings: &[Ring], spacing: f64) -> Result<Mesh<2>, OutlineError> {
+    crate::mesh::positive("spacing", spacing)?;
+    let (low, high) = bounds(rings).ok_or(OutlineError::Empty)?;
+    let nodes = squares_estimate(rings, spacing);
+    if nodes > MAXIMUM_NODES {
+        return Err(OutlineError::TooFine { spacing, nodes });
+    }
+    let origin: [f64; 2] = core::array::from_fn(|a| {
+        let count = ((high[a] - low[a]) / spacing).ceil();
+        0.5 * (low[a] + high[a]) - 0.5 * count * spacing
+    });
+    let mut kept = crossed(rings, origin, spacing);
+    kept.extend(inside(rings, origin, spacing));
+    close_corners(&mut kept);
+
+    let mut numbers: BTreeMap<(i64, i64), u32> =
+        kept.iter().flat_map(|square| corners(*square)).map(|(i, j)| ((j, i), 0)).collect();
+    if numbers.len() as u64 > MAXIMUM_NODES {
+        return Err(OutlineError::TooFine { spacing, nodes: numbers.len() as u64 });
+    }
+    let mut mesh = Mesh::<2>::default();
+    for (&(j, i), number) in &mut numbers {
+        *number = mesh.positions.len() as u32;
+        mesh.positions.push([origin[0] + i as f64 * spacing, origin[1] + j as f64 * spacing]);
+    }
+    mesh.cells.quadrilaterals =
+        kept.iter().map(|square| corners(*square).map(|(i, j)| numbers[&(j, i)])).collect::<Vec<[u32; 4]>>();
+    mesh.facets = mesh.facets_from_cells().map_err(|e: MeshError| OutlineError::Mesh(e))?;
+    Ok(mesh)
+}
+
+/// The corners of a square, counter-clockwise.
+fn corners((i, j): Square) -> [(i64, i64); 4] {
+    [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+}
+
+/// Squares that a ring runs through: for every edge, column by column, the rows between its ends there.
+fn crossed(rings: &[Ring], origin: [f64; 2], spacing: f64) -> BTreeSet<Square> {
+    let mut found = BTreeSet::new();
+    for (a, b) in rings.iter().flat_map(Ring::edges) {
+        let local = |p: [f64; 2]| [(p[0] - origin[0]) / spacing, (p[1] - origin[1]) / spacing];
+        let (a, b) = (local(a), local(b));
+        let (a, b) = if b[0] < a[0] { (b, a) } else { (a, b) };
+        let height = |x: f64| {
+            let share = if b[0] > a[0] { (x - a[0]) / (b[0] - a[0]) } else { 0.0 };
+            a[1] + share * (b[1] - a[1])
+        };
+        let (first, last) = (a[0].floor(), b[0].floor());
+        for column in first as i64..=last as i64 {
+            let from = if column as f64 <= a[0] { a[1] } else { height(column as f64) };
+            let to = if column as f64 + 1.0 >= b[0] { b[1] } else { height(column as f64 + 1.0) };
+            let (from, to) = if to < from { (to, from) } else { (from, to) };
+            found.extend((from.floor() as i64..=to.floor() as i64).map(|row| (column, row)));
+        }
+    }
+    found
+}
+
+/// Squares whose middle is inside, by the even-odd rule, row by row.
+fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
+    // Every edge adds its crossing to the rows whose middle lies between its ends.
+    let mut rows: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
+    for (a, b) in rings.iter().flat_map(Ring::edges) {
+        let row = |y: f64| (y - origin[1]) / spacing - 0.5;
+        let (a, b) = if b[1] < a[1] { (b, a) } else { (a, b) };
+        for j in row(a[1]).ceil() as i64..=row(b[1]).floor() as i64 {
+            let y = origin[1] + (j as f64 + 0.5) * spacing;
+            if (a[1] > y) != (b[1] > y) {
+                rows.entry(j).or_default().push(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for (row, mut crossings) in rows {
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            let column = |x: f64| (x - origin[0]) / spacing - 0.5;
+            found.extend((column(pair[0]).ceil() as i64..=column(pair[1]).floor() as i64).map(|column| (column, row)));
+        }
+    }
+    found
+}
+
+/// Adds a square wherever two touch in a corner alone: a body there would hang together by a point.
+fn close_corners(kept: &mut BTreeSet<Square>) {
+    loop {
+        let mut missing = Vec::new();
+        for &(i, j) in kept.iter() {
+            for side in [-1, 1] {
+                // The square diagonally above, and the two beside both.
+                let beside = [(i + side, j), (i, j + 1)];
+                if kept.contains(&(i + side, j + 1)) && !beside.iter().any(|square| kept.contains(square)) {
+                    missing.push(beside[0]);
+                }
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        kept.extend(missing);
+    }
+}
