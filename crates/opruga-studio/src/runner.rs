@@ -122,10 +122,11 @@ fn run(mut session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wa
         }
         let now = clock();
         let before = session.frames();
-        let was_seeking = session.is_seeking();
+        let (was_seeking, told) = (session.is_seeking(), session.told());
         session.tick(now.saturating_sub(last), BUDGET, &clock);
         last = now;
-        news |= session.frames() != before || was_seeking;
+        // A frame that fails is news too, though it leaves everything as it was.
+        news |= session.frames() != before || was_seeking || session.told() != told;
         if news {
             let shown = Arc::new(session.shown());
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = shown;

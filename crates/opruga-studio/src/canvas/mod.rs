@@ -51,6 +51,8 @@ pub struct Canvas {
     pub selected: Option<String>,
     /// Where it is in the window.
     rect: Option<Rect>,
+    /// Where the tools lie over it.
+    pub tools: Option<Rect>,
     flat: Flat,
     space: space::Space,
     /// What draws the scene beside it.
@@ -106,7 +108,7 @@ impl Canvas {
         self.fitted_size = None;
         self.space.look_at_all(&view);
         if let Some(rect) = self.rect {
-            self.flat.fit(&view, rect);
+            self.flat.fit(&view, rect, self.tools);
         }
     }
 
@@ -156,13 +158,16 @@ impl Canvas {
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
         self.overlays(&look, under.as_ref(), language);
-        plane::legend(&look, language);
+        if other.is_none() {
+            plane::legend(&look, self.tools, language);
+        }
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
             let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
             self.paint(ui, &look, &beside.right, true);
-            overlays::captions(&look, rect, beside, language);
+            plane::legend(&look, self.tools, language);
+            overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
         }
         asks
     }
@@ -200,7 +205,7 @@ impl Canvas {
             if let (Some(size), Some(view)) = (self.fitted_size, &self.scales)
                 && size != rect.size()
             {
-                self.flat.fit(view, rect);
+                self.flat.fit(view, rect, self.tools);
                 self.fitted_size = Some(rect.size());
             }
             return;
@@ -210,7 +215,7 @@ impl Canvas {
         self.fitted = shown.opened;
         self.scales = View::fit([&shown.picture]).ok().map(|view| with_floors(view, shown));
         if let Some(view) = &self.scales {
-            self.flat.fit(view, rect);
+            self.flat.fit(view, rect, self.tools);
             self.space.fit(view);
         }
         self.range = None;
