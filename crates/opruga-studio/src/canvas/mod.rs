@@ -18,7 +18,7 @@ use crate::words::Language;
 use camera::Flat;
 use egui::{PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
-use opruga::draw::View;
+use opruga::draw::{ColliderPicture, View};
 use pick::Under;
 use std::sync::Arc;
 pub use tool::Tool;
@@ -151,13 +151,16 @@ impl Canvas {
         };
         let hover = response.hover_pos().map(within);
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
-        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(shown, rect, at));
+        // Pictures of space are a moment behind: what is pressed is what is seen.
+        let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
+        let seen = seen.unwrap_or_else(|| Arc::clone(shown));
+        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(&seen, rect, at));
         let beside = hover.is_some_and(|(_, beside)| beside);
         self.press(ui, &response, shown, rect, under.as_ref(), beside, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
-        self.overlays(&look, under.as_ref(), language);
+        self.overlays(&Look { shown: &seen, ..look }, under.as_ref(), language);
         if other.is_none() {
             plane::legend(&look, self.tools, language);
         }
@@ -358,7 +361,11 @@ impl Canvas {
                 ui.ctx().request_repaint();
             }
             Doing::Panning => self.pan(shown, rect, delta),
-            Doing::Turning => self.space.turn(delta),
+            Doing::Turning => {
+                let up =
+                    |c: &ColliderPicture| matches!(c, ColliderPicture::HalfSpace { normal, .. } if normal[1] > 0.0);
+                self.space.turn(delta, shown.picture.colliders.iter().any(up));
+            }
             Doing::Shifting(..) => {}
             Doing::Handling(held) => held.lead(at),
             Doing::Drawing(points) => {
