@@ -133,8 +133,9 @@ impl Studio {
                 ui,
                 |ui| {
                     // On a narrow window curves keep their width and are pushed along.
-                    egui::ScrollArea::horizontal().show(ui, |ui| {
-                        self.plots.show(ui, &shown, words, self.canvas.selected.as_deref());
+                    let room = ui.available_size();
+                    egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+                        self.plots.show(ui, &shown, words, self.canvas.selected.as_deref(), room);
                     });
                 },
             );

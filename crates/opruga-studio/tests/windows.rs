@@ -203,6 +203,21 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
     let right = egui::pos2(window.canvas().right() - 0.25 * window.canvas().width(), window.canvas().center().y);
     window.drag(&[right, right + Vec2::new(20.0, -30.0)], PointerButton::Primary, Modifiers::NONE);
     assert_eq!(window.shown().recorded, 0);
+    // A press that comes in the same moment as the way to it does not take the view along.
+    let ball = window.shown().picture.bodies[0].positions[0];
+    let before = window.studio().on_screen(ball);
+    window.harness.event(Event::PointerMoved(right - Vec2::new(150.0, 150.0)));
+    let pressed = |pressed| Event::PointerButton {
+        pos: right - Vec2::new(150.0, 150.0),
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.harness.event(pressed(true));
+    window.frames(1);
+    window.harness.event(pressed(false));
+    window.frames(1);
+    assert_eq!(window.studio().on_screen(ball), before);
     window.click("Fit");
     window.rest();
     window.picture().assert_like("beside");

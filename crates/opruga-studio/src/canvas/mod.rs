@@ -151,6 +151,8 @@ impl Canvas {
         };
         let hover = response.hover_pos().map(within);
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
+        self.space.receive(ui);
+        self.beside.receive(ui);
         // Pictures of space are a moment behind: what is pressed is what is seen.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
         let seen = seen.unwrap_or_else(|| Arc::clone(shown));
@@ -333,10 +335,8 @@ impl Canvas {
             (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
         });
         let Some(at) = at else { return };
-        if self.doing == Doing::Nothing
-            && let Some(button) = pressed
-            && response.contains_pointer()
-        {
+        let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
+        if let (true, Some(button)) = (began, pressed) {
             self.refused = None;
             let press = Press { button, at, rect, space: space_down, shift, beside };
             self.begin(press, shown, under, asks);
@@ -350,7 +350,8 @@ impl Canvas {
                 None => {}
             }
         }
-        let delta = ui.input(|i| i.pointer.delta());
+        // On a slow screen a press comes together with the way to it, which does not count.
+        let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
             Doing::Holding(distance) => {

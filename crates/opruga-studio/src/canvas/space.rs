@@ -128,10 +128,8 @@ impl Space {
         Some(eye.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
     }
 
-    /// Shows the last picture and orders the next one.
-    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
-        let Look { painter, rect, paper, range, .. } = *look;
-        let Some(eye) = self.eye else { return };
+    /// Takes a picture that is done.
+    pub(crate) fn receive(&mut self, ui: &Ui) {
         if let Some(Drawn { image, outline, shown, eye }) =
             self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
         {
@@ -143,6 +141,12 @@ impl Space {
                 None => self.texture = Some(ui.ctx().load_texture("space", picture, TextureOptions::LINEAR)),
             }
         }
+    }
+
+    /// Shows the last picture and orders the next one.
+    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
+        let Look { painter, rect, paper, range, .. } = *look;
+        let Some(eye) = self.eye else { return };
         let fine = f64::from(ui.ctx().pixels_per_point());
         let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
         let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);

@@ -78,11 +78,11 @@ impl Plots {
     }
 
     /// Shows the curves side by side.
-    pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>) {
+    pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, room: egui::Vec2) {
         let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
         let beside = shown.beside.is_some();
         let count = 3 + usize::from(gas) + 2 * usize::from(beside);
-        let size = egui::vec2((ui.available_width() / count as f32 - 10.0).max(200.0), ui.available_height());
+        let size = egui::vec2((room.x / count as f32 - 10.0).max(180.0), room.y);
         ui.horizontal(|ui| {
             let energies = [
                 (words.kinetic(), 0),
@@ -139,6 +139,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
         if dark && (r, g, b) == (0, 0, 0) { Color32::from_gray(200) } else { Color32::from_rgb(r, g, b) }
     };
     ui.vertical(|ui| {
+        let top = ui.cursor().top();
         ui.set_width(size.x);
         ui.label(RichText::new(title).size(12.0).strong());
         ui.horizontal_wrapped(|ui| {
@@ -149,7 +150,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
         });
         let plot = Plot::new(id)
             .width(size.x)
-            .height((ui.available_height() - 4.0).max(40.0))
+            .height((size.y - (ui.cursor().top() - top) - 12.0).max(40.0))
             .allow_scroll(false)
             .allow_drag(false)
             .allow_zoom(false)
