@@ -218,7 +218,8 @@ impl Canvas {
         self.fitted_size = Some(rect.size());
         let first = self.fitted != 0;
         self.fitted = shown.opened;
-        self.scales = View::fit([&shown.picture]).ok().map(|view| with_floors(view, shown));
+        let beside = shown.beside.iter().map(|beside| &beside.right.picture);
+        self.scales = View::fit([&shown.picture].into_iter().chain(beside)).ok().map(|view| with_floors(view, shown));
         if let Some(view) = &self.scales {
             self.flat.fit(view, rect, self.tools);
             self.space.fit(view);
