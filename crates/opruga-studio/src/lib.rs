@@ -8,12 +8,15 @@ pub mod document;
 pub mod engine;
 pub mod keyframes;
 pub mod pacing;
+pub mod pair;
 pub mod session;
 pub mod shown;
 
 pub mod app;
 pub mod canvas;
 pub mod dropping;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod measure;
 pub mod panels;
 pub mod runner;
 pub mod theme;

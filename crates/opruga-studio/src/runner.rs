@@ -1,5 +1,6 @@
 //! The simulation on a thread of its own: the interface sends what is asked and takes the last picture; neither waits.
 
+use crate::pair::Difference;
 use crate::session::{Request, Session};
 use crate::shown::Shown;
 use opruga::io::Files;
@@ -21,6 +22,8 @@ pub struct Copied {
     pub text: String,
     /// Where the files are that it names.
     pub files: Files,
+    /// In what the scene on the right differs, where there is one.
+    pub differences: Option<Vec<Difference>>,
     /// Frames up to the last one of this course of things.
     pub frames: u64,
 }
@@ -32,6 +35,7 @@ impl Copied {
             name: session.name().to_string(),
             text: session.saved(),
             files: session.files().clone(),
+            differences: session.differences().map(<[_]>::to_vec),
             frames: session.latest(),
         }
     }
@@ -118,10 +122,11 @@ fn run(mut session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wa
         }
         let now = clock();
         let before = session.frames();
-        let was_seeking = session.is_seeking();
+        let (was_seeking, told) = (session.is_seeking(), session.told());
         session.tick(now.saturating_sub(last), BUDGET, &clock);
         last = now;
-        news |= session.frames() != before || was_seeking;
+        // A frame that fails is news too, though it leaves everything as it was.
+        news |= session.frames() != before || was_seeking || session.told() != told;
         if news {
             let shown = Arc::new(session.shown());
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = shown;

@@ -285,6 +285,13 @@ impl<const D: usize> World<D> {
         /// Empty where the body is not there or a model refuses the state.
         pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> = node_forces_here;
 
+        /// The forces of obstacles on the nodes of a body in the coming substep, f = m (v' − v*)/h [N].
+        ///
+        /// v* is the velocity that the forces of now would give a node within h without obstacles, v' the one with them:
+        /// normal force, friction, and in an impact the impulse over h. Held nodes feel none; the pin takes it.
+        /// Empty where the body is not there, there are no obstacles, or a model refuses the state.
+        pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> = contact_forces_here;
+
         /// The sum of the forces that pins exert on nodes [N].
         pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] = reaction_here;
 

@@ -4,6 +4,7 @@ use super::camera::Flat;
 use super::look::{Look, Paper};
 use super::triangles::Fills;
 use crate::shown::Shown;
+use crate::words::Language;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{
@@ -265,6 +266,8 @@ pub(crate) fn arrow_colour(kind: ArrowKind) -> Color32 {
         ArrowKind::Pressure => Color32::from_rgb(86, 160, 230),
         ArrowKind::Velocity => Color32::from_rgb(0, 158, 115),
         ArrowKind::Pull => RUBBER,
+        ArrowKind::Contact => Color32::from_rgb(213, 94, 0),
+        ArrowKind::Normal => Color32::from_gray(150),
         _ => Color32::from_rgb(230, 140, 20),
     }
 }
@@ -282,7 +285,8 @@ fn arrows(painter: &Painter, shown: &Shown, flat: &Flat, project: &dyn Fn([f64; 
         if most <= 0.0 || arrow.kind == ArrowKind::Pull {
             continue;
         }
-        let scale = flat.metres(60.0) / most;
+        let long = if arrow.kind == ArrowKind::Normal { 18.0 } else { 60.0 };
+        let scale = flat.metres(long) / most;
         let from = project(arrow.from);
         let to = project([0, 1, 2].map(|d| arrow.from[d] + scale * arrow.vector[d]));
         let way = to - from;
@@ -339,10 +343,11 @@ pub(crate) fn ghost(
 }
 
 /// The hint for the first pull, above a body.
-pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
+pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>, text: &str) {
     // Below the toolbar, and where the body is out of sight, at the border next to it.
     let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
-    let tip = Pos2::new(across, top.y.clamp(rect.top() + 96.0, rect.bottom().max(rect.top() + 96.0)) - 8.0);
+    let highest = tools.map_or(rect.top(), |tools| tools.bottom()) + 54.0;
+    let tip = Pos2::new(across, top.y.clamp(highest, rect.bottom().max(highest)) - 8.0);
     let beat = (painter.ctx().input(|i| i.time) * 3.0).sin() as f32 * 3.0;
     let middle = tip - Vec2::new(0.0, 26.0 - beat);
     let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), Color32::WHITE);
@@ -355,14 +360,16 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
 }
 
 /// What the colours mean.
-pub(crate) fn legend(look: &Look<'_>) {
+pub(crate) fn legend(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
         return;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, rect.top() + 44.0), Vec2::new(12.0, tall));
+    // Beside the tools, or where there is no room for that, below them.
+    let below = tools.filter(|tools| tools.right() > rect.right() - 110.0).map_or(rect.top(), |tools| tools.bottom());
+    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, below + 44.0), Vec2::new(12.0, tall));
     let behind =
         Rect::from_min_max(bar.min - Vec2::new(24.0, 28.0), Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0));
     painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));
@@ -383,7 +390,8 @@ pub(crate) fn legend(look: &Look<'_>) {
     }
     painter.add(Shape::mesh(mesh));
     let font = FontId::proportional(11.5);
-    let name = format!("{} [{}]", legend.label, legend.unit);
+    let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
+    let name = format!("{}{unit}", language.quantity(&legend.label));
     let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
     painter.text(spot, Align2::RIGHT_BOTTOM, name, FontId::proportional(12.0), paper.ink);
     for tick in nice_ticks(range[0], range[1], 4) {

@@ -2,15 +2,27 @@
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
 use super::look::Look;
+use super::outline::outline;
 use crate::shown::Shown;
-use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
+use egui::{Color32, ColorImage, Rect, Stroke, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// The colour of the outline of the selected body.
+const OUTLINE: Color32 = Color32::from_rgb(240, 150, 30);
+
 /// The longest side of a picture in pixels: finer screens are served by stretching.
 const MOST_PIXELS: f64 = 1400.0;
+
+/// A picture and the outline of the selected body on it, in shares of its sides.
+struct Drawn {
+    image: Image,
+    outline: Vec<[[f32; 2]; 2]>,
+    shown: Arc<Shown>,
+    eye: Eye,
+}
 
 struct Order {
     shown: Arc<Shown>,
@@ -18,18 +30,26 @@ struct Order {
     background: [u8; 3],
     size: [u32; 2],
     range: [f64; 2],
+    eye: Eye,
+    selected: Option<String>,
 }
+
+/// What a picture shows: scene, frame, eye, size, theme, what else is to be seen, the selected body.
+type Last = (u64, u64, Eye, [u32; 2], bool, u64, Option<String>);
 
 /// The eye, and the thread that draws what it sees.
 #[derive(Default)]
 pub(crate) struct Space {
     eye: Option<Eye>,
     orders: Option<Sender<Order>>,
-    done: Arc<Mutex<Option<Image>>>,
+    done: Arc<Mutex<Option<Drawn>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
+    /// What the picture on the screen shows, and from where: what is drawn over it and pressed on it is that.
+    seen: Option<(Arc<Shown>, Eye)>,
+    outline: Vec<[[f32; 2]; 2]>,
     /// What the last order was for, so that the same is not drawn twice.
-    last: Option<(u64, u64, Eye, [u32; 2], bool, u64)>,
+    last: Option<Last>,
 }
 
 impl core::fmt::Debug for Space {
@@ -45,12 +65,25 @@ impl Space {
 
     pub(crate) fn fit(&mut self, view: &View) {
         self.eye = Some(Eye::of(view));
-        self.last = None;
+        (self.last, self.seen) = (None, None);
     }
 
     /// Whether a picture is being drawn or waits to be shown.
     pub(crate) fn is_drawing(&self) -> bool {
         self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// Looks with the eye of another.
+    pub(crate) fn share_eye(&mut self, other: &Space) {
+        self.eye = other.eye;
+    }
+
+    /// Looks from the same side, so that all of a view is seen.
+    pub(crate) fn look_at_all(&mut self, view: &View) {
+        if let Some(eye) = &mut self.eye {
+            let whole = Eye::of(view);
+            (eye.target, eye.radius) = (whole.target, whole.radius);
+        }
     }
 
     /// Looks at a point from the same side.
@@ -66,10 +99,11 @@ impl Space {
         }
     }
 
-    pub(crate) fn turn(&mut self, delta: Vec2) {
+    /// Turns about the point that is looked at; with a floor not below it, where nothing could be seen.
+    pub(crate) fn turn(&mut self, delta: Vec2, floor: bool) {
         if let Some(eye) = &mut self.eye {
             eye.azimuth -= f64::from(delta.x) * 0.4;
-            eye.elevation = (eye.elevation + f64::from(delta.y) * 0.4).clamp(-85.0, 85.0);
+            eye.elevation = (eye.elevation + f64::from(delta.y) * 0.4).clamp(if floor { 1.0 } else { -85.0 }, 85.0);
         }
     }
 
@@ -83,16 +117,23 @@ impl Space {
         }
     }
 
-    /// What turns points of space into points of the rectangle.
-    pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
-        Some(self.eye?.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
+    /// What the picture on the screen shows.
+    pub(crate) fn seen(&self) -> Option<&Arc<Shown>> {
+        self.seen.as_ref().map(|(shown, _)| shown)
     }
 
-    /// Shows the last picture and orders the next one.
-    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View) {
-        let Look { painter, rect, paper, range, .. } = *look;
-        let Some(eye) = self.eye else { return };
-        if let Some(image) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
+    /// What turns points of space into points of the rectangle, as in the picture on the screen.
+    pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
+        let eye = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?;
+        Some(eye.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
+    }
+
+    /// Takes a picture that is done.
+    pub(crate) fn receive(&mut self, ui: &Ui) {
+        if let Some(Drawn { image, outline, shown, eye }) =
+            self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
+        {
+            (self.outline, self.seen) = (outline, Some((shown, eye)));
             let size = [image.width() as usize, image.height() as usize];
             let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
             match &mut self.texture {
@@ -100,15 +141,31 @@ impl Space {
                 None => self.texture = Some(ui.ctx().load_texture("space", picture, TextureOptions::LINEAR)),
             }
         }
+    }
+
+    /// Shows the last picture and orders the next one.
+    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
+        let Look { painter, rect, paper, range, .. } = *look;
+        let Some(eye) = self.eye else { return };
         let fine = f64::from(ui.ctx().pixels_per_point());
         let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
         let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);
         let size = [side(rect.width()), side(rect.height())];
-        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown));
-        if self.last != Some(wanted) && !self.busy.swap(true, Ordering::AcqRel) {
+        // The only body of a scene needs no mark.
+        let selected = selected.filter(|_| shown.bodies.len() > 1).map(String::from);
+        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
+        if self.last.as_ref() != Some(&wanted) && !self.busy.swap(true, Ordering::AcqRel) {
             self.last = Some(wanted);
             let [r, g, b, _] = paper.background.to_array();
-            let order = Order { shown: Arc::clone(shown), view: eye.view(scales), background: [r, g, b], size, range };
+            let order = Order {
+                shown: Arc::clone(shown),
+                view: eye.view(scales),
+                background: [r, g, b],
+                size,
+                range,
+                eye,
+                selected,
+            };
             let orders = self.orders.get_or_insert_with(|| artist(&self.done, &self.busy, ui.ctx().clone()));
             if orders.send(order).is_err() {
                 self.busy.store(false, Ordering::Release);
@@ -117,20 +174,38 @@ impl Space {
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture.id(), rect, all, Color32::WHITE);
+            let spot = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
+            for [from, to] in &self.outline {
+                painter.line_segment([spot(*from), spot(*to)], Stroke::new(2.0, OUTLINE));
+            }
         }
     }
+}
+
+/// The outline of the selected body in shares of the sides of the picture.
+fn outline_of(order: &Order) -> Vec<[[f32; 2]; 2]> {
+    let place = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
+    let Some(body) = place.and_then(|place| order.shown.picture.bodies.get(place)) else { return Vec::new() };
+    let size = order.size.map(f64::from);
+    let lines = outline(body, &order.eye.lens(&order.view, size));
+    lines.into_iter().map(|ends| ends.map(|[x, y]| [(x / size[0]) as f32, (y / size[1]) as f32])).collect()
 }
 
 /// What else changes a picture of the same frame: what is shown of it.
 fn fingerprint(shown: &Shown) -> u64 {
     let picture = &shown.picture;
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
+    let map = picture.legend.as_ref().map_or(0, |legend| legend.map as u64);
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
-    label * 1_000_003 + lines as u64 * 1_009 + picture.arrows.len() as u64 * 7 + picture.bodies.len() as u64
+    map * 1_000_000_007
+        + label * 1_000_003
+        + lines as u64 * 1_009
+        + picture.arrows.len() as u64 * 7
+        + picture.bodies.len() as u64
 }
 
 /// Starts the thread that draws.
-fn artist(done: &Arc<Mutex<Option<Image>>>, busy: &Arc<AtomicBool>, context: egui::Context) -> Sender<Order> {
+fn artist(done: &Arc<Mutex<Option<Drawn>>>, busy: &Arc<AtomicBool>, context: egui::Context) -> Sender<Order> {
     let (sender, orders): (Sender<Order>, Receiver<Order>) = channel();
     let (done, busy) = (Arc::clone(done), Arc::clone(busy));
     std::thread::spawn(move || {
@@ -143,8 +218,16 @@ fn artist(done: &Arc<Mutex<Option<Image>>>, busy: &Arc<AtomicBool>, context: egu
             picture.pulls.clear();
             picture.bodies.iter_mut().for_each(|body| body.label.clear());
             // A picture that cannot be drawn leaves the last one on the screen.
-            if let Ok(image) = draw_scene(&picture, &order.view, order.background, order.size) {
-                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
+            let mut view = order.view.clone();
+            if !picture.arrows.is_empty()
+                && let Ok(fitted) = View::fit([&picture])
+            {
+                (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
+            }
+            if let Ok(image) = draw_scene(&picture, &view, order.background, order.size) {
+                let outline = outline_of(&order);
+                let (shown, eye) = (Arc::clone(&order.shown), order.eye);
+                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(Drawn { image, outline, shown, eye });
             }
             busy.store(false, Ordering::Release);
             context.request_repaint();

@@ -3,12 +3,12 @@
 
 use crate::document::Document;
 use crate::engine;
+use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::shown::{Severity, Show};
 use opruga::Options;
 use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
 use opruga::io::safe_write::safe_write;
-use opruga::io::scene;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
@@ -114,10 +114,17 @@ pub fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> 
         What::Animation => "gif",
         What::Table => "csv",
     };
-    let bytes = content(what, copied, show)?;
-    let path = free_path(&copied.name, ending)?;
-    safe_write(&path, false, |file| file.write_all(&bytes)).map_err(|e| e.to_string())?;
-    Ok(path.display().to_string())
+    let keep = |name: &str, bytes: &[u8]| -> Result<String, String> {
+        let path = free_path(name, ending)?;
+        safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
+        Ok(path.display().to_string())
+    };
+    let first = keep(&copied.name, &content(what, copied, show)?)?;
+    // Side by side there are two scenes.
+    let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
+    let right = pair::right_of(&Document::new(&copied.name, &copied.text)?, differences)?;
+    let second = keep(&format!("{}-right", copied.name), right.text().as_bytes())?;
+    Ok(format!("{first}, {second}"))
 }
 
 /// The bytes of a file.
@@ -135,11 +142,8 @@ pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Strin
 /// The engine of the scene, from its start.
 fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
     let document = Document::new(&copied.name, &copied.text)?;
-    let options = scene::Options { files: copied.files.clone(), ..scene::Options::default() };
-    let together = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
-    let read = scene::read(document.text().as_bytes(), &copied.name, &opruga::catalogue(), &options);
-    let (blueprint, _) = read.map_err(together)?;
-    engine::build(blueprint, &Options::default()).map_err(|e| e.to_string())
+    let built = pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default());
+    built.map_err(|refusal| refusal.to_string())
 }
 
 fn table(copied: &Copied) -> Result<Vec<u8>, String> {
