@@ -1,4 +1,4 @@
-//! A scene of space: drawn by the same renderer as the pictures of the command line, on a thread of its own, into a
+//! A scene of space: drawn by the same renderer as the pictures of the command line, beside the interface, into a
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
 use super::look::Look;
@@ -6,7 +6,6 @@ use crate::shown::Shown;
 use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The longest side of a picture in pixels: finer screens are served by stretching.
@@ -20,11 +19,10 @@ struct Order {
     range: [f64; 2],
 }
 
-/// The eye, and the thread that draws what it sees.
+/// The eye, and what is drawn of what it sees.
 #[derive(Default)]
 pub(crate) struct Space {
     eye: Option<Eye>,
-    orders: Option<Sender<Order>>,
     done: Arc<Mutex<Option<Image>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
@@ -109,10 +107,15 @@ impl Space {
             self.last = Some(wanted);
             let [r, g, b, _] = paper.background.to_array();
             let order = Order { shown: Arc::clone(shown), view: eye.view(scales), background: [r, g, b], size, range };
-            let orders = self.orders.get_or_insert_with(|| artist(&self.done, &self.busy, ui.ctx().clone()));
-            if orders.send(order).is_err() {
-                self.busy.store(false, Ordering::Release);
-            }
+            let (done, busy, context) = (Arc::clone(&self.done), Arc::clone(&self.busy), ui.ctx().clone());
+            drop(crate::work::spawn(async move {
+                // A picture that cannot be drawn leaves the last one on the screen.
+                if let Some(image) = drawn(&order) {
+                    *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
+                }
+                busy.store(false, Ordering::Release);
+                context.request_repaint();
+            }));
         }
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
@@ -129,26 +132,14 @@ fn fingerprint(shown: &Shown) -> u64 {
     label * 1_000_003 + lines as u64 * 1_009 + picture.arrows.len() as u64 * 7 + picture.bodies.len() as u64
 }
 
-/// Starts the thread that draws.
-fn artist(done: &Arc<Mutex<Option<Image>>>, busy: &Arc<AtomicBool>, context: egui::Context) -> Sender<Order> {
-    let (sender, orders): (Sender<Order>, Receiver<Order>) = channel();
-    let (done, busy) = (Arc::clone(done), Arc::clone(busy));
-    std::thread::spawn(move || {
-        while let Ok(order) = orders.recv() {
-            let mut picture = order.shown.picture.clone();
-            if let Some(legend) = &mut picture.legend {
-                legend.range = Some(order.range);
-            }
-            // Labels and pulls are drawn by the interface, sharper than in the picture.
-            picture.pulls.clear();
-            picture.bodies.iter_mut().for_each(|body| body.label.clear());
-            // A picture that cannot be drawn leaves the last one on the screen.
-            if let Ok(image) = draw_scene(&picture, &order.view, order.background, order.size) {
-                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
-            }
-            busy.store(false, Ordering::Release);
-            context.request_repaint();
-        }
-    });
-    sender
+/// Draws what is ordered.
+fn drawn(order: &Order) -> Option<Image> {
+    let mut picture = order.shown.picture.clone();
+    if let Some(legend) = &mut picture.legend {
+        legend.range = Some(order.range);
+    }
+    // Labels and pulls are drawn by the interface, sharper than in the picture.
+    picture.pulls.clear();
+    picture.bodies.iter_mut().for_each(|body| body.label.clear());
+    draw_scene(&picture, &order.view, order.background, order.size).ok()
 }

@@ -1,46 +1,16 @@
-//! The simulation on a thread of its own: the interface sends what is asked and takes the last picture; neither waits.
+//! The simulation on a thread of its own: the interface never waits for it.
 
+use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
 use crate::shown::Shown;
-use opruga::io::Files;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long frames are computed before a new picture is shown.
 const BUDGET: Duration = Duration::from_millis(14);
 /// How long the thread sleeps while time passes and no frame is due.
 const NAP: Duration = Duration::from_millis(3);
-
-/// The scene as it can be run again from its start: its text, the files it names, and how many frames.
-#[derive(Clone, Debug)]
-pub struct Copied {
-    /// Its name.
-    pub name: String,
-    /// Its text with everything that was done.
-    pub text: String,
-    /// Where the files are that it names.
-    pub files: Files,
-    /// Frames up to the last one of this course of things.
-    pub frames: u64,
-}
-
-impl Copied {
-    /// The copy of a session.
-    pub fn of(session: &Session) -> Copied {
-        Copied {
-            name: session.name().to_string(),
-            text: session.saved(),
-            files: session.files().clone(),
-            frames: session.latest(),
-        }
-    }
-}
-
-enum Ask {
-    Do(Request),
-    Copy(Sender<Copied>),
-}
 
 /// The end of the thread that the interface holds. When it goes, the thread ends.
 pub struct Link {
@@ -84,16 +54,17 @@ impl Link {
     pub fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))
     }
+
+    /// The turn of the simulation before a picture of the window: the thread needs none.
+    pub fn turn(&self) {}
 }
 
-fn run(mut session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
-    let begin = Instant::now();
-    let clock = move || begin.elapsed();
-    let mut last = clock();
+fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
+    let mut course = Course::new(session);
     loop {
         // While nothing moves the thread sleeps until somebody asks for something.
-        let first = if session.is_moving() {
-            match asked.recv_timeout(if session.is_seeking() { Duration::ZERO } else { NAP }) {
+        let first = if course.session.is_moving() {
+            match asked.recv_timeout(if course.session.is_seeking() { Duration::ZERO } else { NAP }) {
                 Ok(ask) => Some(ask),
                 Err(RecvTimeoutError::Timeout) => None,
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -101,30 +72,14 @@ fn run(mut session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wa
         } else {
             match asked.recv() {
                 Ok(ask) => {
-                    last = clock();
+                    course.rest();
                     Some(ask)
                 }
                 Err(_) => return,
             }
         };
-        let mut news = first.is_some();
-        for ask in first.into_iter().chain(asked.try_iter()) {
-            match ask {
-                Ask::Do(request) => session.handle(request),
-                Ask::Copy(reply) => {
-                    let _ = reply.send(Copied::of(&session));
-                }
-            }
-        }
-        let now = clock();
-        let before = session.frames();
-        let was_seeking = session.is_seeking();
-        session.tick(now.saturating_sub(last), BUDGET, &clock);
-        last = now;
-        news |= session.frames() != before || was_seeking;
-        if news {
-            let shown = Arc::new(session.shown());
-            *slot.lock().unwrap_or_else(PoisonError::into_inner) = shown;
+        if let Some(shown) = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET) {
+            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(shown);
             wake();
         }
     }

@@ -1,0 +1,92 @@
+//! The simulation beside the interface, which sends what is asked and takes the last picture: on a thread of its own, or in
+//! a browser in the time that a picture of the window leaves.
+
+pub mod sliced;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod threaded;
+
+#[cfg(target_arch = "wasm32")]
+pub use sliced::Link;
+#[cfg(not(target_arch = "wasm32"))]
+pub use threaded::Link;
+
+use crate::session::{Request, Session};
+use crate::shown::Shown;
+use opruga::io::Files;
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+use web_time::Instant;
+
+/// The scene as it can be run again from its start: its text, the files it names, and how many frames.
+#[derive(Clone, Debug)]
+pub struct Copied {
+    /// Its name.
+    pub name: String,
+    /// Its text with everything that was done.
+    pub text: String,
+    /// Where the files are that it names.
+    pub files: Files,
+    /// Frames up to the last one of this course of things.
+    pub frames: u64,
+}
+
+impl Copied {
+    /// The copy of a session.
+    pub fn of(session: &Session) -> Copied {
+        Copied {
+            name: session.name().to_string(),
+            text: session.saved(),
+            files: session.files().clone(),
+            frames: session.latest(),
+        }
+    }
+}
+
+/// What the interface asks for.
+enum Ask {
+    Do(Request),
+    Copy(Sender<Copied>),
+}
+
+/// A session and the clock that it follows.
+struct Course {
+    session: Session,
+    begin: Instant,
+    /// When time was last let pass.
+    last: Duration,
+}
+
+impl Course {
+    fn new(session: Session) -> Course {
+        Course { session, begin: Instant::now(), last: Duration::ZERO }
+    }
+
+    /// Forgets the time that has passed: nothing moved in it.
+    fn rest(&mut self) {
+        self.last = self.begin.elapsed();
+    }
+
+    /// Does what is asked, and lets the time pass that has passed on the clock since the last turn; the picture, if there
+    /// is a new one.
+    fn turn(&mut self, asks: impl IntoIterator<Item = Ask>, budget: Duration) -> Option<Shown> {
+        let mut news = false;
+        for ask in asks {
+            news = true;
+            match ask {
+                Ask::Do(request) => self.session.handle(request),
+                Ask::Copy(reply) => {
+                    // Who asked may be gone.
+                    let _ = reply.send(Copied::of(&self.session));
+                }
+            }
+        }
+        let begin = self.begin;
+        let clock = move || begin.elapsed();
+        let now = clock();
+        let (before, was_seeking) = (self.session.frames(), self.session.is_seeking());
+        self.session.tick(now.saturating_sub(self.last), budget, &clock);
+        self.last = now;
+        news |= self.session.frames() != before || was_seeking;
+        news.then(|| self.session.shown())
+    }
+}
