@@ -26,5 +26,3 @@ pub mod work;
 mod browser;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod window;

@@ -1,13 +1,65 @@
-//! The program `opruga-studio [SCENE]`: the window of Opruga. Compiled for a browser it is what the page
-//! `web/index.html` loads.
+//! The program `opruga-studio [SCENE]`: the window of Opruga.
 
-#[cfg(not(target_arch = "wasm32"))]
-fn main() -> std::process::ExitCode {
-    opruga_studio::window::main()
+use opruga::Options;
+use opruga::io::{Files, scene};
+use opruga_studio::app::{FIRST_SCENE, Studio};
+use opruga_studio::session::{Request, Session};
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let wanted = arguments.next().unwrap_or_else(|| FIRST_SCENE.into());
+    if wanted == "--help" || wanted == "-h" || arguments.next().is_some() {
+        println!("opruga-studio [SCENE]\n\nSCENE is a scene file, or the name of a scene that comes with the program.");
+        return ExitCode::SUCCESS;
+    }
+    let session = match open(&wanted) {
+        Ok(session) => session,
+        Err(errors) => {
+            eprintln!("{errors}");
+            return ExitCode::from(2);
+        }
+    };
+    let viewport = eframe::egui::ViewportBuilder::default()
+        .with_title("Opruga Studio")
+        .with_app_id("opruga-studio")
+        .with_inner_size([1280.0, 720.0])
+        .with_min_inner_size([360.0, 320.0]);
+    let options = eframe::NativeOptions { viewport, ..Default::default() };
+    let outcome = eframe::run_native(
+        "Opruga Studio",
+        options,
+        Box::new(move |creation| {
+            let studio = Studio::new(session, &creation.egui_ctx)?;
+            studio.ask(Request::Play(true));
+            Ok(Box::new(studio))
+        }),
+    );
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error[studio.no_window]: no window can be opened: {error}");
+            eprintln!("  = hint: `opruga run {wanted}` runs without a window and writes pictures");
+            ExitCode::from(5)
+        }
+    }
 }
 
-#[cfg(target_arch = "wasm32")]
-fn main() {
-    // The page calls `open` of `opruga_studio::page` with the canvas on which the studio shall be.
-    opruga_studio::page::ready();
+/// Opens a scene file, or a scene that comes with the program.
+fn open(wanted: &str) -> Result<Session, String> {
+    let path = Path::new(wanted);
+    let options = Options { threads: threads(), ..Options::default() };
+    if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
+        return Session::open(wanted, text, opruga::scenes::files(), options);
+    }
+    let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| format!("{wanted}: {error}"))?;
+    let text = String::from_utf8(bytes).map_err(|_| format!("{wanted} is no text in UTF-8"))?;
+    let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+    Session::open(&name, &text, Files::beside(path), options)
+}
+
+/// One processor is for the interface.
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8))
 }

@@ -10,7 +10,7 @@ use crate::{browser, shown::Severity};
 use eframe::{WebOptions, WebRunner};
 use egui::accesskit::Node;
 use egui::{Context, FullOutput};
-use opruga::io::{Files, scene};
+use opruga::io::scene;
 use opruga::{Options, WorldError};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -45,9 +45,6 @@ impl egui::Plugin for Places {
         }
     }
 }
-
-/// What is left to do when the program is loaded: nothing, until the page calls [`open`].
-pub fn ready() {}
 
 /// Opens the studio on a canvas: the scene of the address, or the first one where there is none or it is refused.
 ///
@@ -183,9 +180,9 @@ pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     Ok(format!("{:016x}", engine.hash()))
 }
 
-/// A file of the browser as a scene: see [`crate::dropping`].
+/// What a file of the browser asks for: see [`crate::dropping`].
 pub(crate) fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, String> {
-    let bytes: Arc<[u8]> = bytes.into();
-    let files = || opruga::scenes::files().with([(file.to_string(), Arc::clone(&bytes))]);
-    crate::dropping::request(file, || Ok(bytes.to_vec()), || -> Files { files() })
+    let held: Arc<[u8]> = bytes.as_slice().into();
+    let files = || opruga::scenes::files().with([(file.to_string(), held)]);
+    crate::dropping::request(file, || Ok(bytes), files)
 }

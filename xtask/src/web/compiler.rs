@@ -22,13 +22,23 @@ pub(super) fn compile(root: &Path) -> Result<PathBuf, String> {
     } else {
         return Err(format!("there is no compiler for {TARGET}: {HINT}"));
     };
-    cargo.args(["build", "--locked", "--package", "opruga-studio", "--bin", "opruga-studio", "--profile", "web"]);
+    cargo.args([
+        "rustc",
+        "--locked",
+        "--package",
+        "opruga-studio",
+        "--lib",
+        "--crate-type",
+        "cdylib",
+        "--profile",
+        "web",
+    ]);
     cargo.args(["--target", TARGET]).arg("--target-dir").arg(&target).current_dir(root);
     let status = cargo.status().map_err(|e| format!("cargo build: {e}"))?;
     if !status.success() {
         return Err(format!("the studio was not compiled for {TARGET}"));
     }
-    Ok(target.join(TARGET).join("web").join("opruga-studio.wasm"))
+    Ok(target.join(TARGET).join("web").join("opruga_studio.wasm"))
 }
 
 fn rustup_has_target() -> bool {

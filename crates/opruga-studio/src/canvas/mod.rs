@@ -216,8 +216,8 @@ impl Canvas {
     /// Wheel, pinch, and dragging of the view.
     fn navigate(&mut self, ui: &Ui, response: &egui::Response, shown: &Shown, rect: Rect) {
         let Some(at) = response.hover_pos() else { return };
-        let (scroll, pinch, touch) =
-            ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch().map(|t| t.translation_delta)));
+        let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
+        let at = touch.map_or(at, |touch| touch.center_pos);
         let factor = f64::from((scroll * 0.004).exp() * pinch);
         if factor != 1.0 {
             self.fitted_size = None;
@@ -227,8 +227,8 @@ impl Canvas {
                 self.flat.zoom(factor, rect, at, shown.picture.y_down)
             }
         }
-        if let Some(delta) = touch {
-            self.pan(shown, rect, delta);
+        if let Some(touch) = touch {
+            self.pan(shown, rect, touch.translation_delta);
         }
     }
 
@@ -260,6 +260,13 @@ impl Canvas {
             (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
         });
         let Some(at) = at else { return };
+        // Two fingers move the view: what the first of them took hold of is let go.
+        if ui.input(|i| i.multi_touch().is_some()) {
+            if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
+                asks.push(Request::Release);
+            }
+            return;
+        }
         if self.doing == Doing::Nothing
             && let Some(button) = pressed
             && response.contains_pointer()
