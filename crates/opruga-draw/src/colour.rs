@@ -6,6 +6,10 @@ pub enum ColourMap {
     /// From dark violet to yellow, evenly growing in lightness: for quantities from low to high.
     #[default]
     Viridis,
+    /// From dark blue to yellow, the same for eyes that do not tell red from green.
+    Cividis,
+    /// From dark to light grey, for eyes that see no colours, and for print.
+    Grey,
     /// From blue through a light grey to red: for quantities around a middle value.
     Diverging,
 }
@@ -30,6 +34,23 @@ const VIRIDIS: [[u8; 3]; 17] = [
     [213, 226, 26],
     [253, 231, 37],
 ];
+
+/// The stops of the cividis map of matplotlib (CC0).
+const CIVIDIS: [[u8; 3]; 10] = [
+    [0, 32, 77],
+    [0, 51, 111],
+    [57, 72, 107],
+    [87, 92, 109],
+    [112, 113, 115],
+    [138, 135, 121],
+    [166, 157, 117],
+    [196, 181, 108],
+    [228, 207, 91],
+    [255, 234, 70],
+];
+
+/// The ends of a map without colours.
+const GREY: [[u8; 3]; 2] = [[28, 30, 34], [244, 245, 247]];
 
 /// The stops of a map from blue to red through a light grey.
 const DIVERGING: [[u8; 3]; 11] = [
@@ -76,10 +97,15 @@ pub(crate) const OBSTACLE_EDGE: [u8; 3] = [116, 122, 132];
 pub(crate) const RUBBER: [u8; 3] = [196, 40, 90];
 
 impl ColourMap {
+    /// All of them, in the order of menus.
+    pub const ALL: [ColourMap; 4] = [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey, ColourMap::Diverging];
+
     /// The colour at a place from 0 (low) to 1 (high); values outside take the nearest end.
     pub fn colour(self, place: f64) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             ColourMap::Viridis => &VIRIDIS,
+            ColourMap::Cividis => &CIVIDIS,
+            ColourMap::Grey => &GREY,
             ColourMap::Diverging => &DIVERGING,
         };
         if place.is_nan() {
@@ -117,11 +143,13 @@ mod tests {
     }
 
     #[test]
-    fn viridis_grows_in_lightness() {
-        let light = |place: f64| {
-            let [red, green, blue] = ColourMap::Viridis.colour(place).map(f64::from);
-            0.2126 * red + 0.7152 * green + 0.0722 * blue
-        };
-        assert!((0..50).all(|step| light(step as f64 / 50.0) < light((step + 1) as f64 / 50.0)));
+    fn maps_from_low_to_high_grow_in_lightness() {
+        for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey] {
+            let light = |place: f64| {
+                let [red, green, blue] = map.colour(place).map(f64::from);
+                0.2126 * red + 0.7152 * green + 0.0722 * blue
+            };
+            assert!((0..50).all(|step| light(step as f64 / 50.0) < light((step + 1) as f64 / 50.0)), "{map:?}");
+        }
     }
 }

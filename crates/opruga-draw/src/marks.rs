@@ -22,6 +22,7 @@ pub(crate) fn arrow_colour(kind: ArrowKind) -> [u8; 3] {
         ArrowKind::Contact => OKABE_ITO[1],
         ArrowKind::Pull => RUBBER,
         ArrowKind::Velocity => [128, 72, 160],
+        ArrowKind::Normal => [108, 114, 124],
     }
 }
 
@@ -35,12 +36,14 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
         ArrowKind::Contact => "contact",
         ArrowKind::Pull => "pull",
         ArrowKind::Velocity => "velocity",
+        ArrowKind::Normal => "normal",
     }
 }
 
 /// The unit of a kind of arrow, where lengths have a unit of their own.
 pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     match (kind, length) {
+        (ArrowKind::Normal, _) => String::new(),
         (ArrowKind::Pressure, "m") => "Pa".into(),
         (ArrowKind::Velocity, length) => format!("{length}/s"),
         (_, "m") => "N".into(),

@@ -171,6 +171,8 @@ pub enum ArrowKind {
     Pull,
     /// A velocity.
     Velocity,
+    /// A unit normal of a surface.
+    Normal,
 }
 
 /// One arrow.

@@ -2,6 +2,7 @@
 
 use crate::canvas::{Canvas, Tool};
 use crate::hand::{Arrived, Hand};
+use crate::pair::Difference;
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
 use crate::panels::plots::Plots;
@@ -16,6 +17,9 @@ use std::sync::Arc;
 
 /// The scene that comes first.
 pub const FIRST_SCENE: &str = "ball";
+
+/// The width up to which the properties are in a drawer [points]: a phone held upright.
+const NARROW: f32 = 700.0;
 
 /// How long it stays on the screen that something was done [s].
 const TOLD_FOR: f64 = 6.0;
@@ -34,6 +38,12 @@ pub struct Studio {
     pub language: Language,
     show: Show,
     plots_open: bool,
+    /// Whether the properties are open in a window that is too narrow to show them always.
+    drawer_open: bool,
+    /// Whether the properties are those of the right side alone.
+    right_only: bool,
+    /// A difference of the right side that waits until the hand lets go: both sides are computed anew for it.
+    difference: Option<Request>,
     help_open: bool,
     /// The message that was closed.
     closed: u64,
@@ -63,6 +73,9 @@ impl Studio {
             language: Language::default(),
             show: Show::default(),
             plots_open: false,
+            drawer_open: false,
+            right_only: false,
+            difference: None,
             help_open: false,
             closed: 0,
             told: (String::new(), 0.0),
@@ -111,28 +124,34 @@ impl Studio {
         self.dropped(ui, &mut asks);
         let words = self.language;
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
+        let narrow = ui.available_width() <= NARROW;
         Panel::top("tools").frame(bar).show(ui, |ui| {
-            let chosen = bars::tools(ui, &shown, words, self.keeping.is_working(), &mut asks);
+            let chosen = bars::tools(ui, &shown, words, narrow, self.keeping.is_working(), &mut asks);
             self.choose(ui, chosen);
-        });
-        Panel::bottom("time").frame(bar).show(ui, |ui| {
-            bars::time(ui, &shown, words, &mut asks);
             bars::status(ui, &shown, words, self.rate);
         });
+        Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));
         let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));
-        let wide = ui.available_width() > 700.0;
-        if wide {
+        if !narrow {
             Panel::right("properties").frame(side).resizable(false).exact_size(304.0).show(ui, |ui| {
-                self.properties.show(ui, &shown, words, &mut self.canvas.selected, &mut asks);
+                self.properties(ui, &shown, &mut asks);
+            });
+        } else if self.drawer_open {
+            let tall = (0.45 * ui.available_height()).max(60.0);
+            Panel::bottom("drawer").frame(side).resizable(false).exact_size(tall).show(ui, |ui| {
+                self.properties(ui, &shown, &mut asks);
             });
         }
         if self.plots_open {
-            Panel::bottom("plots")
-                .frame(side)
-                .resizable(true)
-                .default_size(210.0)
-                .size_range(200.0..=420.0)
-                .show(ui, |ui| self.plots.show(ui, &shown, words, self.canvas.selected.as_deref()));
+            Panel::bottom("plots").frame(side).resizable(true).default_size(210.0).size_range(200.0..=420.0).show(
+                ui,
+                |ui| {
+                    // On a narrow window curves keep their width and are pushed along.
+                    egui::ScrollArea::horizontal().show(ui, |ui| {
+                        self.plots.show(ui, &shown, words, self.canvas.selected.as_deref());
+                    });
+                },
+            );
         }
         self.plots.remember(&shown, self.canvas.selected.as_deref());
         egui::CentralPanel::no_frame().show(ui, |ui| {
@@ -156,12 +175,47 @@ impl Studio {
         }
     }
 
+    /// The panel of properties; side by side, those of both sides or of the right one.
+    fn properties(&mut self, ui: &mut Ui, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
+        let words = self.language;
+        let Some(beside) = &shown.beside else {
+            self.right_only = false;
+            self.properties.show(ui, shown, words, &mut self.canvas.selected, asks);
+            return;
+        };
+        ui.horizontal(|ui| {
+            for (right, name, about) in [
+                (false, words.both_sides(), words.both_sides_hint()),
+                (true, words.right_only(), words.right_only_hint()),
+            ] {
+                ui.selectable_value(&mut self.right_only, right, name).on_hover_text(about);
+            }
+        });
+        if !self.right_only {
+            self.properties.show(ui, shown, words, &mut self.canvas.selected, asks);
+            return;
+        }
+        let mut wanted = Vec::new();
+        self.properties.show(ui, &beside.right, words, &mut self.canvas.selected, &mut wanted);
+        for ask in wanted {
+            match difference(ask, &beside.right) {
+                Ok(difference) => self.difference = Some(Request::Differ(difference)),
+                // Where bodies are and how many there are is common to both sides.
+                Err(ask) => asks.push(ask),
+            }
+        }
+        if !ui.input(|i| i.pointer.any_down()) {
+            asks.extend(self.difference.take());
+        }
+    }
+
     fn choose(&mut self, ui: &Ui, chosen: bars::Chosen) {
         use bars::Chosen;
         match chosen {
             Chosen::Nothing => {}
             Chosen::Gallery => self.gallery.open = !self.gallery.open,
             Chosen::Plots => self.plots_open = !self.plots_open,
+            Chosen::Properties => self.drawer_open = !self.drawer_open,
             Chosen::Help => self.help_open = !self.help_open,
             Chosen::Language => {
                 self.language = match self.language {
@@ -201,6 +255,12 @@ impl Studio {
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
                         }
+                        ui.add_enabled_ui(self.canvas.selected.is_some(), |ui| {
+                            let about = format!("{}  (C)", words.focus_hint());
+                            if ui.button(words.focus()).on_hover_text(about).clicked() {
+                                self.canvas.focus(shown);
+                            }
+                        });
                         bars::view_menu(ui, words, self.show, asks);
                     });
                 });
@@ -268,6 +328,16 @@ impl Studio {
                                     self.closed = message.map_or(self.closed, |m| m.number);
                                 }
                             }
+                            // What made it fail may have been the last change.
+                            if offer == Some(Offer::HalveStep)
+                                && shown.undo.is_some()
+                                && ui
+                                    .button(format!("{} ({})", words.undo(), shown.undo.as_deref().unwrap_or_default()))
+                                    .clicked()
+                            {
+                                asks.push(Request::Undo);
+                                self.closed = message.map_or(self.closed, |m| m.number);
+                            }
                             if ui.button(words.close()).clicked() {
                                 if own.is_some() {
                                     self.canvas.refused = None;
@@ -298,17 +368,21 @@ impl Studio {
             .collapsible(false)
             .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ui.ctx(), |ui| {
-                ui.set_min_width(480.0);
+                ui.set_max_width((ui.ctx().content_rect().width() - 40.0).clamp(120.0, 480.0));
                 ui.label(RichText::new(words.shortcuts()).size(14.0).line_height(Some(22.0)));
             });
         self.help_open = open;
     }
 
     fn shortcuts(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
-        if ui.ctx().memory(|m| m.focused().is_some()) {
+        if ui.ctx().text_edit_focused() {
             return;
         }
-        let pressed = |modifiers: Modifiers, key: Key| ui.input_mut(|i| i.consume_key(modifiers, key));
+        // A slider or a button that has the focus takes keys itself, but none with Ctrl.
+        let focused = ui.ctx().memory(|m| m.focused().is_some());
+        let pressed = |modifiers: Modifiers, key: Key| {
+            (modifiers.command || !focused) && ui.input_mut(|i| i.consume_key(modifiers, key))
+        };
         if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
             asks.push(Request::Redo);
         }
@@ -343,8 +417,8 @@ impl Studio {
             }
         }
         // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along.
-        if ui.input(|i| i.key_released(Key::Space) && !i.pointer.any_down()) && !std::mem::take(&mut self.canvas.panned)
-        {
+        let let_go = !focused && ui.input(|i| i.key_released(Key::Space) && !i.pointer.any_down());
+        if let_go && !std::mem::take(&mut self.canvas.panned) {
             asks.push(Request::Play(!shown.playing));
         }
         if pressed(Modifiers::NONE, Key::ArrowRight) {
@@ -361,6 +435,12 @@ impl Studio {
         }
         if pressed(Modifiers::NONE, Key::F) {
             self.canvas.fit();
+        }
+        if pressed(Modifiers::NONE, Key::C) {
+            self.canvas.focus(shown);
+        }
+        if pressed(Modifiers::NONE, Key::B) {
+            asks.push(Request::Compare(shown.beside.is_none()));
         }
         if pressed(Modifiers::NONE, Key::P) {
             self.plots_open = !self.plots_open;
@@ -382,6 +462,24 @@ impl Studio {
             }
         }
     }
+}
+
+/// What is asked of both sides, as a difference of the right one; or the same where it concerns both.
+fn difference(ask: Request, shown: &Shown) -> Result<Difference, Request> {
+    let name = |number: usize| shown.bodies.iter().find(|body| body.number == number).map(|body| body.name.clone());
+    Ok(match ask {
+        Request::Set(path, value) => Difference::Set(path, value),
+        Request::Integrator(None, values) => Difference::Integrator(None, values),
+        Request::Integrator(Some(body), values) => match name(body) {
+            Some(name) => Difference::Integrator(Some(name), values),
+            None => return Err(Request::Integrator(Some(body), values)),
+        },
+        Request::Models(body, models) => match name(body) {
+            Some(name) => Difference::Models(name, models),
+            None => return Err(Request::Models(body, models)),
+        },
+        other => return Err(other),
+    })
 }
 
 impl eframe::App for Studio {

@@ -3,6 +3,7 @@
 
 use opruga::blueprint::{Action, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
+use opruga::io::{Files, scene};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
 /// A scene's text with its comments, and where it came from.
@@ -23,6 +24,18 @@ impl Document {
     /// A sentence of the TOML parser.
     pub fn new(name: impl Into<String>, text: &str) -> Result<Document, String> {
         Ok(Document { name: name.into(), text: text.parse::<DocumentMut>().map_err(|e| e.to_string())? })
+    }
+
+    /// Takes a text that nobody has read yet.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, as one text.
+    pub fn unread(name: &str, text: &str, files: &Files) -> Result<Document, String> {
+        // The reader of scenes knows more of what can be wrong than the parser of documents.
+        let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
+        let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &reading);
+        read.map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
+        Document::new(name, text)
     }
 
     /// The text, fit for `opruga run`.
@@ -248,6 +261,11 @@ impl Document {
                 let table = number.and_then(|number| tables?.get_mut(number));
                 table.is_some_and(|table| put(table, field))
             }
+            ["body", name, "integrator", field] => {
+                let Some(body) = self.own_body(name) else { return false };
+                let table = body.get_mut("integrator").and_then(Item::as_inline_table_mut);
+                table.is_some_and(|table| put(table, field))
+            }
             ["body", name, "models", model, field] => {
                 let Some(body) = self.own_body(name) else { return false };
                 let models = body.get_mut("models").and_then(Item::as_array_mut);
@@ -329,6 +347,7 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
         Action::Drag { .. } => "drag",
         Action::Push { .. } => "push",
         Action::Pin { .. } => "pin",
+        Action::Free { .. } => "free",
         Action::Set { .. } => "set",
         Action::Remove { .. } => "remove",
         Action::Change { .. } => "change",
@@ -365,7 +384,9 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
             table["select"] = toml_edit::value(select(nodes)?);
             table["force"] = toml_edit::value(numbers(force));
         }
-        Action::Pin { select: nodes, .. } => table["select"] = toml_edit::value(select(nodes)?),
+        Action::Pin { select: nodes, .. } | Action::Free { select: nodes, .. } => {
+            table["select"] = toml_edit::value(select(nodes)?)
+        }
         Action::Set { path, value } => {
             table["path"] = toml_edit::value(path.as_str());
             table["value"] = Item::Value(toml(value));

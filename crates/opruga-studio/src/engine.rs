@@ -4,7 +4,7 @@ use crate::document::{FOR_EVER, command_table};
 use crate::shown::{BodyShown, EnergyShown, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
-use opruga::draw::{ArrowKind, ArrowPicture};
+use opruga::draw::{ArrowKind, ArrowPicture, Facets};
 use opruga::pictures::Scenery;
 use opruga::{Options, World, WorldError};
 use toml_edit::Table;
@@ -33,8 +33,8 @@ pub trait Engine: Send {
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
     /// The hash of the state.
     fn hash(&self) -> u64;
-    /// Pulls the nearest node of a body toward a pointer that is led.
-    fn pull(&mut self, body: usize, pointer: [f64; 3]) -> Result<Given, WorldError>;
+    /// Pulls a node of a body toward a pointer that is led.
+    fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError>;
     /// Leads the pointer of a pull two frames ahead; the row of its path.
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError>;
     /// Ends a command now; the time of its end [s].
@@ -43,6 +43,8 @@ pub trait Engine: Send {
     fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError>;
     /// Pins a node.
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
+    /// Lets go of a node that is held.
+    fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
     /// Sets a parameter.
     fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError>;
     /// Takes a body away.
@@ -60,6 +62,8 @@ pub trait Engine: Send {
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
     /// The position of a node [m].
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]>;
+    /// The positions of all nodes of the bodies that are there [m].
+    fn positions(&self) -> Vec<[f64; 3]>;
     /// The name of a body.
     fn name(&self, body: usize) -> Option<String>;
     /// The middle of a body's mesh as its shape was turned and scaled, and where that is moved to [m].
@@ -70,6 +74,43 @@ pub trait Engine: Send {
     fn row(&mut self) -> Vec<(String, f64)>;
     /// What a film needs.
     fn moment(&mut self, show: &Show) -> opruga::draw::Picture;
+}
+
+/// Bodies up to which arrows are drawn: those of more could not be told apart.
+const MOST_WITH_ARROWS: usize = 64;
+
+/// The outward unit normals at the nodes of a surface: the mean of those of the facets around, by their size.
+fn normals(body: &opruga::draw::BodyPicture) -> Vec<[f64; 3]> {
+    let mut sum = vec![[0.0; 3]; body.positions.len()];
+    let at = |node: u32| body.positions[node as usize];
+    let between = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|d| b[d] - a[d]);
+    let mut add = |nodes: &[u32], normal: [f64; 3]| {
+        for node in nodes {
+            for d in 0..3 {
+                sum[*node as usize][d] += normal[d];
+            }
+        }
+    };
+    match &body.facets {
+        Facets::Edges(edges) => {
+            for edge in edges {
+                let [dx, dy, _] = between(at(edge[0]), at(edge[1]));
+                add(edge, [dy, -dx, 0.0]);
+            }
+        }
+        Facets::Triangles(triangles) => {
+            for triangle in triangles {
+                let [a, b] = [1, 2].map(|k| between(at(triangle[0]), at(triangle[k])));
+                let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+                add(triangle, cross);
+            }
+        }
+    }
+    for normal in &mut sum {
+        let size = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
+        *normal = if size > 0.0 { normal.map(|c| c / size) } else { [0.0; 3] };
+    }
+    sum
 }
 
 /// A world and what stays the same from picture to picture.
@@ -143,11 +184,12 @@ impl<const D: usize> Living<D> {
         }
         let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, show.quantity);
         let mut picture = self.scenery.picture(&moment);
+        if let Some(legend) = &mut picture.legend {
+            legend.map = show.map;
+        }
         if !show.springs {
             picture.bodies.iter_mut().for_each(|body| {
-                if D == 2 && !body.cells.is_empty()
-                    || !matches!(&body.facets, opruga::draw::Facets::Edges(e) if e.is_empty())
-                {
+                if D == 2 && !body.cells.is_empty() || !matches!(&body.facets, Facets::Edges(e) if e.is_empty()) {
                     body.segments.clear();
                 }
             });
@@ -155,20 +197,41 @@ impl<const D: usize> Living<D> {
         if show.vertices {
             picture.bodies.iter_mut().for_each(|body| body.nodes_drawn = body.positions.len() <= 20_000);
         }
-        if show.velocities {
-            let living: Vec<usize> = self.world.bodies().collect();
-            for body in living.into_iter().take(64) {
-                let nodes = self.world.node_count(body) as u32;
-                for node in (0..nodes).step_by((nodes / 40).max(1) as usize) {
-                    picture.arrows.push(ArrowPicture {
-                        kind: ArrowKind::Velocity,
-                        from: three(self.world.position(body, node)),
-                        vector: three(self.world.velocity(body, node)),
-                    });
-                }
-            }
-        }
+        self.add_arrows(&mut picture, show);
         picture
+    }
+
+    /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
+    fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
+        let living: Vec<usize> = self.world.bodies().collect();
+        if living.len() > MOST_WITH_ARROWS {
+            return;
+        }
+        let mut arrows = Vec::new();
+        for (place, &body) in living.iter().enumerate() {
+            let nodes = self.world.node_count(body) as u32;
+            if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
+                seen.pinned = self.world.held_nodes(body);
+            }
+            let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
+            let at = |node: u32| three(self.world.position(body, node));
+            let some = (0..nodes).step_by((nodes / 40).max(1) as usize);
+            if show.velocities {
+                arrows.extend(
+                    some.clone().map(|node| (ArrowKind::Velocity, at(node), three(self.world.velocity(body, node)))),
+                );
+            }
+            if show.normals
+                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes as usize)
+            {
+                let normals = normals(seen);
+                arrows.extend(some.map(|node| (ArrowKind::Normal, at(node), normals[node as usize])));
+            }
+            let pressed = forces.into_iter().enumerate().filter(|(_, force)| force.iter().any(|f| *f != 0.0));
+            arrows.extend(pressed.map(|(node, force)| (ArrowKind::Contact, at(node as u32), three(force))));
+        }
+        let arrows = arrows.into_iter().filter(|(_, _, vector)| vector.iter().all(|c| c.is_finite()));
+        picture.arrows.extend(arrows.map(|(kind, from, vector)| ArrowPicture { kind, from, vector }));
     }
 }
 
@@ -195,12 +258,11 @@ impl<const D: usize> Engine for Living<D> {
         self.world.state_hash()
     }
 
-    fn pull(&mut self, body: usize, pointer: [f64; 3]) -> Result<Given, WorldError> {
+    fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError> {
         let name = self.body_name(body)?;
         let now = self.world.frames();
         let path = vec![self.row_of(now, pointer), self.row_of(now + 1, pointer)];
-        let node = self.nearest(body, pointer);
-        let action = Action::Drag { body, node, facet: false, stiffness: None, path, largest_force: None };
+        let action = Action::Drag { body, node: Some(node), facet: false, stiffness: None, path, largest_force: None };
         self.give(FOR_EVER, action, &name)
     }
 
@@ -230,6 +292,11 @@ impl<const D: usize> Engine for Living<D> {
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
         let name = self.body_name(body)?;
         self.give(FOR_EVER, Action::Pin { body, select: Selector::Nodes(vec![node]), axes: [true; D] }, &name)
+    }
+
+    fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
+        let name = self.body_name(body)?;
+        self.give(0.0, Action::Free { body, select: Selector::Nodes(vec![node]) }, &name)
     }
 
     fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError> {
@@ -274,6 +341,11 @@ impl<const D: usize> Engine for Living<D> {
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
         self.world.handle(body)?;
         ((node as usize) < self.world.node_count(body)).then(|| three(self.world.position(body, node)))
+    }
+
+    fn positions(&self) -> Vec<[f64; 3]> {
+        let nodes = |body| (0..self.world.node_count(body) as u32).map(move |node| (body, node));
+        self.world.bodies().flat_map(nodes).map(|(body, node)| three(self.world.position(body, node))).collect()
     }
 
     fn name(&self, body: usize) -> Option<String> {

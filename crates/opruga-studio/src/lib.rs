@@ -8,6 +8,7 @@ pub mod document;
 pub mod engine;
 pub mod keyframes;
 pub mod pacing;
+pub mod pair;
 pub mod session;
 pub mod shown;
 
@@ -15,6 +16,8 @@ pub mod app;
 pub mod canvas;
 pub mod dropping;
 mod hand;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod measure;
 pub mod panels;
 pub mod runner;
 pub mod share;

@@ -3,17 +3,25 @@
 use opruga::Options;
 use opruga::io::{Files, scene};
 use opruga_studio::app::{FIRST_SCENE, Studio};
+use opruga_studio::measure::{self, Measured};
 use opruga_studio::session::{Request, Session};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1);
-    let wanted = arguments.next().unwrap_or_else(|| FIRST_SCENE.into());
-    if wanted == "--help" || wanted == "-h" || arguments.next().is_some() {
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    // Not for every day: how long frames of the window take.
+    let measured = arguments.iter().position(|word| word == "--measure-frames").map(|place| {
+        let count = arguments.get(place + 1).and_then(|word| word.parse::<usize>().ok());
+        arguments.drain(place..(place + 2).min(arguments.len()));
+        count.unwrap_or(600)
+    });
+    if arguments.len() > 1 || arguments.iter().any(|word| word.starts_with('-')) {
         println!("opruga-studio [SCENE]\n\nSCENE is a scene file, or the name of a scene that comes with the program.");
         return ExitCode::SUCCESS;
     }
+    let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
     let session = match open(&wanted) {
         Ok(session) => session,
         Err(errors) => {
@@ -27,17 +35,31 @@ fn main() -> ExitCode {
         .with_inner_size([1280.0, 720.0])
         .with_min_inner_size([360.0, 320.0]);
     let options = eframe::NativeOptions { viewport, ..Default::default() };
+    let report = Arc::new(Mutex::new(String::new()));
+    let told = Arc::clone(&report);
+    if measured.is_some() {
+        measure::listen();
+    }
     let outcome = eframe::run_native(
         "Opruga Studio",
         options,
         Box::new(move |creation| {
             let studio = Studio::new(session, &creation.egui_ctx)?;
+            if let Some(count) = measured {
+                return Ok(Box::new(Measured::new(studio, count, &report)) as Box<dyn eframe::App>);
+            }
             studio.ask(Request::Play(true));
             Ok(Box::new(studio))
         }),
     );
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => {
+            let report = told.lock().unwrap_or_else(PoisonError::into_inner);
+            if !report.is_empty() {
+                println!("{report}");
+            }
+            ExitCode::SUCCESS
+        }
         Err(error) => {
             eprintln!("error[studio.no_window]: no window can be opened: {error}");
             eprintln!("  = hint: `opruga run {wanted}` runs without a window and writes pictures");

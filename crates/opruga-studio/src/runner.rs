@@ -10,6 +10,7 @@ pub use sliced::Link;
 #[cfg(not(target_arch = "wasm32"))]
 pub use threaded::Link;
 
+use crate::pair::Difference;
 use crate::session::{Request, Session};
 use crate::shown::Shown;
 use opruga::io::Files;
@@ -26,6 +27,8 @@ pub struct Copied {
     pub text: String,
     /// Where the files are that it names.
     pub files: Files,
+    /// In what the scene on the right differs, where there is one.
+    pub differences: Option<Vec<Difference>>,
     /// Frames up to the last one of this course of things.
     pub frames: u64,
 }
@@ -37,6 +40,7 @@ impl Copied {
             name: session.name().to_string(),
             text: session.saved(),
             files: session.files().clone(),
+            differences: session.differences().map(<[_]>::to_vec),
             frames: session.latest(),
         }
     }

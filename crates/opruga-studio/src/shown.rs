@@ -2,8 +2,9 @@
 
 use opruga::Warning;
 use opruga::core::spec::Values;
-use opruga::draw::Picture;
+use opruga::draw::{ColourMap, Picture};
 use opruga::pictures::Quantity;
+use std::sync::Arc;
 
 /// What a person wants to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,11 +19,26 @@ pub struct Show {
     pub vertices: bool,
     /// Arrows of velocity.
     pub velocities: bool,
+    /// Unit normals of the surface.
+    pub normals: bool,
+    /// Forces of obstacles.
+    pub contacts: bool,
+    /// The colours of numbers.
+    pub map: ColourMap,
 }
 
 impl Default for Show {
     fn default() -> Show {
-        Show { quantity: Quantity::Strain, arrows: false, springs: true, vertices: false, velocities: false }
+        Show {
+            quantity: Quantity::Strain,
+            arrows: false,
+            springs: true,
+            vertices: false,
+            velocities: false,
+            normals: false,
+            contacts: false,
+            map: ColourMap::default(),
+        }
     }
 }
 
@@ -62,6 +78,29 @@ pub struct BodyShown {
     pub shape: Option<Values>,
     /// What its models say: volume, pressure.
     pub readings: Vec<(&'static str, f64)>,
+}
+
+impl EnergyShown {
+    /// What is stored and in motion [J].
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.gas + self.gravity
+    }
+}
+
+/// The same scene under another configuration, in lock step.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// What there is to see of it.
+    pub right: Arc<Shown>,
+    /// The root of the mean square of the distances between the nodes of both, and the largest one [m]; none where the
+    /// bodies differ or the right one has stopped.
+    pub distances: Option<[f64; 2]>,
+    /// What it has more of energy than the left one [J].
+    pub energy: Option<f64>,
+    /// In what it differs.
+    pub words: Vec<String>,
+    /// Why it does not go on.
+    pub stopped: Option<String>,
 }
 
 /// One obstacle.
@@ -170,6 +209,10 @@ pub struct Shown {
     pub message: Option<Message>,
     /// How many scenes were opened or built anew: a view is fitted once for each.
     pub opened: u64,
+    /// The same scene under another configuration.
+    pub beside: Option<Beside>,
+    /// Bodies that were set down anew under another name: old and new.
+    pub renamed: Vec<(String, String)>,
     /// How many commands of a person the scene holds.
     pub recorded: usize,
     /// The last moment that can be gone back to without computing from the start [bytes kept].

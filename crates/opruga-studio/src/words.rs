@@ -69,7 +69,7 @@ words! {
     pin: "Pin", "Pribodi";
     pin_hint: "Press on a body to hold a point; on a held point to move it, double-click to free it", "Pritisni tijelo da se točka drži; pridržanu točku pomakni, dvostrukim klikom oslobodi";
     shift: "Move", "Pomakni";
-    shift_hint: "Drag a body elsewhere: it is set down there, at rest", "Odvuci tijelo drugamo: ondje se postavlja u mirovanju";
+    shift_hint: "Drag a body elsewhere, or turn and scale it by its handles: it is set down there, at rest", "Odvuci tijelo drugamo ili ga ručkama zakreni i povećaj: ondje se postavlja u mirovanju";
     draw: "Draw", "Crtaj";
     draw_hint: "Draw a closed outline: it becomes a body", "Nacrtaj zatvoreni obris: postaje tijelo";
     add: "Add", "Dodaj";
@@ -82,6 +82,33 @@ words! {
     springs: "Springs", "Opruge";
     vertices: "Vertices", "Vrhovi";
     velocities: "Velocities", "Brzine";
+    normals: "Normals", "Normale";
+    contacts: "Contact forces", "Sile dodira";
+    contacts_hint: "Of obstacles on the nodes in the coming step: normal force, friction, and the impulse of an impact over the step", "Prepreka na čvorove u idućem koraku: normalna sila, trenje i impuls sudara kroz trajanje koraka";
+    colour_map: "Colours", "Boje";
+    viridis: "Violet to yellow", "Ljubičasto do žuto";
+    cividis: "Blue to yellow, for red-green blindness", "Plavo do žuto, za daltoniste";
+    grey: "Grey, without colours", "Sivo, bez boja";
+    diverging: "Blue to red", "Plavo do crveno";
+    elastic_force_hint: "The force of springs, bending or finite elements on each node [N]", "Sila opruga, savijanja ili konačnih elemenata na svaki čvor [N]";
+    von_mises_hint: "Stress of finite elements [Pa]; springs have none: see the elastic force", "Naprezanje konačnih elemenata [Pa]; opruge ga nemaju: vidi elastičnu silu";
+    pressure_hint: "Of the gas in the whole body [Pa]; bodies without gas have none", "Plina u cijelom tijelu [Pa]; tijela bez plina ga nemaju";
+    compare: "Side by side", "Usporedi";
+    compare_hint: "The same scene twice, in lock step: on the right with another model, integrator or parameter", "Isti prizor dvaput, korak po korak: desno s drugim modelom, integratorom ili parametrom";
+    both_sides: "Both", "Obje strane";
+    both_sides_hint: "What is changed here is changed on both sides", "Promjene vrijede za obje strane";
+    right_only: "Right only", "Samo desno";
+    right_only_hint: "What is changed here is what the right side differs in, from the start on", "Promjene su razlike desne strane, od početka";
+    as_it_is: "as the scene is", "prizor kakav jest";
+    no_difference: "no difference yet: choose “Right only” and change something", "još bez razlike: odaberi „Samo desno” i promijeni nešto";
+    mean_distance: "mean distance", "srednja udaljenost";
+    largest_distance: "largest", "najveća";
+    distance_of_sides: "Distance of the sides [m]", "Udaljenost strana [m]";
+    energy_of_sides: "Energy, right − left [J]", "Energija, desno − lijevo [J]";
+    right_stopped: "The right side does not go on:", "Desna strana ne ide dalje:";
+    properties: "Properties", "Svojstva";
+    focus: "Focus", "Na tijelo";
+    focus_hint: "Show the selected body alone", "Prikaži samo odabrano tijelo";
     strain: "Strain", "Deformacija";
     elastic_force: "Elastic force", "Elastična sila";
     von_mises_stress: "Von Mises stress", "Naprezanje po von Misesu";
@@ -137,7 +164,23 @@ words! {
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";
     recorded: "recorded commands", "snimljene naredbe";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space  play or pause\n→  one frame      Home  reset\nCtrl Z, Ctrl Y  undo, redo\nCtrl S  save the scene\n1 2 3 4 5  pull, push, pin, move, draw\nDel  delete the body      Ctrl D  duplicate it\n[ ]  turn it      + −  scale it\nF  show everything      P  plots      G  scenes\nWheel  zoom      middle drag, Space drag  pan\nright drag  push (in space: turn the view where no body is)\nShift drag  pin      ?  this help", "Razmaknica  pokreni ili zaustavi\n→  jedna sličica      Home  na početak\nCtrl Z, Ctrl Y  poništi, ponovi\nCtrl S  spremi prizor\n1 2 3 4 5  vuci, guraj, pribodi, pomakni, crtaj\nDel  izbriši tijelo      Ctrl D  udvostruči ga\n[ ]  zakreni ga      + −  povećaj, smanji\nF  sve u kadar      P  grafovi      G  prizori\nKotačić  približi      srednja tipka ili razmaknica  pomakni pogled\ndesna tipka  guraj (u prostoru pokraj tijela: okreni pogled)\nShift  pribodi      ?  ova pomoć";
+    shortcuts: "Space  play or pause\n→  one frame      Home  reset\nCtrl Z, Ctrl Y  undo, redo\nCtrl S  save the scene\n1 2 3 4 5  pull, push, pin, move, draw\nDel  delete the body      Ctrl D  duplicate it\n[ ]  turn it      + −  scale it\nF  show everything      C  the selected body\nP  plots      G  scenes      B  side by side\nWheel  zoom      middle drag, Space drag  pan\nright drag  push (in space: turn the view where no body is)\nShift drag  pin      double click  free a pin\n?  this help", "Razmaknica  pokreni ili zaustavi\n→  jedna sličica      Home  na početak\nCtrl Z, Ctrl Y  poništi, ponovi\nCtrl S  spremi prizor\n1 2 3 4 5  vuci, guraj, pribodi, pomakni, crtaj\nDel  izbriši tijelo      Ctrl D  udvostruči ga\n[ ]  zakreni ga      + −  povećaj, smanji\nF  sve u kadar      C  odabrano tijelo\nP  grafovi      G  prizori      B  usporedi\nKotačić  približi      srednja tipka ili razmaknica  pomakni pogled\ndesna tipka  guraj (u prostoru pokraj tijela: okreni pogled)\nShift  pribodi      dvostruki klik  oslobodi\n?  ova pomoć";
+}
+
+impl Language {
+    /// The name of a quantity in the legend of a picture.
+    pub fn quantity(self, label: &str) -> &str {
+        match (self, label) {
+            (Language::English, label) => label,
+            (Language::Croatian, "strain") => "deformacija",
+            (Language::Croatian, "elastic force") => "elastična sila",
+            (Language::Croatian, "pressure") => "tlak",
+            (Language::Croatian, "speed") => "brzina",
+            (Language::Croatian, "von Mises stress") => "naprezanje (von Mises)",
+            (Language::Croatian, "volume over that at rest") => "obujam / početni",
+            (Language::Croatian, label) => label,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
+use opruga::draw::ArrowKind;
 use opruga::io::{Files, scene};
 use opruga::{Options, Registry, World, catalogue};
 use opruga_studio::session::{Edit, Grip, Placed, Request, Session};
@@ -281,6 +282,76 @@ fn a_body_turns_and_grows_about_its_middle() {
 }
 
 #[test]
+fn a_body_that_has_fallen_is_moved_turned_and_copied_from_where_it_is() {
+    let mut session = open("ball");
+    pass(&mut session, 30);
+    let middle = |session: &mut Session, place: usize| {
+        let positions = session.shown().picture.bodies[place].positions.clone();
+        [0, 1].map(|d| positions.iter().map(|p| p[d]).sum::<f64>() / positions.len() as f64)
+    };
+    let [x, y] = middle(&mut session, 0);
+    assert!(y < 1.5, "it has fallen: {y}");
+    session.handle(Request::Edit(Edit::Duplicate("ball".into())));
+    no_refusal(&mut session);
+    let [beside, level] = middle(&mut session, 1);
+    assert!(beside > x + 0.9 && (level - y).abs() < 1e-6, "{beside} {level}");
+    let placed = Placed { moved: [-1.0, 0.5, 0.0], turned: 0.3, scaled: 1.5 };
+    session.handle(Request::Edit(Edit::Place("ball".into(), placed)));
+    no_refusal(&mut session);
+    let [x2, y2] = middle(&mut session, 1);
+    assert!((x2 - x + 1.0).abs() < 1e-6 && (y2 - y - 0.5).abs() < 1e-6, "{x2} {y2}");
+    assert_eq!(session.shown().renamed, [("ball".to_string(), "ball-3".to_string())]);
+    pass(&mut session, 10);
+    assert_replays(&session);
+}
+
+#[test]
+fn pins_of_the_scene_can_be_freed_and_the_saved_scene_frees_them_too() {
+    let mut session = open("hanging-net");
+    pass(&mut session, 10);
+    let pinned = session.shown().picture.bodies[0].pinned.clone();
+    assert!(pinned.len() >= 2, "{pinned:?}");
+    let (number, node) = (session.shown().bodies[0].number, pinned[0]);
+    let place = session.shown().picture.bodies[0].positions[node as usize];
+    session.handle(Request::Unpin(number, node));
+    no_refusal(&mut session);
+    pass(&mut session, 30);
+    let shown = session.shown();
+    assert_eq!(shown.picture.bodies[0].pinned, pinned[1..]);
+    assert!(shown.picture.bodies[0].positions[node as usize][1] < place[1] - 0.05, "it falls");
+    assert_replays(&session);
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert_eq!(session.shown().picture.bodies[0].pinned, pinned);
+    assert_eq!(session.frames(), 10);
+}
+
+#[test]
+fn the_contact_forces_of_a_body_at_rest_carry_its_weight() {
+    let text = opruga::scenes::find("ball").expect("it");
+    let end = text.find("[[command]]").expect("its pull");
+    let mut session = Session::open("quiet", &text[..end], Files::default(), Options::default()).expect("it opens");
+    session.handle(Request::Show(Show { contacts: true, normals: true, ..Show::default() }));
+    assert!(session.shown().picture.arrows.iter().all(|a| a.kind != ArrowKind::Contact), "in the air there are none");
+    // It lies still after some seconds; what is left swings about its weight of 9.81 N.
+    pass(&mut session, 600);
+    let mut sum = [0.0; 2];
+    for _ in 0..60 {
+        pass(&mut session, 1);
+        let arrows = session.shown().picture.arrows;
+        let contacts = arrows.iter().filter(|arrow| arrow.kind == ArrowKind::Contact);
+        contacts.for_each(|arrow| (0..2).for_each(|d| sum[d] += arrow.vector[d] / 60.0));
+        // The normals of the ring point away from its middle.
+        let normals: Vec<_> = arrows.iter().filter(|arrow| arrow.kind == ArrowKind::Normal).collect();
+        let middle = [0, 1].map(|d| normals.iter().map(|n| n.from[d]).sum::<f64>() / normals.len() as f64);
+        let out =
+            |n: &&&opruga::draw::ArrowPicture| (0..2).map(|d| n.vector[d] * (n.from[d] - middle[d])).sum::<f64>() > 0.0;
+        assert_eq!(normals.iter().filter(out).count(), 36);
+    }
+    assert!((sum[1] - 9.81).abs() < 0.1 && sum[0].abs() < 0.05, "{sum:?}");
+}
+
+#[test]
 fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
     let mut session = open("ball");
     pass(&mut session, 12);
@@ -344,6 +415,8 @@ fn every_scene_of_the_program_opens_moves_and_can_be_seen_in_every_colour() {
                 arrows: true,
                 vertices: true,
                 velocities: true,
+                normals: true,
+                contacts: true,
                 ..Show::default()
             }));
             let shown = session.shown();
@@ -371,7 +444,7 @@ fn scene_picture_film_animation_and_table_are_kept() {
 }
 
 #[test]
-fn files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
+fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     use opruga_studio::dropping::take;
     let folder = std::env::temp_dir().join(format!("opruga-dropped-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");

@@ -6,129 +6,12 @@
 mod screen;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use opruga::Options;
-use opruga_studio::app::Studio;
-use opruga_studio::session::{Request, Session};
-use opruga_studio::shown::{Severity, Shown};
+use opruga_studio::session::Request;
+use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
-use screen::{Screen, Textures};
-use std::sync::Arc;
-use std::time::{Duration, Instant};
-
-struct Window {
-    harness: Harness<'static, Option<Studio>>,
-    textures: Textures,
-}
-
-impl Window {
-    fn open(scene: &str, size: [f32; 2]) -> Window {
-        let text = opruga::scenes::find(scene).expect("a scene of the program");
-        let session = Session::open(scene, text, opruga::scenes::files(), Options::default()).expect("it opens");
-        let textures = Textures::default();
-        let mut session = Some(session);
-        let show = move |ui: &mut egui::Ui, studio: &mut Option<Studio>| {
-            if let Some(session) = session.take() {
-                *studio = Some(Studio::new(session, ui.ctx()).expect("a thread"));
-            }
-            studio.as_mut().expect("a window").show(ui);
-        };
-        let harness = Harness::builder()
-            .with_size(Vec2::from(size))
-            .with_step_dt(1.0 / 60.0)
-            .renderer(textures.clone())
-            .build_ui_state(show, None);
-        let mut window = Window { harness, textures };
-        window.frames(3);
-        window
-    }
-
-    fn frames(&mut self, count: usize) {
-        (0..count).for_each(|_| self.harness.step());
-    }
-
-    fn studio(&self) -> &Studio {
-        self.harness.state().as_ref().expect("a window")
-    }
-
-    fn shown(&self) -> Arc<Shown> {
-        self.studio().shown()
-    }
-
-    /// Shows frames until something holds.
-    fn until(&mut self, what: &str, holds: impl Fn(&Shown) -> bool) {
-        let begin = Instant::now();
-        while !holds(&self.shown()) {
-            assert!(begin.elapsed() < Duration::from_secs(20), "{what}: {:?}", self.shown().message);
-            std::thread::sleep(Duration::from_millis(2));
-            self.frames(1);
-        }
-        self.frames(2);
-    }
-
-    /// Shows frames until nothing is drawn on other threads any more.
-    fn rest(&mut self) {
-        let begin = Instant::now();
-        self.frames(2);
-        while self.studio().is_drawing() {
-            assert!(begin.elapsed() < Duration::from_secs(60), "it is still drawing");
-            std::thread::sleep(Duration::from_millis(2));
-            self.frames(1);
-        }
-        self.frames(2);
-    }
-
-    fn click(&mut self, label: &str) {
-        self.harness.get_by_label(label).click();
-        self.frames(3);
-    }
-
-    /// The middle of the part where the scene is.
-    fn canvas(&self) -> egui::Rect {
-        self.harness.get_by_label("canvas").rect()
-    }
-
-    fn pointer(&mut self, at: Pos2) {
-        self.harness.event(Event::PointerMoved(at));
-        self.frames(1);
-    }
-
-    fn button(&mut self, at: Pos2, button: PointerButton, pressed: bool, modifiers: Modifiers) {
-        self.harness.event_modifiers(Event::PointerButton { pos: at, button, pressed, modifiers }, modifiers);
-        self.frames(1);
-    }
-
-    fn drag(&mut self, path: &[Pos2], button: PointerButton, modifiers: Modifiers) {
-        self.pointer(path[0]);
-        self.button(path[0], button, true, modifiers);
-        for at in path {
-            self.pointer(*at);
-        }
-        let last = path[path.len() - 1];
-        self.button(last, button, false, modifiers);
-        self.frames(2);
-    }
-
-    fn key(&mut self, modifiers: Modifiers, key: Key) {
-        self.harness.key_press_modifiers(modifiers, key);
-        self.frames(3);
-    }
-
-    fn picture(&self) -> Screen {
-        Screen::of(&self.harness, &self.textures)
-    }
-}
-
-/// Where the highest node of the first body is in the window.
-fn top_of(window: &Window) -> Pos2 {
-    let shown = window.shown();
-    let positions = &shown.picture.bodies[0].positions;
-    let top = positions.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])).expect("a node");
-    window.studio().on_screen(top).expect("in sight")
-}
-
-const SIZE: [f32; 2] = [1280.0, 720.0];
+use screen::window::{SIZE, Window, top_of};
+use std::time::Duration;
 
 #[test]
 fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
@@ -246,6 +129,160 @@ fn pins_pushes_and_moves_are_done_by_the_pointer_and_written_down() {
     window.drag(&[top, top + Vec2::new(40.0, 0.0), there], PointerButton::Primary, Modifiers::NONE);
     window.until("it was moved", |shown| shown.picture.bodies[0].positions[9][0] > 0.2);
     assert_eq!(window.shown().recorded, 0, "at the start it is written into the scene");
+}
+
+#[test]
+fn a_selected_body_is_turned_and_scaled_by_its_handles_copied_and_looked_at() {
+    let mut window = Window::open("ball", SIZE);
+    window.click("Move");
+    let shown = window.shown();
+    let spots: Vec<Pos2> =
+        shown.picture.bodies[0].positions.iter().filter_map(|p| window.studio().on_screen(*p)).collect();
+    let around = egui::Rect::from_points(&spots).expand(8.0);
+    // The corner of the box goes half as far again from its middle.
+    let corner = around.right_bottom();
+    let out = around.center() + 1.5 * (corner - around.center());
+    window.drag(&[corner, corner + Vec2::splat(3.0), out], PointerButton::Primary, Modifiers::NONE);
+    let width = |shown: &opruga_studio::shown::Shown| {
+        let xs = shown.picture.bodies[0].positions.iter().map(|p| p[0]);
+        xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min)
+    };
+    window.until("it has grown", |shown| (width(shown) - 1.5).abs() < 0.02);
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("undone", |shown| (width(shown) - 1.0).abs() < 0.02);
+    // The handle above the box, to the right of it: a quarter of a turn.
+    let node = |shown: &opruga_studio::shown::Shown| shown.picture.bodies[0].positions[0];
+    let (before, handle) = (node(&window.shown()), around.center_top() - Vec2::new(0.0, 24.0));
+    let right = around.center() + Vec2::new(around.center().y - handle.y, 0.0);
+    window.drag(&[handle, handle + Vec2::splat(4.0), right], PointerButton::Primary, Modifiers::NONE);
+    window.until("it was turned", |shown| {
+        let now = node(shown);
+        // Clockwise as it is seen: what was on the right is below.
+        (now[0] - (before[1] - 2.0)).abs() < 0.03 && (now[1] - 2.0 + before[0]).abs() < 0.03
+    });
+    window.harness.get_by_label("Duplicate").scroll_to_me();
+    window.frames(30);
+    window.click("Duplicate");
+    window.until("two of them", |shown| shown.bodies.len() == 2);
+    let apart = |window: &Window| {
+        let at = |p: [f64; 3]| window.studio().on_screen(p).expect("in sight");
+        at([0.5, 2.0, 0.0]).distance(at([-0.5, 2.0, 0.0]))
+    };
+    window.frames(2);
+    let before = apart(&window);
+    window.click("Focus");
+    assert!(apart(&window) > 1.2 * before, "the body fills the window");
+}
+
+#[test]
+fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
+    let mut window = Window::open("ball", SIZE);
+    for _ in 0..30 {
+        window.studio().ask(Request::Step);
+    }
+    window.until("thirty frames", |shown| shown.frames == 30);
+    window.click("Side by side");
+    window.until("two scenes", |shown| shown.beside.is_some() && shown.frames == 30);
+    window.click("Right only");
+    window.harness.get_by_role_and_label(egui::Role::Slider, "stiffness [N/m]").focus();
+    window.frames(1);
+    for _ in 0..4 {
+        window.key(Modifiers::NONE, Key::ArrowLeft);
+    }
+    window.until("a softer one on the right", |shown| {
+        let right = |beside: &opruga_studio::shown::Beside| beside.right.bodies[0].models[0].number("stiffness");
+        shown.frames == 30 && shown.beside.as_ref().and_then(right).is_some_and(|k| k < 1600.0)
+    });
+    let shown = window.shown();
+    assert_eq!(shown.bodies[0].models[0].number("stiffness"), Some(1600.0), "the left one stays");
+    assert!(shown.beside.as_ref().and_then(|b| b.distances).is_some_and(|[mean, _]| mean > 0.0));
+    window.click("Plots");
+    assert!(window.harness.query_by_label("Distance of the sides [m]").is_some());
+    window.click("Plots");
+    // What is beside is looked at: a press there pulls nothing.
+    let right = egui::pos2(window.canvas().right() - 0.25 * window.canvas().width(), window.canvas().center().y);
+    window.drag(&[right, right + Vec2::new(20.0, -30.0)], PointerButton::Primary, Modifiers::NONE);
+    assert_eq!(window.shown().recorded, 0);
+    window.click("Fit");
+    window.rest();
+    window.picture().assert_like("beside");
+    window.click("Side by side");
+    window.until("one scene", |shown| shown.beside.is_none());
+}
+
+#[test]
+fn on_a_phone_held_upright_everything_fits_and_the_properties_are_in_a_drawer() {
+    let size = [390.0, 780.0];
+    let mut window = Window::open("ball", size);
+    assert!(window.harness.query_by_label("stiffness [N/m]").is_none(), "the drawer is closed");
+    window.click("Properties");
+    window.frames(10);
+    let labels =
+        ["Play", "Step", "Reset", "Replay", "Pull", "Draw", "Focus", "Properties", "Side by side", "Plots", "?"];
+    for label in labels {
+        let rect = window.harness.get_by_label(label).rect();
+        let inside = rect.left() >= 0.0 && rect.right() <= size[0] && rect.top() >= 0.0 && rect.bottom() <= size[1];
+        assert!(inside, "{label}: {rect:?}");
+    }
+    let sliders: Vec<egui::Rect> = window.harness.get_all_by_role(egui::Role::Slider).map(|s| s.rect()).collect();
+    assert!(sliders.len() >= 3 && sliders.iter().all(|rect| rect.right() <= size[0] + 1.0), "{sliders:?}");
+    window.harness.get_by_role_and_label(egui::Role::Slider, "stiffness [N/m]").focus();
+    window.frames(1);
+    window.key(Modifiers::NONE, Key::ArrowRight);
+    window.until("a stiffness from the drawer", |shown| {
+        shown.bodies[0].models[0].number("stiffness").is_some_and(|k| k != 1600.0)
+    });
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("undone", |shown| shown.bodies[0].models[0].number("stiffness") == Some(1600.0));
+    window.rest();
+    window.picture().assert_like("phone");
+}
+
+#[test]
+fn every_overlay_and_every_map_of_colours_can_be_chosen_by_its_name() {
+    let mut window = Window::open("hanging-net", SIZE);
+    for label in ["Contact forces", "Normals", "Velocities", "Vertices"] {
+        window.click("Show");
+        window.click(label);
+        window.key(Modifiers::NONE, Key::Escape);
+        window.studio().ask(Request::Step);
+        window.frames(4);
+    }
+    window.until("arrows", |shown| !shown.picture.arrows.is_empty() && shown.picture.bodies[0].nodes_drawn);
+    for (label, map) in [
+        ("Blue to yellow, for red-green blindness", opruga::draw::ColourMap::Cividis),
+        ("Grey, without colours", opruga::draw::ColourMap::Grey),
+        ("Violet to yellow", opruga::draw::ColourMap::Viridis),
+    ] {
+        window.harness.get_by_label_contains("Colour: ").click();
+        window.frames(3);
+        window.click(label);
+        window.until(label, |shown| shown.picture.legend.as_ref().is_some_and(|legend| legend.map == map));
+    }
+}
+
+#[test]
+fn a_pin_of_the_scene_is_freed_by_a_double_click() {
+    let mut window = Window::open("hanging-net", SIZE);
+    let shown = window.shown();
+    let (node, count) = (shown.picture.bodies[0].pinned[0], shown.picture.bodies[0].pinned.len());
+    let at = window.studio().on_screen(shown.picture.bodies[0].positions[node as usize]).expect("in sight");
+    for _ in 0..2 {
+        window.button(at, PointerButton::Primary, true, Modifiers::NONE);
+        window.button(at, PointerButton::Primary, false, Modifiers::NONE);
+    }
+    window.studio().ask(Request::Step);
+    window.until("one pin fewer", |shown| shown.picture.bodies[0].pinned.len() == count - 1);
+    assert!(!window.shown().picture.bodies[0].pinned.contains(&node));
+}
+
+#[test]
+fn the_gallery_shows_a_picture_of_every_scene_and_opens_one() {
+    let mut window = Window::open("ball", SIZE);
+    window.click("Scenes");
+    window.frames(5);
+    window.harness.get_by_role_and_label(egui::Role::Button, "ball-as-published").click();
+    window.until("another scene", |shown| shown.name == "ball-as-published");
 }
 
 #[test]

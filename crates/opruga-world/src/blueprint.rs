@@ -255,6 +255,13 @@ pub enum Action<const D: usize> {
         /// Which axes.
         axes: [bool; D],
     },
+    /// Let go of nodes that the body's own pins, or commands before this one, hold.
+    Free {
+        /// The body.
+        body: usize,
+        /// Which nodes.
+        select: Selector<D>,
+    },
     /// Change a parameter: its path and its new value.
     Set {
         /// The path, as on the command line.

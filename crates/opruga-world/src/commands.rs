@@ -1,4 +1,4 @@
-//! What is done to bodies while they move: drag, push, pin, set, add, remove.
+//! What is done to bodies while they move: drag, push, pin, free, set, add, remove.
 
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::changes::Source;
@@ -56,6 +56,7 @@ impl<const D: usize> Action<D> {
             Action::Drag { body, .. }
             | Action::Push { body, .. }
             | Action::Pin { body, .. }
+            | Action::Free { body, .. }
             | Action::Change { body, .. } => Some(*body),
             Action::Set { .. } | Action::Add(_) | Action::Remove { .. } => None,
         }
@@ -195,7 +196,7 @@ impl<const D: usize> World<D> {
                 };
                 Progress::Acting { held, anchors: Vec::new() }
             }
-            Action::Push { body, select, .. } => {
+            Action::Push { body, select, .. } | Action::Free { body, select } => {
                 let held = self.selected(*body, select).into_iter().map(|n| (n, 1.0)).collect();
                 Progress::Acting { held, anchors: Vec::new() }
             }
@@ -299,6 +300,11 @@ impl<const D: usize> World<D> {
                     let mut entries: Vec<(usize, [f64; D])> = held.iter().map(|(n, _)| (place(*n), *force)).collect();
                     entries.sort_by_key(|e| e.0);
                     system.add(Box::new(NodeForces { entries, curve: Vec::new() }));
+                }
+                // Pins of the body and of commands before this one are there already, those of later commands are not.
+                Action::Free { .. } => {
+                    let free: BTreeSet<usize> = held.iter().map(|(node, _)| place(*node)).collect();
+                    system.pins.retain(|pin| !free.contains(&pin.place));
                 }
                 Action::Pin { axes, .. } => {
                     for ((node, _), anchor) in held.iter().zip(anchors) {

@@ -200,6 +200,11 @@ fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> boo
             out.count(4);
             out.text(name);
         }
+        Action::Free { body, select } => {
+            out.count(5);
+            out.count(*body as u64);
+            write_selector(out, select);
+        }
         Action::Add(_) | Action::Change { .. } => return false,
     }
     true
@@ -233,6 +238,7 @@ fn read_action<const D: usize>(reader: &mut Reader<'_>) -> Result<Action<D>, Wor
         }
         3 => Action::Set { path: reader.text()?, value: reader.value()? },
         4 => Action::Remove { name: reader.text()? },
+        5 => Action::Free { body: reader.count()? as usize, select: read_selector(reader, 0)? },
         _ => return Err(unknown()),
     })
 }
@@ -368,6 +374,7 @@ mod tests {
             (0..9usize, selector(), vector()).prop_map(|(body, select, force)| Action::Push { body, select, force }),
             (0..9usize, selector(), prop::array::uniform2(any::<bool>()))
                 .prop_map(|(body, select, axes)| Action::Pin { body, select, axes }),
+            (0..9usize, selector()).prop_map(|(body, select)| Action::Free { body, select }),
             ("[a-z.]{0,9}", -9.0..9.0f64).prop_map(|(path, x)| Action::Set { path, value: Value::Number(x) }),
             "[a-z]{0,9}".prop_map(|name| Action::Remove { name }),
         ];

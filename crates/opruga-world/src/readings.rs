@@ -5,9 +5,12 @@ use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
+use opruga_core::contacts::{Contacts, Moved};
 use opruga_core::potential::{Account, CellState, Count};
 use opruga_core::stability::Stability;
+use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage};
+use opruga_math::WIDTH;
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -166,6 +169,65 @@ impl<const D: usize> World<D> {
         };
         let Ok(forces) = forces else { return Vec::new() };
         (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
+    }
+    /// The nodes of a body that pins hold now, along some of their axes or all.
+    pub fn held_nodes(&self, body: usize) -> Vec<u32> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let system = &self.islands[island].system;
+        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
+        (0..system.nodes as u32).filter(|node| held.contains(&system.layout.place(*node as usize, lane))).collect()
+    }
+    /// The forces of obstacles on the nodes of a body in the coming substep, f = m (v' − v*)/h [N].
+    ///
+    /// v* is the velocity that the forces of now would give a node within h without obstacles, v' the one with them:
+    /// normal force, friction, and in an impact the impulse over h. Held nodes feel none; the pin takes it.
+    /// Empty where the body is not there, there are no obstacles, or a model refuses the state.
+    pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
+        let Some(colliders) = self.colliders.clone().filter(|_| self.handle(body).is_some()) else { return Vec::new() };
+        let (h, time, (island, lane)) = (self.h(), self.time(), self.place[body]);
+        let system = &mut self.islands[island].system;
+        let Ok(forces) = system.forces(true) else { return Vec::new() };
+        let (places, layout) = (system.places(), system.layout);
+        let used = system.nodes * layout.stride();
+        let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
+        for place in 0..used {
+            let mass = system.mass.at(place);
+            for d in 0..D {
+                let now = system.state.v.0[d][place];
+                v.0[d][place] = if mass > 0.0 { now + h * forces.0[d][place] / mass } else { now };
+                x.0[d][place] = system.state.x.0[d][place] + h * v.0[d][place];
+            }
+        }
+        let free = v.clone();
+        let [mut normal, mut friction, mut work, mut correction] = [[0.0; WIDTH]; 4];
+        colliders.resolve(
+            system.simd,
+            &mut Moved {
+                range: 0..places,
+                places_used: used,
+                before: system.state.x.0.each_ref().map(|column| &**column),
+                x: &mut x,
+                v: &mut v,
+                force: forces.0.each_ref().map(|column| &**column),
+                mass: &system.mass,
+                layout,
+                time: time + h,
+                h,
+                loss_contact: &mut normal,
+                loss_friction: &mut friction,
+                work_colliders: &mut work,
+                work_correction: &mut correction,
+            },
+        );
+        let held: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.place).collect();
+        let force = |place: usize| -> [f64; D] {
+            let share = if held.contains(&place) { 0.0 } else { system.mass.at(place) / h };
+            core::array::from_fn(|d| share * (v.0[d][place] - free.0[d][place]))
+        };
+        (0..system.nodes).map(|node| force(layout.place(node, lane))).collect()
     }
     /// The sum of the forces that pins exert on nodes [N].
     pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {

@@ -131,6 +131,11 @@ fn actions<const D: usize>(
             let targets = selectors::of_bodies(reader, node, path, bodies, targets)?;
             targets.into_iter().map(|(body, select)| Action::Pin { body, select, axes }).collect()
         }
+        "free" => {
+            let targets = bodies.targets(reader, node, path);
+            let targets = selectors::of_bodies(reader, node, path, bodies, targets)?;
+            targets.into_iter().map(|(body, select)| Action::Free { body, select }).collect()
+        }
         "set" => {
             let value_node = node.get("value")?;
             let value = reader.any_value(value_node, &join(path, "value"))?;

@@ -179,6 +179,11 @@ body = "row[0]"
 select = { half_space = { point = [0.0, -9.0], normal = [0.0, 1.0] } }
 axes = "y"
 [[command]]
+at = 1.5
+do = "free"
+body = "row[0]"
+select = { node = 0 }
+[[command]]
 at = 2.0
 do = "set"
 path = "body.ball.models.pressure.nRT"

@@ -1,7 +1,10 @@
 //! The scene on the screen, and what the pointer does there.
 
 mod camera;
+mod handles;
 mod look;
+mod outline;
+mod overlays;
 mod pen;
 mod pick;
 mod plane;
@@ -13,7 +16,7 @@ use crate::session::{Edit, Grip, Placed, Request};
 use crate::shown::Shown;
 use crate::words::Language;
 use camera::Flat;
-use egui::{PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2};
+use egui::{PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
 use opruga::draw::View;
 use pick::Under;
@@ -33,6 +36,8 @@ enum Doing {
     Turning,
     /// A body is taken elsewhere, from this point of the world.
     Shifting(String, [f64; 3], f64),
+    /// A body is turned or scaled by one of its handles.
+    Handling(handles::Held),
     /// An outline is drawn.
     Drawing(Vec<[f64; 2]>),
 }
@@ -48,6 +53,9 @@ pub struct Canvas {
     rect: Option<Rect>,
     flat: Flat,
     space: space::Space,
+    /// What draws the scene beside it.
+    beside: space::Space,
+    beside_fills: triangles::Fills,
     scales: Option<View>,
     fitted: u64,
     /// The size of the window for which the scene was fitted; none once somebody has moved the view.
@@ -74,17 +82,32 @@ struct Press {
     /// Whether the space bar is held.
     space: bool,
     shift: bool,
+    /// Whether it is on the scene that is only looked at.
+    beside: bool,
 }
 
 impl Canvas {
     /// Whether pictures of space are still being drawn.
     pub fn is_drawing(&self) -> bool {
-        self.space.is_drawing()
+        self.space.is_drawing() || self.beside.is_drawing()
     }
 
     /// Shows everything again.
     pub fn fit(&mut self) {
         self.fitted = 0;
+    }
+
+    /// Shows the selected body alone.
+    pub fn focus(&mut self, shown: &Shown) {
+        let place = shown.bodies.iter().position(|body| Some(&body.name) == self.selected.as_ref());
+        let Some(body) = place.and_then(|place| shown.picture.bodies.get(place)) else { return };
+        let picture = opruga::draw::Picture { bodies: vec![body.clone()], ..opruga::draw::Picture::default() };
+        let Ok(view) = View::fit([&opruga::draw::Picture { dimension: shown.dimension, ..picture }]) else { return };
+        self.fitted_size = None;
+        self.space.look_at_all(&view);
+        if let Some(rect) = self.rect {
+            self.flat.fit(&view, rect);
+        }
     }
 
     /// The middle of what is seen [m]: where new bodies are put.
@@ -104,34 +127,71 @@ impl Canvas {
 
     /// Shows a scene in all the room that is left, and says what the pointer asks for.
     pub fn show(&mut self, ui: &mut Ui, shown: &Arc<Shown>, language: Language) -> Vec<Request> {
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "canvas"));
         // A window without any size, as a minimised one, shows nothing.
-        if rect.width() < 2.0 || rect.height() < 2.0 || shown.dimension == 0 {
+        if whole.width() < 4.0 || whole.height() < 4.0 || shown.dimension == 0 {
             return Vec::new();
         }
+        let (rect, other) = halves(whole, shown.beside.is_some());
         self.rect = Some(rect);
         let paper = Paper::of(ui);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, paper.background);
         self.fit_if_new(shown, rect);
         self.fit_colours(shown);
+        self.follow_names(shown);
         let mut asks = Vec::new();
-        self.navigate(ui, &response, shown, rect);
-        let under = response.hover_pos().and_then(|at| self.under(shown, rect, at));
-        self.press(ui, &response, shown, rect, under.as_ref(), &mut asks);
+        // What is beside is looked at; it moves with the view of the scene that is worked on.
+        let within = |at: Pos2| match other {
+            Some(other) if other.contains(at) => (at - other.min.to_vec2() + rect.min.to_vec2(), true),
+            _ => (at, false),
+        };
+        let hover = response.hover_pos().map(within);
+        self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
+        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(shown, rect, at));
+        let beside = hover.is_some_and(|(_, beside)| beside);
+        self.press(ui, &response, shown, rect, under.as_ref(), beside, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
-        if shown.dimension == 3 {
-            if let Some(scales) = &self.scales {
-                self.space.show(ui, &look, shown, scales);
-            }
-        } else {
-            plane::paint(&look, &self.flat, &mut self.fills, self.selected.as_deref());
-        }
+        self.paint(ui, &look, shown, false);
         self.overlays(&look, under.as_ref(), language);
-        plane::legend(&look);
+        plane::legend(&look, language);
+        if let (Some(other), Some(beside)) = (other, &shown.beside) {
+            let painter = ui.painter_at(other);
+            painter.rect_filled(other, 0.0, paper.background);
+            let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
+            self.paint(ui, &look, &beside.right, true);
+            overlays::captions(&look, rect, beside, language);
+        }
         asks
+    }
+
+    /// Draws a scene; the second one has a painter of its own, and the eye of the first.
+    fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool) {
+        let selected = self.selected.as_deref();
+        if shown.dimension == 3 {
+            let Some(scales) = &self.scales else { return };
+            if beside {
+                self.beside.share_eye(&self.space);
+            }
+            let space = if beside { &mut self.beside } else { &mut self.space };
+            space.show(ui, look, shown, scales, selected);
+        } else {
+            let fills = if beside { &mut self.beside_fills } else { &mut self.fills };
+            plane::paint(look, &self.flat, fills, selected);
+        }
+    }
+
+    /// A body that was set down anew under another name stays selected.
+    fn follow_names(&mut self, shown: &Shown) {
+        let Some(selected) = &self.selected else { return };
+        if shown.bodies.iter().any(|body| body.name == *selected) {
+            return;
+        }
+        if let Some((_, new)) = shown.renamed.iter().rev().find(|(old, _)| old == selected) {
+            self.selected = Some(new.clone());
+        }
     }
 
     fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
@@ -155,6 +215,7 @@ impl Canvas {
         }
         self.range = None;
         self.fills.forget();
+        self.beside_fills.forget();
         if first {
             self.selected = None;
         }
@@ -165,7 +226,9 @@ impl Canvas {
 
     /// The ends of the colours follow what is there: at once outwards, slowly inwards.
     fn fit_colours(&mut self, shown: &Shown) {
-        let scalars = shown.picture.bodies.iter().flat_map(|body| &body.scalar).filter(|s| s.is_finite());
+        let beside = shown.beside.iter().flat_map(|beside| &beside.right.picture.bodies);
+        let bodies = shown.picture.bodies.iter().chain(beside);
+        let scalars = bodies.flat_map(|body| &body.scalar).filter(|s| s.is_finite());
         let (low, high) = scalars.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
         if low > high {
             return;
@@ -214,8 +277,8 @@ impl Canvas {
     }
 
     /// Wheel, pinch, and dragging of the view.
-    fn navigate(&mut self, ui: &Ui, response: &egui::Response, shown: &Shown, rect: Rect) {
-        let Some(at) = response.hover_pos() else { return };
+    fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
+        let Some(at) = at else { return };
         let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
         let at = touch.map_or(at, |touch| touch.center_pos);
         let factor = f64::from((scroll * 0.004).exp() * pinch);
@@ -245,6 +308,7 @@ impl Canvas {
         }
     }
 
+    #[allow(clippy::too_many_arguments, reason = "all of them describe one press")]
     fn press(
         &mut self,
         ui: &Ui,
@@ -252,6 +316,7 @@ impl Canvas {
         shown: &Shown,
         rect: Rect,
         under: Option<&Under>,
+        beside: bool,
         asks: &mut Vec<Request>,
     ) {
         let (space_down, shift, pressed, at, down) = ui.input(|i| {
@@ -272,14 +337,14 @@ impl Canvas {
             && response.contains_pointer()
         {
             self.refused = None;
-            let press = Press { button, at, rect, space: space_down, shift };
+            let press = Press { button, at, rect, space: space_down, shift, beside };
             self.begin(press, shown, under, asks);
         }
         if response.double_clicked()
             && let Some(under) = under
         {
-            match shown.pins.iter().find(|pin| near_pin(under, pin)) {
-                Some((body, node, _)) => asks.push(Request::Unpin(*body, *node)),
+            match pin_under(shown, under) {
+                Some((body, node, _)) => asks.push(Request::Unpin(body, node)),
                 None if shown.dimension == 3 => self.space.look_at(under.point),
                 None => {}
             }
@@ -297,6 +362,7 @@ impl Canvas {
             Doing::Panning => self.pan(shown, rect, delta),
             Doing::Turning => self.space.turn(delta),
             Doing::Shifting(..) => {}
+            Doing::Handling(held) => held.lead(at),
             Doing::Drawing(points) => {
                 let point = self.flat.to_world(rect, at, shown.picture.y_down);
                 if points.last().is_none_or(|last| *last != point) {
@@ -310,13 +376,21 @@ impl Canvas {
     }
 
     fn begin(&mut self, press: Press, shown: &Shown, under: Option<&Under>, asks: &mut Vec<Request>) {
-        let Press { button, at, rect, space, shift } = press;
+        let Press { button, at, rect, space, shift, beside } = press;
         if button == PointerButton::Middle || space {
             self.panned = space;
             self.doing = Doing::Panning;
             return;
         }
-        if self.tool == Tool::Draw && button == PointerButton::Primary {
+        if self.tool == Tool::Shift
+            && button == PointerButton::Primary
+            && !beside
+            && let Some(held) = self.handles(shown, rect).and_then(|handles| handles.at(at))
+        {
+            self.doing = Doing::Handling(held);
+            return;
+        }
+        if self.tool == Tool::Draw && !beside && button == PointerButton::Primary {
             if shown.dimension == 2 {
                 self.doing = Doing::Drawing(Vec::new());
             } else {
@@ -343,7 +417,7 @@ impl Canvas {
         };
         self.pulled |= grip == Grip::Pull;
         // What is pinned is taken by its own place, so that the same node is found again.
-        let pinned = shown.pins.iter().find(|pin| near_pin(under, pin)).map(|pin| pin.2);
+        let pinned = pin_under(shown, under).map(|pin| pin.2);
         asks.push(Request::Grab(grip, under.body, pinned.filter(|_| grip == Grip::Pin).unwrap_or(under.point)));
         self.doing = Doing::Holding(under.distance);
     }
@@ -359,69 +433,12 @@ impl Canvas {
                     }
                 }
             }
+            Doing::Handling(held) => asks.extend(held.edit(shown.dimension, shown.picture.y_down)),
             Doing::Drawing(points) => match pen::body(&points, self.flat.metres(6.0)) {
                 Ok(table) => asks.push(Request::Edit(Edit::Add(table))),
                 Err(why) => self.refused = Some(why),
             },
             _ => {}
-        }
-    }
-
-    /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull.
-    fn overlays(&self, look: &Look<'_>, under: Option<&Under>, language: Language) {
-        let Look { painter, shown, rect, paper, .. } = *look;
-        let lens = self.scales.as_ref().and_then(|scales| self.space.lens(scales, rect));
-        let project = |point: [f64; 3]| -> Option<Pos2> {
-            if shown.dimension == 3 {
-                let ([x, y], _) = lens.as_ref()?.see(point)?;
-                Some(rect.min + Vec2::new(x as f32, y as f32))
-            } else {
-                Some(self.flat.to_screen(rect, point, shown.picture.y_down))
-            }
-        };
-        if let (Some(under), Doing::Nothing) = (under, &self.doing)
-            && let Some(at) = project(under.point)
-        {
-            painter.circle_stroke(at, 7.0, Stroke::new(1.5, paper.ink));
-        }
-        if shown.dimension == 3 {
-            for body in shown.picture.bodies.iter().filter(|body| !body.label.is_empty()) {
-                let spots: Vec<Pos2> = body.positions.iter().filter_map(|p| project(*p)).collect();
-                plane::label(painter, &body.label, &spots, paper);
-            }
-        }
-        for (_, _, place) in &shown.pins {
-            if let Some(at) = project(*place) {
-                plane::pin(painter, at, paper);
-            }
-        }
-        for [node, pointer, force] in &shown.pulls {
-            if let (Some(from), Some(to)) = (project(*node), project(*pointer)) {
-                plane::rubber(painter, from, to, force, paper);
-            }
-        }
-        if let Doing::Shifting(name, start, distance) = &self.doing
-            && let Some(place) = shown.bodies.iter().position(|body| body.name == *name)
-            && let Some(now) = painter.ctx().input(|i| i.pointer.latest_pos())
-            && let Some(end) = self.point(shown, rect, now, *distance)
-        {
-            let moved = [0, 1, 2].map(|d| end[d] - start[d]);
-            plane::ghost(painter, &shown.picture.bodies[place], moved, &project, paper);
-        }
-        if let Doing::Drawing(points) = &self.doing {
-            let line: Vec<Pos2> = points.iter().filter_map(|p| project([p[0], p[1], 0.0])).collect();
-            if let (Some(first), Some(last)) = (line.first(), line.last()) {
-                painter.line_segment([*last, *first], Stroke::new(1.0, paper.soft));
-            }
-            painter.line(line, Stroke::new(2.0, plane::RUBBER));
-        }
-        if !self.pulled
-            && self.tool == Tool::Pull
-            && self.doing == Doing::Nothing
-            && let Some(body) = shown.picture.bodies.first()
-            && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
-        {
-            plane::hint(painter, top, rect, language.drag_me());
         }
     }
 }
@@ -449,7 +466,29 @@ fn with_floors(mut view: View, shown: &Shown) -> View {
     view
 }
 
-fn near_pin(under: &Under, pin: &(usize, u32, [f64; 3])) -> bool {
-    let far: f64 = under.point.iter().zip(&pin.2).map(|(a, b)| (a - b) * (a - b)).sum();
-    under.body == pin.0 && far.sqrt() <= 3.0 * under.pixel * 6.0
+/// The pin under the pointer, of a person or of the scene: body, node, place [m].
+fn pin_under(shown: &Shown, under: &Under) -> Option<(usize, u32, [f64; 3])> {
+    let own = shown.bodies.iter().position(|body| body.number == under.body);
+    let own = own.and_then(|place| shown.picture.bodies.get(place));
+    let of_scene = own.into_iter().flat_map(|body| {
+        let place = |node: &u32| Some((under.body, *node, *body.positions.get(*node as usize)?));
+        body.pinned.iter().filter_map(place)
+    });
+    shown.pins.iter().copied().chain(of_scene).find(|(body, _, place)| {
+        let far: f64 = under.point.iter().zip(place).map(|(a, b)| (a - b) * (a - b)).sum();
+        under.body == *body && far.sqrt() <= 3.0 * under.pixel * 6.0
+    })
+}
+
+/// The part of the scene and that of the one beside it: next to one another, on a high window one above the other.
+fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
+    if !two {
+        return (whole, None);
+    }
+    let (first, second) = if whole.width() >= whole.height() {
+        whole.split_left_right_at_fraction(0.5)
+    } else {
+        whole.split_top_bottom_at_fraction(0.5)
+    };
+    (first, Some(second))
 }

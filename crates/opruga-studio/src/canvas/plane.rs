@@ -4,6 +4,7 @@ use super::camera::Flat;
 use super::look::{Look, Paper};
 use super::triangles::Fills;
 use crate::shown::Shown;
+use crate::words::Language;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{
@@ -245,6 +246,8 @@ pub(crate) fn arrow_colour(kind: ArrowKind) -> Color32 {
         ArrowKind::Pressure => Color32::from_rgb(86, 160, 230),
         ArrowKind::Velocity => Color32::from_rgb(0, 158, 115),
         ArrowKind::Pull => RUBBER,
+        ArrowKind::Contact => Color32::from_rgb(213, 94, 0),
+        ArrowKind::Normal => Color32::from_gray(150),
         _ => Color32::from_rgb(230, 140, 20),
     }
 }
@@ -262,7 +265,8 @@ fn arrows(painter: &Painter, shown: &Shown, flat: &Flat, project: &dyn Fn([f64; 
         if most <= 0.0 || arrow.kind == ArrowKind::Pull {
             continue;
         }
-        let scale = flat.metres(60.0) / most;
+        let long = if arrow.kind == ArrowKind::Normal { 18.0 } else { 60.0 };
+        let scale = flat.metres(long) / most;
         let from = project(arrow.from);
         let to = project([0, 1, 2].map(|d| arrow.from[d] + scale * arrow.vector[d]));
         let way = to - from;
@@ -335,7 +339,7 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
 }
 
 /// What the colours mean.
-pub(crate) fn legend(look: &Look<'_>) {
+pub(crate) fn legend(look: &Look<'_>, language: Language) {
     let Look { painter, shown, rect, paper, range } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
@@ -363,7 +367,8 @@ pub(crate) fn legend(look: &Look<'_>) {
     }
     painter.add(Shape::mesh(mesh));
     let font = FontId::proportional(11.5);
-    let name = format!("{} [{}]", legend.label, legend.unit);
+    let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
+    let name = format!("{}{unit}", language.quantity(&legend.label));
     let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
     painter.text(spot, Align2::RIGHT_BOTTOM, name, FontId::proportional(12.0), paper.ink);
     for tick in nice_ticks(range[0], range[1], 4) {

@@ -2,14 +2,24 @@
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
 use super::look::Look;
+use super::outline::outline;
 use crate::shown::Shown;
-use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
+use egui::{Color32, ColorImage, Rect, Stroke, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// The colour of the outline of the selected body.
+const OUTLINE: Color32 = Color32::from_rgb(240, 150, 30);
+
 /// The longest side of a picture in pixels: finer screens are served by stretching.
 const MOST_PIXELS: f64 = 1400.0;
+
+/// A picture and the outline of the selected body on it, in shares of its sides.
+struct Drawn {
+    image: Image,
+    outline: Vec<[[f32; 2]; 2]>,
+}
 
 struct Order {
     shown: Arc<Shown>,
@@ -17,17 +27,23 @@ struct Order {
     background: [u8; 3],
     size: [u32; 2],
     range: [f64; 2],
+    eye: Eye,
+    selected: Option<String>,
 }
+
+/// What a picture shows: scene, frame, eye, size, theme, what else is to be seen, the selected body.
+type Last = (u64, u64, Eye, [u32; 2], bool, u64, Option<String>);
 
 /// The eye, and what is drawn of what it sees.
 #[derive(Default)]
 pub(crate) struct Space {
     eye: Option<Eye>,
-    done: Arc<Mutex<Option<Image>>>,
+    done: Arc<Mutex<Option<Drawn>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
+    outline: Vec<[[f32; 2]; 2]>,
     /// What the last order was for, so that the same is not drawn twice.
-    last: Option<(u64, u64, Eye, [u32; 2], bool, u64)>,
+    last: Option<Last>,
 }
 
 impl core::fmt::Debug for Space {
@@ -49,6 +65,19 @@ impl Space {
     /// Whether a picture is being drawn or waits to be shown.
     pub(crate) fn is_drawing(&self) -> bool {
         self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// Looks with the eye of another.
+    pub(crate) fn share_eye(&mut self, other: &Space) {
+        self.eye = other.eye;
+    }
+
+    /// Looks from the same side, so that all of a view is seen.
+    pub(crate) fn look_at_all(&mut self, view: &View) {
+        if let Some(eye) = &mut self.eye {
+            let whole = Eye::of(view);
+            (eye.target, eye.radius) = (whole.target, whole.radius);
+        }
     }
 
     /// Looks at a point from the same side.
@@ -87,10 +116,11 @@ impl Space {
     }
 
     /// Shows the last picture and orders the next one.
-    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View) {
+    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
         let Look { painter, rect, paper, range, .. } = *look;
         let Some(eye) = self.eye else { return };
-        if let Some(image) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(Drawn { image, outline }) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.outline = outline;
             let size = [image.width() as usize, image.height() as usize];
             let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
             match &mut self.texture {
@@ -102,16 +132,26 @@ impl Space {
         let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
         let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);
         let size = [side(rect.width()), side(rect.height())];
-        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown));
-        if self.last != Some(wanted) && !self.busy.swap(true, Ordering::AcqRel) {
+        // The only body of a scene needs no mark.
+        let selected = selected.filter(|_| shown.bodies.len() > 1).map(String::from);
+        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
+        if self.last.as_ref() != Some(&wanted) && !self.busy.swap(true, Ordering::AcqRel) {
             self.last = Some(wanted);
             let [r, g, b, _] = paper.background.to_array();
-            let order = Order { shown: Arc::clone(shown), view: eye.view(scales), background: [r, g, b], size, range };
+            let order = Order {
+                shown: Arc::clone(shown),
+                view: eye.view(scales),
+                background: [r, g, b],
+                size,
+                range,
+                eye,
+                selected,
+            };
             let (done, busy, context) = (Arc::clone(&self.done), Arc::clone(&self.busy), ui.ctx().clone());
             drop(crate::work::spawn(async move {
                 // A picture that cannot be drawn leaves the last one on the screen.
-                if let Some(image) = drawn(&order) {
-                    *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
+                if let Some(drawn) = drawn(&order) {
+                    *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(drawn);
                 }
                 busy.store(false, Ordering::Release);
                 context.request_repaint();
@@ -120,20 +160,38 @@ impl Space {
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture.id(), rect, all, Color32::WHITE);
+            let spot = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
+            for [from, to] in &self.outline {
+                painter.line_segment([spot(*from), spot(*to)], Stroke::new(2.0, OUTLINE));
+            }
         }
     }
+}
+
+/// The outline of the selected body in shares of the sides of the picture.
+fn outline_of(order: &Order) -> Vec<[[f32; 2]; 2]> {
+    let place = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
+    let Some(body) = place.and_then(|place| order.shown.picture.bodies.get(place)) else { return Vec::new() };
+    let size = order.size.map(f64::from);
+    let lines = outline(body, &order.eye.lens(&order.view, size));
+    lines.into_iter().map(|ends| ends.map(|[x, y]| [(x / size[0]) as f32, (y / size[1]) as f32])).collect()
 }
 
 /// What else changes a picture of the same frame: what is shown of it.
 fn fingerprint(shown: &Shown) -> u64 {
     let picture = &shown.picture;
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
+    let map = picture.legend.as_ref().map_or(0, |legend| legend.map as u64);
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
-    label * 1_000_003 + lines as u64 * 1_009 + picture.arrows.len() as u64 * 7 + picture.bodies.len() as u64
+    map * 1_000_000_007
+        + label * 1_000_003
+        + lines as u64 * 1_009
+        + picture.arrows.len() as u64 * 7
+        + picture.bodies.len() as u64
 }
 
 /// Draws what is ordered.
-fn drawn(order: &Order) -> Option<Image> {
+fn drawn(order: &Order) -> Option<Drawn> {
     let mut picture = order.shown.picture.clone();
     if let Some(legend) = &mut picture.legend {
         legend.range = Some(order.range);
@@ -141,5 +199,12 @@ fn drawn(order: &Order) -> Option<Image> {
     // Labels and pulls are drawn by the interface, sharper than in the picture.
     picture.pulls.clear();
     picture.bodies.iter_mut().for_each(|body| body.label.clear());
-    draw_scene(&picture, &order.view, order.background, order.size).ok()
+    let mut view = order.view.clone();
+    if !picture.arrows.is_empty()
+        && let Ok(fitted) = View::fit([&picture])
+    {
+        (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
+    }
+    let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
+    Some(Drawn { image, outline: outline_of(order) })
 }

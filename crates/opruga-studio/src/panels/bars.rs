@@ -5,6 +5,7 @@ use crate::session::Request;
 use crate::shown::{Show, Shown};
 use crate::words::Language;
 use egui::{Align, Layout, RichText, Slider, Ui};
+use opruga::draw::ColourMap;
 use opruga::pictures::Quantity;
 
 /// What was chosen in the bar above.
@@ -16,6 +17,8 @@ pub enum Chosen {
     Gallery,
     /// The plots.
     Plots,
+    /// The properties, where the window is too narrow to show them always.
+    Properties,
     /// The shortcuts.
     Help,
     /// The other language.
@@ -31,7 +34,14 @@ pub enum Chosen {
 }
 
 /// The bar above the scene.
-pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, working: bool, asks: &mut Vec<Request>) -> Chosen {
+pub fn tools(
+    ui: &mut Ui,
+    shown: &Shown,
+    words: Language,
+    narrow: bool,
+    working: bool,
+    asks: &mut Vec<Request>,
+) -> Chosen {
     let mut chosen = Chosen::Nothing;
     ui.horizontal_wrapped(|ui| {
         if ui.button(words.scenes()).on_hover_text(format!("{}  (G)", words.scenes_hint())).clicked() {
@@ -78,65 +88,108 @@ pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, working: bool, asks: &
                 asks.push(Request::Redo);
             }
         });
+        let compared = ui.add(egui::Button::new(words.compare()).selected(shown.beside.is_some()));
+        if compared.on_hover_text(format!("{}  (B)", words.compare_hint())).clicked() {
+            asks.push(Request::Compare(shown.beside.is_none()));
+        }
+        if narrow {
+            if ui.button(words.properties()).clicked() {
+                chosen = Chosen::Properties;
+            }
+            windows(ui, words, &mut chosen, false);
+            ui.label(RichText::new(&shown.name).strong());
+            return;
+        }
         ui.separator();
         ui.label(RichText::new(&shown.name).strong());
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui.button("?").on_hover_text(words.help()).clicked() {
-                chosen = Chosen::Help;
-            }
-            if ui.button(words.language()).clicked() {
-                chosen = Chosen::Language;
-            }
-            if ui.button(if ui.visuals().dark_mode { words.light() } else { words.dark() }).clicked() {
-                chosen = Chosen::Theme;
-            }
-            if ui.button(words.plots()).on_hover_text("P").clicked() {
-                chosen = Chosen::Plots;
-            }
-        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| windows(ui, words, &mut chosen, true));
     });
     chosen
 }
 
-/// Play, step and the way through time.
-pub fn time(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
-    ui.horizontal(|ui| {
-        if ui.button(words.reset()).on_hover_text(format!("{}  (Home)", words.reset_hint())).clicked() {
-            asks.push(Request::Reset);
+/// What opens other parts of the window, from left to right or from the right.
+fn windows(ui: &mut Ui, words: Language, chosen: &mut Chosen, from_right: bool) {
+    let theme = if ui.visuals().dark_mode { words.light() } else { words.dark() };
+    let mut buttons = [
+        (Chosen::Plots, words.plots(), "P"),
+        (Chosen::Theme, theme, ""),
+        (Chosen::Language, words.language(), ""),
+        (Chosen::Help, "?", words.help()),
+    ];
+    if from_right {
+        buttons.reverse();
+    }
+    for (what, name, about) in buttons {
+        let mut response = ui.button(name);
+        if !about.is_empty() {
+            response = response.on_hover_text(about);
         }
-        if ui.button(words.replay()).on_hover_text(words.replay_hint()).clicked() {
-            asks.push(Request::Replay);
+        if response.clicked() {
+            *chosen = what;
         }
-        let name = if shown.playing { words.pause() } else { words.play() };
-        let button = egui::Button::new(RichText::new(name).strong()).min_size(egui::vec2(72.0, 0.0));
-        if ui.add(button).clicked() {
-            asks.push(Request::Play(!shown.playing));
-        }
-        if ui.button(words.step()).on_hover_text(format!("{}  (→)", words.step_hint())).clicked() {
-            asks.push(Request::Step);
-        }
-        let speed = ui.label(words.speed());
-        let mut wanted = shown.speed;
-        ui.spacing_mut().slider_width = 84.0;
-        let slider = Slider::new(&mut wanted, 0.05..=4.0).logarithmic(true).max_decimals(2).suffix("×");
-        if ui.add(slider).labelled_by(speed.id).on_hover_text(words.speed_hint()).changed() {
-            asks.push(Request::Speed(wanted));
-        }
-        ui.separator();
-        let time = ui.label(words.time());
-        let mut frame = shown.frames;
-        let room = ui.available_width() - 96.0;
-        ui.spacing_mut().slider_width = room.max(40.0);
-        let slider = Slider::new(&mut frame, 0..=shown.latest.max(1)).show_value(false);
-        if ui.add(slider).labelled_by(time.id).on_hover_text(words.rewind_hint()).changed() {
-            asks.push(Request::Play(false));
-            asks.push(Request::Seek(frame));
-        }
-        ui.label(RichText::new(format!("{:.2} s", shown.time)).monospace());
-    });
+    }
 }
 
-/// The numbers of the machine.
+/// Play, step and the way through time.
+pub fn time(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mut Vec<Request>) {
+    ui.horizontal(|ui| {
+        flow(ui, shown, words, asks);
+        if !narrow {
+            speed(ui, shown, words, asks);
+            ui.separator();
+            course(ui, shown, words, asks);
+        }
+    });
+    if narrow {
+        ui.horizontal(|ui| speed(ui, shown, words, asks));
+        ui.horizontal(|ui| course(ui, shown, words, asks));
+    }
+}
+
+/// What lets time pass.
+fn flow(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
+    if ui.button(words.reset()).on_hover_text(format!("{}  (Home)", words.reset_hint())).clicked() {
+        asks.push(Request::Reset);
+    }
+    if ui.button(words.replay()).on_hover_text(words.replay_hint()).clicked() {
+        asks.push(Request::Replay);
+    }
+    let name = if shown.playing { words.pause() } else { words.play() };
+    let button = egui::Button::new(RichText::new(name).strong()).min_size(egui::vec2(72.0, 0.0));
+    if ui.add(button).clicked() {
+        asks.push(Request::Play(!shown.playing));
+    }
+    if ui.button(words.step()).on_hover_text(format!("{}  (→)", words.step_hint())).clicked() {
+        asks.push(Request::Step);
+    }
+}
+
+/// Slow motion.
+fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
+    let speed = ui.label(words.speed());
+    let mut wanted = shown.speed;
+    ui.spacing_mut().slider_width = 84.0;
+    let slider = Slider::new(&mut wanted, 0.05..=4.0).logarithmic(true).max_decimals(2).suffix("×");
+    if ui.add(slider).labelled_by(speed.id).on_hover_text(words.speed_hint()).changed() {
+        asks.push(Request::Speed(wanted));
+    }
+}
+
+/// The way through time.
+fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
+    let time = ui.label(words.time());
+    let mut frame = shown.frames;
+    let room = ui.available_width() - 96.0;
+    ui.spacing_mut().slider_width = room.max(40.0);
+    let slider = Slider::new(&mut frame, 0..=shown.latest.max(1)).show_value(false);
+    if ui.add(slider).labelled_by(time.id).on_hover_text(words.rewind_hint()).changed() {
+        asks.push(Request::Play(false));
+        asks.push(Request::Seek(frame));
+    }
+    ui.label(RichText::new(format!("{:.2} s", shown.time)).monospace());
+}
+
+/// The line on top: the numbers of the machine.
 pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
     let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
     let h = shown.frame / f64::from(shown.substeps.max(1));
@@ -179,7 +232,30 @@ pub fn view_menu(ui: &mut Ui, words: Language, now: Show, asks: &mut Vec<Request
     let label = format!("{}: {}", words.colour(), quantity_name(words, now.quantity));
     ui.menu_button(label, |ui| {
         for quantity in Quantity::ALL {
-            if ui.radio_value(&mut show.quantity, quantity, quantity_name(words, quantity)).clicked() {
+            let mut choice = ui.radio_value(&mut show.quantity, quantity, quantity_name(words, quantity));
+            let about = match quantity {
+                Quantity::ElasticForce => words.elastic_force_hint(),
+                Quantity::VonMises => words.von_mises_hint(),
+                Quantity::Pressure => words.pressure_hint(),
+                _ => "",
+            };
+            if !about.is_empty() {
+                choice = choice.on_hover_text(about);
+            }
+            if choice.clicked() {
+                ui.close();
+            }
+        }
+        ui.separator();
+        ui.label(RichText::new(words.colour_map()).weak());
+        for map in ColourMap::ALL {
+            let name = match map {
+                ColourMap::Viridis => words.viridis(),
+                ColourMap::Cividis => words.cividis(),
+                ColourMap::Grey => words.grey(),
+                ColourMap::Diverging => words.diverging(),
+            };
+            if ui.radio_value(&mut show.map, map, name).clicked() {
                 ui.close();
             }
         }
@@ -188,6 +264,8 @@ pub fn view_menu(ui: &mut Ui, words: Language, now: Show, asks: &mut Vec<Request
         ui.checkbox(&mut show.springs, words.springs());
         ui.checkbox(&mut show.vertices, words.vertices());
         ui.checkbox(&mut show.arrows, words.arrows());
+        ui.checkbox(&mut show.contacts, words.contacts()).on_hover_text(words.contacts_hint());
+        ui.checkbox(&mut show.normals, words.normals());
         ui.checkbox(&mut show.velocities, words.velocities());
     });
     if show != now {

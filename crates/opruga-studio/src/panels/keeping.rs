@@ -4,12 +4,12 @@
 
 use crate::document::Document;
 use crate::engine;
+use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::shown::{Severity, Show};
 use crate::work::{self, breathe};
 use opruga::Options;
 use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
-use opruga::io::scene;
 use std::sync::mpsc::Receiver;
 
 /// Pictures of a film for a simulated second.
@@ -110,7 +110,12 @@ async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String
         What::Table => "csv",
     };
     let bytes = made(what, copied, show).await?;
-    hand_over(&copied.name, ending, &bytes)
+    let first = hand_over(&copied.name, ending, &bytes)?;
+    // Side by side there are two scenes.
+    let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
+    let right = pair::right_of(&Document::new(&copied.name, &copied.text)?, differences)?;
+    let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
+    Ok(format!("{first}, {second}"))
 }
 
 /// A file in the folder `out/studio` that is not there yet.
@@ -155,11 +160,8 @@ async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
 /// The engine of the scene, from its start.
 fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
     let document = Document::new(&copied.name, &copied.text)?;
-    let options = scene::Options { files: copied.files.clone(), ..scene::Options::default() };
-    let together = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
-    let read = scene::read(document.text().as_bytes(), &copied.name, &opruga::catalogue(), &options);
-    let (blueprint, _) = read.map_err(together)?;
-    engine::build(blueprint, &Options::default()).map_err(|e| e.to_string())
+    let built = pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default());
+    built.map_err(|refusal| refusal.to_string())
 }
 
 async fn table(copied: &Copied) -> Result<Vec<u8>, String> {

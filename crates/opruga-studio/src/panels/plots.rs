@@ -16,6 +16,8 @@ struct Moment {
     energy: [f64; 7],
     momentum: [f64; 3],
     cost: f64,
+    /// Mean and largest distance of the sides, and what the right one has more of energy.
+    beside: Option<[f64; 3]>,
     readings: Vec<(&'static str, f64)>,
 }
 
@@ -24,6 +26,8 @@ struct Moment {
 pub struct Plots {
     moments: Vec<Moment>,
     opened: u64,
+    /// What the right side differs in.
+    words: Option<Vec<String>>,
     body: Option<String>,
 }
 
@@ -38,6 +42,12 @@ impl Plots {
                 self.moments.clear();
             }
             self.body = selected.map(String::from);
+        }
+        // What has differed from the start is computed from the start: the old curves are those of others.
+        let words = shown.beside.as_ref().map(|beside| beside.words.clone());
+        if self.words != words {
+            self.words = words;
+            self.moments.iter_mut().for_each(|moment| moment.beside = None);
         }
         if self.moments.last().is_some_and(|last| last.time == shown.time) {
             return;
@@ -59,6 +69,10 @@ impl Plots {
             energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work, e.losses, e.error],
             momentum: shown.momentum,
             cost: 1e3 * shown.pace.frame_cost,
+            beside: shown.beside.as_ref().and_then(|beside| {
+                let [mean, largest] = beside.distances?;
+                Some([mean, largest, beside.energy?])
+            }),
             readings: body.map_or_else(Vec::new, |body| body.readings.clone()),
         });
     }
@@ -66,8 +80,9 @@ impl Plots {
     /// Shows the curves side by side.
     pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>) {
         let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
-        let count = if gas { 4 } else { 3 };
-        let size = egui::vec2(ui.available_width() / count as f32 - 10.0, ui.available_height());
+        let beside = shown.beside.is_some();
+        let count = 3 + usize::from(gas) + 2 * usize::from(beside);
+        let size = egui::vec2((ui.available_width() / count as f32 - 10.0).max(200.0), ui.available_height());
         ui.horizontal(|ui| {
             let energies = [
                 (words.kinetic(), 0),
@@ -81,6 +96,14 @@ impl Plots {
             let curve = |of: &dyn Fn(&Moment) -> f64| -> Vec<[f64; 2]> {
                 self.moments.iter().map(|moment| [moment.time, of(moment)]).collect()
             };
+            if beside {
+                let difference = |k: usize| -> Vec<[f64; 2]> {
+                    self.moments.iter().filter_map(|m| Some([m.time, m.beside?[k]])).collect()
+                };
+                let lines = vec![(words.mean_distance(), difference(0)), (words.largest_distance(), difference(1))];
+                plot(ui, "distance", words.distance_of_sides(), size, lines);
+                plot(ui, "energy beside", words.energy_of_sides(), size, vec![("", difference(2))]);
+            }
             let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
             plot(ui, "energy", words.energy(), size, lines);
             if gas {

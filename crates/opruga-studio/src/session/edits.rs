@@ -4,8 +4,9 @@
 //! models and integrators change on the moving body; a body that is moved, turned, scaled or given another resolution is
 //! taken away and set down anew at rest in its new form.
 
-use super::{Refusal, Session, read};
+use super::Session;
 use crate::document::{add_table, kind_table, numbers, toml};
+use crate::pair::{Refusal, read};
 use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};
 use opruga::io::SceneError;
@@ -130,8 +131,7 @@ impl Session {
                 Err(error) => {
                     // None of them, rather than some.
                     self.document = documents;
-                    let text = read(&self.document, &self.files).map_err(Refusal::Scene)?;
-                    self.engine = crate::engine::build(text, &self.options).map_err(Refusal::World)?;
+                    self.engine = self.build(&self.document)?;
                     self.engine.rewind(&before).map_err(Refusal::World)?;
                     return Err(Refusal::World(error));
                 }
@@ -154,8 +154,8 @@ impl Session {
             Edit::Duplicate(name) => {
                 let mut table = self.table_of(name)?;
                 table.insert("name", self.document.free_name(name).into());
-                let size = self.size_of(name);
-                shift(&mut table, [1.15 * size, 0.0, 0.0], self.dimension());
+                let (size, way) = (self.size_of(name), self.way_of(name));
+                shift(&mut table, [way[0] + 1.15 * size, way[1], way[2]], self.dimension());
                 self.exchange("duplicate", None, Some(table))
             }
             Edit::Place(name, placed) => {
@@ -168,6 +168,7 @@ impl Session {
                 let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
                 let shape = shape.ok_or_else(|| Refusal::Scene(format!("body `{name}` has no shape to change")))?;
                 shape.insert(*field, toml(value));
+                shift(&mut table, self.way_of(name), self.dimension());
                 self.exchange(field, Some(name), Some(table))
             }
             Edit::Delete(name) => self.exchange("delete", Some(name), None),
@@ -183,6 +184,24 @@ impl Session {
             let error = SceneError::new("studio.copies", format!("`{name}` is one of several copies"));
             Refusal::Scene(error.hint("take `copies` out of the scene to change them one by one").to_string())
         })
+    }
+
+    /// How far the middle of a body has gone from where it was set down [m].
+    fn way_of(&mut self, name: &str) -> [f64; 3] {
+        if self.at_start() {
+            return [0.0; 3];
+        }
+        let shown = self.engine.shown(&self.show);
+        let number = shown.bodies.iter().find(|body| body.name == name).map(|body| (body.number, body.nodes));
+        let Some((number, nodes)) = number else { return [0.0; 3] };
+        let Some((middle, at)) = self.engine.rest_center(number) else { return [0.0; 3] };
+        let mut mean = [0.0; 3];
+        for position in (0..nodes as u32).filter_map(|node| self.engine.position(number, node)) {
+            for d in 0..3 {
+                mean[d] += position[d] / nodes as f64;
+            }
+        }
+        [0, 1, 2].map(|d| mean[d] - at[d] - middle[d])
     }
 
     /// The width of a body [m].
@@ -210,7 +229,8 @@ impl Session {
             2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
             _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
         };
-        let position = [0, 1, 2].map(|d| at[d] + middle[d] - placed.scaled * turned[d] + placed.moved[d]);
+        let way = self.way_of(name);
+        let position = [0, 1, 2].map(|d| at[d] + way[d] + middle[d] - placed.scaled * turned[d] + placed.moved[d]);
         table.insert("position", Toml::Array(numbers(&position[..dimension])));
         if placed.scaled != 1.0 {
             let scale = number_of(table.get("scale")).unwrap_or(1.0) * placed.scaled;
@@ -262,7 +282,9 @@ impl Session {
         if let Some(mut table) = new {
             if old.is_some() {
                 let name = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
-                table.insert("name", self.document.free_name(&name).into());
+                let new = self.document.free_name(&name);
+                self.renamed.push((name, new.clone()));
+                table.insert("name", new.into());
             }
             self.document.push_command(add_table(now, &table));
             let added = match read(&self.document, &self.files) {

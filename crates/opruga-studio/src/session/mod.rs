@@ -14,13 +14,13 @@ pub use edits::{Edit, Placed};
 pub use pointer::Grip;
 
 use crate::document::Document;
-use crate::engine::{self, Engine};
+use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
+use crate::pair::{self, Difference, Refusal, add_difference};
 use crate::shown::{Message, Offer, Pace, Severity, Show, Shown};
-use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, SceneError, scene};
+use opruga::io::Files;
 use opruga::{Options, WorldError};
 use pointer::Held;
 use std::time::Duration;
@@ -80,6 +80,10 @@ pub enum Request {
     Accept(Offer),
     /// What shall be seen.
     Show(Show),
+    /// Show the scene twice, side by side, or no longer.
+    Compare(bool),
+    /// Let the right one differ in this.
+    Differ(Difference),
 }
 
 /// A scene that runs while a person works on it.
@@ -88,6 +92,10 @@ pub struct Session {
     files: Files,
     options: Options,
     engine: Box<dyn Engine>,
+    /// In what the scene on the right differs, where there is one.
+    differences: Option<Vec<Difference>>,
+    /// Bodies that were set down anew under another name: old and new.
+    renamed: Vec<(String, String)>,
     /// Commands that the scene had when it was opened; those behind them were recorded.
     own_commands: usize,
     keyframes: Keyframes,
@@ -117,44 +125,22 @@ impl core::fmt::Debug for Session {
     }
 }
 
-/// All errors of a scene as one text.
-fn together(errors: &[SceneError]) -> String {
-    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
-}
-
-/// Reads the text of a document.
-fn read(document: &Document, files: &Files) -> Result<AnyBlueprint, String> {
-    let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
-    let file = format!("{}.toml", document.name);
-    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
-    read.map(|(blueprint, _)| blueprint).map_err(|errors| together(&errors))
-}
-
-/// Why a world is not the one that was wanted.
-enum Refusal {
-    Scene(String),
-    World(WorldError),
-}
-
 impl Session {
     /// Opens a scene.
     ///
     /// # Errors
     /// Everything that is wrong with it, as one text.
     pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, String> {
-        let own = scene::Options { files: files.clone(), ..scene::Options::default() };
-        // The reader of scenes knows more of what can be wrong than the parser of documents.
-        let file = format!("{name}.toml");
-        let (blueprint, _) =
-            scene::read(text.as_bytes(), &file, &opruga::catalogue(), &own).map_err(|e| together(&e))?;
-        let document = Document::new(name, text)?;
-        let engine = engine::build(blueprint, &options).map_err(|error| error.to_string())?;
+        let document = Document::unread(name, text, &files)?;
+        let engine = pair::build(&document, None, &files, &options).map_err(|refusal| refusal.to_string())?;
         let mut session = Session {
             own_commands: document.commands(),
             document,
             files,
             options,
             engine,
+            differences: None,
+            renamed: Vec::new(),
             keyframes: Keyframes::new(KEYFRAME_BYTES),
             latest: 0,
             goal: None,
@@ -215,7 +201,7 @@ impl Session {
                 self.release();
                 Ok(())
             }
-            Request::Unpin(body, node) => self.unpin(body, node).map_err(Refusal::World),
+            Request::Unpin(body, node) => self.let_go(body, node),
             Request::Set(path, value) => self.set(&path, value),
             Request::Models(body, models) => self.change(body, Some(models), None),
             Request::Integrator(Some(body), values) => self.change(body, None, Some(values)),
@@ -227,6 +213,12 @@ impl Session {
             Request::Show(show) => {
                 self.show = show;
                 Ok(())
+            }
+            Request::Compare(wanted) => self.compare(wanted.then(Vec::new)),
+            Request::Differ(difference) => {
+                let mut differences = self.differences.clone().unwrap_or_default();
+                add_difference(&mut differences, difference);
+                self.compare(Some(differences))
             }
         };
         match outcome {
@@ -328,7 +320,9 @@ impl Session {
 
     fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
         let offer = match error {
-            WorldError::Diverged { .. } | WorldError::Step { .. } => Some(Offer::HalveStep),
+            WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. } => {
+                Some(Offer::HalveStep)
+            }
             WorldError::UnstableStep { substeps, .. } => {
                 self.refused = request;
                 // A little more than the least, so that the next change does not fail at once.
@@ -354,6 +348,7 @@ impl Session {
         shown.recorded = self.document.commands().saturating_sub(self.own_commands);
         shown.kept_bytes = self.keyframes.bytes();
         shown.pins = self.pins_shown();
+        shown.renamed.clone_from(&self.renamed);
         if shown.bodies.len() <= 64 {
             for body in &mut shown.bodies {
                 body.shape = self.document.shape(&body.name, usize::from(shown.dimension));
@@ -367,6 +362,11 @@ impl Session {
         let mut document = self.document.clone();
         document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
         document.text()
+    }
+
+    /// In what the scene on the right differs, where there is one.
+    pub fn differences(&self) -> Option<&[Difference]> {
+        self.differences.as_deref()
     }
 
     /// The text of the scene as it stands.

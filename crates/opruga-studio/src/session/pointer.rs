@@ -1,7 +1,8 @@
 //! What the pointer does to bodies: it pulls, pushes and pins.
 
-use super::{Refusal, Session};
+use super::Session;
 use crate::engine::Given;
+use crate::pair::Refusal;
 use opruga::WorldError;
 
 /// The force of a push for each metre between the node and the pointer [N/m].
@@ -72,7 +73,7 @@ impl Session {
         let mut held = Held { grip, body, node, command: None, pointer: point, moved: false, led: now + 1 };
         match grip {
             Grip::Pull => {
-                let given = self.engine.pull(body, point)?;
+                let given = self.engine.pull(body, node, point)?;
                 held.command = Some(self.write(given));
             }
             Grip::Push => {}
@@ -80,7 +81,7 @@ impl Session {
                 if self.pinned(body, node).is_some() {
                     // A pinned point goes with the pointer and is pinned where that lets go.
                     self.unpin(body, node)?;
-                    let given = self.engine.pull(body, point)?;
+                    let given = self.engine.pull(body, node, point)?;
                     held.command = Some(self.write(given));
                 } else {
                     self.pin(body, node)?;
@@ -105,10 +106,23 @@ impl Session {
         self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node) && pin.holds(now))
     }
 
-    pub(super) fn unpin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
+    /// Frees a node that a person or the scene has pinned.
+    pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Refusal> {
+        self.branch()?;
+        let past = self.past("unpin");
+        self.unpin(body, node).map_err(Refusal::World)?;
+        self.remember(past);
+        Ok(())
+    }
+
+    fn unpin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
         if let Some(place) = self.pinned(body, node) {
             self.end(self.pins[place].command)?;
             self.pins[place].until = Some(self.engine.frames());
+        } else {
+            // A pin of the scene itself.
+            let given = self.engine.free(body, node)?;
+            self.write(given);
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! Back and forth in time: keyframes, other futures, undo and redo.
 
 use super::pointer::Pinned;
-use super::{KEYFRAME_BYTES, Refusal, Session, read};
+use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
-use crate::engine;
+use crate::engine::Engine;
 use crate::keyframes::Keyframes;
+use crate::pair::{self, Difference, Refusal};
 use crate::shown::Severity;
 
 /// A moment that can be gone back to.
@@ -16,6 +17,7 @@ pub(super) struct Past {
     pub(super) own_commands: usize,
     pub(super) frame: u64,
     pub(super) pins: Vec<Pinned>,
+    pub(super) differences: Option<Vec<Difference>>,
 }
 
 impl Session {
@@ -42,8 +44,7 @@ impl Session {
         }
         let mut document = self.document.clone();
         document.cut(self.own_commands, self.engine.time());
-        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
-        let mut engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        let mut engine = self.build(&document)?;
         engine.rewind(&self.engine.snapshot()).map_err(Refusal::World)?;
         (self.document, self.engine) = (document, engine);
         self.cut_pins();
@@ -61,6 +62,7 @@ impl Session {
             own_commands: self.own_commands,
             frame: self.engine.frames(),
             pins: self.pins.clone(),
+            differences: self.differences.clone(),
         }
     }
 
@@ -77,14 +79,56 @@ impl Session {
         }
     }
 
+    /// Builds the world of a document, and the one on its right.
+    pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Refusal> {
+        pair::build(document, self.differences.as_deref(), &self.files, &self.options)
+    }
+
+    /// Shows the scene twice, the second time with differences, or once (none). Both go from the start to the present
+    /// moment again: what differs has differed all the time.
+    pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Refusal> {
+        if differences == self.differences {
+            return Ok(());
+        }
+        let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
+        let past = self.past(&newest.unwrap_or_else(|| "side by side".into()));
+        // Where both are still on the way to a moment, that moment.
+        let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
+        self.with_differences(differences, |session| {
+            session.take(session.document.clone(), session.own_commands, latest)?;
+            session.goal = (goal > 0).then_some(goal);
+            Ok(())
+        })?;
+        self.pins.clone_from(&past.pins);
+        self.remember(past);
+        Ok(())
+    }
+
+    /// Takes other differences along with what `act` does. Where that is refused they stay as they were.
+    fn with_differences(
+        &mut self,
+        differences: Option<Vec<Difference>>,
+        act: impl FnOnce(&mut Session) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        if differences == self.differences {
+            return act(self);
+        }
+        // Keyframes are those of other worlds.
+        let keyframes = std::mem::replace(&mut self.keyframes, Keyframes::new(KEYFRAME_BYTES));
+        let before = std::mem::replace(&mut self.differences, differences);
+        let outcome = act(self);
+        if outcome.is_err() {
+            (self.keyframes, self.differences) = (keyframes, before);
+        }
+        outcome
+    }
+
     /// Builds the world of a document and goes to a frame that it shares with the present course of things.
     pub(super) fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Refusal> {
         self.release();
-        let blueprint = read(&document, &self.files).map_err(Refusal::Scene)?;
-        let engine = engine::build(blueprint, &self.options).map_err(Refusal::World)?;
+        let mut engine = self.build(&document)?;
         let shared = frame.min(self.engine.frames().max(self.latest));
         let state = self.keyframes.before(shared).map(|(_, state)| state.to_vec());
-        let mut engine = engine;
         // Where the start itself was changed there is no common past, and the way goes from the start.
         let common = frame > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
@@ -104,7 +148,7 @@ impl Session {
     pub(super) fn step_back(&mut self) -> Result<(), Refusal> {
         let Some(past) = self.undo.last().cloned() else { return Ok(()) };
         let present = Past { label: past.label.clone(), ..self.past("") };
-        self.take(past.document, past.own_commands, past.frame)?;
+        self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
         self.pins = past.pins;
         self.undo.pop();
         // What is redone begins where it was done.
@@ -116,7 +160,9 @@ impl Session {
     pub(super) fn step_forward(&mut self) -> Result<(), Refusal> {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
         let present = Past { label: future.label.clone(), ..self.past("") };
-        self.take(future.document, future.own_commands, future.frame)?;
+        self.with_differences(future.differences, |session| {
+            session.take(future.document, future.own_commands, future.frame)
+        })?;
         self.pins = future.pins;
         self.redo.pop();
         self.undo.push(present);

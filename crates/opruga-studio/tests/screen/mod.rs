@@ -1,6 +1,8 @@
 //! A screen without a graphics card: the triangles of the interface, drawn one by one, so that pictures of the window can
 //! be compared on every machine.
 
+pub(crate) mod window;
+
 use egui::epaint::{ClippedPrimitive, Primitive, Vertex};
 use egui::{Color32, ColorImage, TextureId, TexturesDelta};
 use egui_kittest::{Harness, TestRenderer};

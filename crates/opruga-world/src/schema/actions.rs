@@ -135,6 +135,15 @@ pub const COMMANDS: &[Section] = &[
     },
     Section {
         spec: &section(
+            "free",
+            "Let go of nodes that are held",
+            "Pins of the body, and of commands before this one, hold these nodes no longer.",
+            &[AT],
+        ),
+        children: LOAD_CHILDREN,
+    },
+    Section {
+        spec: &section(
             "set",
             "Change a parameter",
             "",

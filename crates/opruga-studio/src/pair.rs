@@ -1,0 +1,352 @@
+//! A scene under two configurations in lock step: what is done to the one on the left is done to the one on the right.
+
+use crate::document::{Document, kind_table};
+use crate::engine::{self, Engine, Given};
+use crate::shown::{Beside, Show, Shown};
+use opruga::blueprint::AnyBlueprint;
+use opruga::core::spec::{Value, Values};
+use opruga::io::{Files, SceneError, scene};
+use opruga::{Options, WorldError};
+use std::sync::Arc;
+use toml_edit::Value as Toml;
+
+/// In what the right one differs from the left one, from the start on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// A parameter by its path.
+    Set(String, Value),
+    /// The models of a body.
+    Models(String, Vec<Values>),
+    /// The integrator of the scene (none) or of a body.
+    Integrator(Option<String>, Values),
+}
+
+impl Difference {
+    /// What it is about: a later one about the same replaces an earlier one.
+    pub fn about(&self) -> String {
+        match self {
+            Difference::Set(path, _) => path.clone(),
+            Difference::Models(body, _) => format!("body.{body}.models"),
+            Difference::Integrator(None, _) => "integrator".into(),
+            Difference::Integrator(Some(body), _) => format!("body.{body}.integrator"),
+        }
+    }
+
+    /// A few words for the picture.
+    pub fn words(&self) -> String {
+        match self {
+            Difference::Set(path, value) => {
+                let parts: Vec<&str> = path.split('.').collect();
+                let field = parts.last().copied().unwrap_or_default().replace('_', " ");
+                match value {
+                    Value::Number(x) => format!("{field} {}", opruga::draw::format_value(*x)),
+                    value => format!("{field} {value}"),
+                }
+            }
+            Difference::Models(_, models) => {
+                models.iter().map(|m| m.kind().replace('_', " ")).collect::<Vec<_>>().join(" + ")
+            }
+            Difference::Integrator(_, values) => values.kind().replace('_', " "),
+        }
+    }
+}
+
+/// Adds a difference to those that there are. Another kind of model or integrator takes the values of the former one away.
+pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
+    let about = new.about();
+    let below = format!("{about}.");
+    let whole = !matches!(new, Difference::Set(..));
+    differences.retain(|old| old.about() != about && !(whole && old.about().starts_with(&below)));
+    differences.push(new);
+}
+
+/// The scene on the right: that on the left with the differences written into it.
+///
+/// # Errors
+/// A sentence where a difference has no place in the scene.
+pub fn right_of(document: &Document, differences: &[Difference]) -> Result<Document, String> {
+    let mut right = document.clone();
+    for difference in differences {
+        let written = match difference {
+            Difference::Set(path, value) => right.set(path, value),
+            Difference::Integrator(None, values) => {
+                right.set_integrator(values);
+                true
+            }
+            Difference::Models(name, _) | Difference::Integrator(Some(name), _) => {
+                right.body(name).is_some_and(|body| {
+                    let mut table = body;
+                    match difference {
+                        Difference::Models(_, models) => {
+                            let list = models.iter().map(|m| Toml::InlineTable(kind_table(m, None)));
+                            table.insert("models", Toml::Array(list.collect()));
+                        }
+                        Difference::Integrator(_, values) => {
+                            table.insert("integrator", Toml::InlineTable(kind_table(values, None)));
+                        }
+                        Difference::Set(..) => {}
+                    }
+                    right.replace_body(name, &table)
+                })
+            }
+        };
+        if !written {
+            let about = difference.about();
+            let error = SceneError::new("studio.difference", format!("`{about}` stands nowhere in the scene itself"));
+            let hint = "the two sides can differ in bodies that are there from the start and are no copies";
+            return Err(error.hint(hint).to_string());
+        }
+    }
+    Ok(right)
+}
+
+/// Why a world is not the one that was wanted.
+#[derive(Debug)]
+pub enum Refusal {
+    /// All that is wrong with a scene.
+    Scene(String),
+    /// What a world refuses.
+    World(WorldError),
+}
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Refusal::Scene(text) => f.write_str(text),
+            Refusal::World(error) => error.fmt(f),
+        }
+    }
+}
+
+/// Reads the text of a document.
+///
+/// # Errors
+/// Everything that is wrong with it, as one text.
+pub fn read(document: &Document, files: &Files) -> Result<AnyBlueprint, String> {
+    let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
+    let file = format!("{}.toml", document.name);
+    let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
+    let together = |errors: Vec<SceneError>| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    read.map(|(blueprint, _)| blueprint).map_err(together)
+}
+
+/// Builds the engine of a scene; with differences, also the one on its right.
+///
+/// # Errors
+/// [`Refusal`] where either of the two scenes cannot be.
+pub fn build(
+    document: &Document,
+    differences: Option<&[Difference]>,
+    files: &Files,
+    options: &Options,
+) -> Result<Box<dyn Engine>, Refusal> {
+    let one = |document: &Document| {
+        let blueprint = read(document, files).map_err(Refusal::Scene)?;
+        engine::build(blueprint, options).map_err(Refusal::World)
+    };
+    let left = one(document)?;
+    let Some(differences) = differences else { return Ok(left) };
+    let right = one(&right_of(document, differences).map_err(Refusal::Scene)?)?;
+    let words = differences.iter().map(Difference::words).collect();
+    Ok(Box::new(Pair { left, right, words, stopped: None, behind: false }))
+}
+
+/// Two engines of one scene.
+struct Pair {
+    left: Box<dyn Engine>,
+    right: Box<dyn Engine>,
+    /// In what the right one differs.
+    words: Vec<String>,
+    /// Why the right one does not go on.
+    stopped: Option<String>,
+    /// Whether the right one has missed a command: only one that is built anew can go on then.
+    behind: bool,
+}
+
+/// What the snapshot of a pair begins with.
+const MARK: &[u8; 8] = b"opruga||";
+
+impl Pair {
+    /// Does to the right one what the left one has accepted.
+    fn follow<T>(&mut self, act: impl FnOnce(&mut dyn Engine) -> Result<T, WorldError>) {
+        if self.stopped.is_none()
+            && let Err(error) = act(&mut *self.right)
+        {
+            self.stopped = Some(error.to_string());
+        }
+        self.behind |= self.stopped.is_some();
+    }
+
+    /// The mean square root and the largest distance between the nodes of both [m]; none where the bodies differ.
+    fn distances(&self) -> Option<[f64; 2]> {
+        let (left, right) = (self.left.positions(), self.right.positions());
+        if self.stopped.is_some() || left.len() != right.len() || left.is_empty() {
+            return None;
+        }
+        let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>();
+        let squares: Vec<f64> = left.iter().zip(&right).map(square).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        Some([mean.sqrt(), squares.iter().copied().fold(0.0, f64::max).sqrt()])
+    }
+}
+
+impl Engine for Pair {
+    fn frame(&mut self) -> Result<(), WorldError> {
+        self.left.frame()?;
+        if self.stopped.is_none()
+            && let Err(error) = self.right.frame()
+        {
+            self.stopped = Some(error.to_string());
+        }
+        Ok(())
+    }
+    fn frames(&self) -> u64 {
+        self.left.frames()
+    }
+    fn frame_seconds(&self) -> f64 {
+        self.left.frame_seconds()
+    }
+    fn time(&self) -> f64 {
+        self.left.time()
+    }
+    fn snapshot(&self) -> Vec<u8> {
+        let (left, right) = (self.left.snapshot(), self.right.snapshot());
+        let reason = self.stopped.as_deref().unwrap_or_default().as_bytes();
+        let mut bytes = MARK.to_vec();
+        for part in [&left[..], reason] {
+            bytes.extend((part.len() as u64).to_le_bytes());
+            bytes.extend(part);
+        }
+        bytes.extend(right);
+        bytes
+    }
+    fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        fn part(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+            let (length, rest) = bytes.split_first_chunk::<8>()?;
+            rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
+        }
+        let parts = bytes.strip_prefix(MARK).and_then(part).and_then(|(left, rest)| {
+            let (reason, right) = part(rest)?;
+            Some((left, std::str::from_utf8(reason).ok()?, right))
+        });
+        let foreign = || WorldError::Snapshot("it is not that of two scenes side by side".into());
+        let (left, reason, right) = parts.ok_or_else(foreign)?;
+        let before = self.left.snapshot();
+        self.left.rewind(left)?;
+        if self.behind {
+            return Ok(());
+        }
+        if let Err(error) = self.right.rewind(right) {
+            self.left.rewind(&before)?;
+            return Err(error);
+        }
+        self.stopped = (!reason.is_empty()).then(|| reason.to_string());
+        Ok(())
+    }
+    fn hash(&self) -> u64 {
+        self.left.hash()
+    }
+    fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError> {
+        let given = self.left.pull(body, node, pointer)?;
+        self.follow(|right| right.pull(body, node, pointer));
+        Ok(given)
+    }
+    fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
+        let row = self.left.lead(number, pointer)?;
+        self.follow(|right| right.lead(number, pointer));
+        Ok(row)
+    }
+    fn finish(&mut self, number: usize) -> Result<f64, WorldError> {
+        let until = self.left.finish(number)?;
+        self.follow(|right| right.finish(number));
+        Ok(until)
+    }
+    fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError> {
+        let given = self.left.push(body, node, force)?;
+        self.follow(|right| right.push(body, node, force));
+        Ok(given)
+    }
+    fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
+        let given = self.left.pin(body, node)?;
+        self.follow(|right| right.pin(body, node));
+        Ok(given)
+    }
+    fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
+        let given = self.left.free(body, node)?;
+        self.follow(|right| right.free(body, node));
+        Ok(given)
+    }
+    fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError> {
+        let given = self.left.set(path, value.clone())?;
+        self.follow(|right| right.set(path, value));
+        Ok(given)
+    }
+    fn remove(&mut self, name: &str) -> Result<Given, WorldError> {
+        let given = self.left.remove(name)?;
+        self.follow(|right| right.remove(name));
+        Ok(given)
+    }
+    fn change(
+        &mut self,
+        body: usize,
+        models: Option<Vec<Values>>,
+        integrator: Option<Values>,
+    ) -> Result<Given, WorldError> {
+        let given = self.left.change(body, models.clone(), integrator.clone())?;
+        self.follow(|right| right.change(body, models, integrator));
+        Ok(given)
+    }
+    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError> {
+        self.left.add_from(scene.clone())?;
+        self.follow(|right| right.add_from(scene));
+        Ok(())
+    }
+    fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {
+        self.left.nearest(body, point)
+    }
+    fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
+        self.left.position(body, node)
+    }
+    fn positions(&self) -> Vec<[f64; 3]> {
+        self.left.positions()
+    }
+    fn name(&self, body: usize) -> Option<String> {
+        self.left.name(body)
+    }
+    fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])> {
+        self.left.rest_center(body)
+    }
+    fn shown(&mut self, show: &Show) -> Shown {
+        let mut shown = self.left.shown(show);
+        let right = self.right.shown(show);
+        let energy = self.stopped.is_none().then(|| right.energy.total() - shown.energy.total());
+        shown.beside = Some(Beside {
+            distances: self.distances(),
+            energy,
+            words: self.words.clone(),
+            stopped: self.stopped.clone(),
+            right: Arc::new(right),
+        });
+        shown
+    }
+    fn row(&mut self) -> Vec<(String, f64)> {
+        let mut row = self.left.row();
+        let (right, distances) = (self.right.row(), self.distances());
+        let stored = |row: &[(String, f64)]| -> f64 {
+            let stocks = ["kinetic", "elastic", "gas", "gravity"];
+            row.iter().filter(|(name, _)| stocks.contains(&name.as_str())).map(|(_, x)| x).sum()
+        };
+        // Where the right one has stopped, there is nothing to compare.
+        if self.stopped.is_none() {
+            let energy = stored(&right) - stored(&row);
+            row.extend(right.into_iter().skip(1).map(|(name, x)| (format!("right.{name}"), x)));
+            let [mean, largest] = distances.unwrap_or([f64::NAN; 2]);
+            let named = [("mean_distance", mean), ("largest_distance", largest), ("energy", energy)];
+            row.extend(named.map(|(name, x)| (format!("difference.{name}"), x)));
+        }
+        row
+    }
+    fn moment(&mut self, show: &Show) -> opruga::draw::Picture {
+        self.left.moment(show)
+    }
+}
