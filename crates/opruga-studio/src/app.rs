@@ -237,9 +237,10 @@ impl Studio {
     fn on_canvas(&mut self, ui: &mut Ui, rect: egui::Rect, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let spot = rect.min + egui::vec2(10.0, 10.0);
-        egui::Area::new(egui::Id::unique("tools of the canvas")).fixed_pos(spot).order(egui::Order::Middle).show(
-            ui.ctx(),
-            |ui| {
+        let tools = egui::Area::new(egui::Id::unique("tools of the canvas"))
+            .fixed_pos(spot)
+            .order(egui::Order::Middle)
+            .show(ui.ctx(), |ui| {
                 Frame::popup(ui.style()).inner_margin(Margin::same(5)).show(ui, |ui| {
                     ui.set_max_width((rect.width() - 32.0).max(40.0));
                     ui.horizontal_wrapped(|ui| {
@@ -264,8 +265,8 @@ impl Studio {
                         bars::view_menu(ui, words, self.show, asks);
                     });
                 });
-            },
-        );
+            });
+        self.canvas.tools = Some(tools.response.rect);
         self.message(ui, rect, shown, asks);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));

@@ -36,6 +36,8 @@ pub fn listen() {
 
 /// The processor time of this thread [ms]; where the system does not tell it, the time that has passed.
 fn processor_time(begin: Instant) -> f64 {
+    // The system counts when a thread gives way.
+    std::thread::yield_now();
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
@@ -44,7 +46,7 @@ fn processor_time(begin: Instant) -> f64 {
 /// What was measured of one frame [ms].
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    /// From the beginning of the frame before to that of this one.
+    /// What passes from the beginning of the frame before to that of this one.
     whole: f64,
     /// Processor time of panels and scene, up to the shapes that are to be drawn.
     interface: f64,

@@ -87,10 +87,11 @@ impl Course {
         let begin = self.begin;
         let clock = move || begin.elapsed();
         let now = clock();
-        let (before, was_seeking) = (self.session.frames(), self.session.is_seeking());
+        let (before, was_seeking, told) = (self.session.frames(), self.session.is_seeking(), self.session.told());
         self.session.tick(now.saturating_sub(self.last), budget, &clock);
         self.last = now;
-        news |= self.session.frames() != before || was_seeking;
+        // A frame that fails is news too, though it leaves everything as it was.
+        news |= self.session.frames() != before || was_seeking || self.session.told() != told;
         news.then(|| self.session.shown())
     }
 }

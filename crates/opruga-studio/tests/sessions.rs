@@ -333,9 +333,10 @@ fn the_contact_forces_of_a_body_at_rest_carry_its_weight() {
     let mut session = Session::open("quiet", &text[..end], Files::default(), Options::default()).expect("it opens");
     session.handle(Request::Show(Show { contacts: true, normals: true, ..Show::default() }));
     assert!(session.shown().picture.arrows.iter().all(|a| a.kind != ArrowKind::Contact), "in the air there are none");
-    // It lies still after some seconds; what is left swings about its weight of 9.81 N.
+    // Once it has come to lie, obstacles carry its weight of 9.81 N and what it still gains in momentum. One substep of
+    // every thirty-two is looked at, and vertices still tremble: a twentieth may be missed.
     pass(&mut session, 600);
-    let mut sum = [0.0; 2];
+    let (mut sum, before) = ([0.0; 2], session.shown().momentum);
     for _ in 0..60 {
         pass(&mut session, 1);
         let arrows = session.shown().picture.arrows;
@@ -348,7 +349,8 @@ fn the_contact_forces_of_a_body_at_rest_carry_its_weight() {
             |n: &&&opruga::draw::ArrowPicture| (0..2).map(|d| n.vector[d] * (n.from[d] - middle[d])).sum::<f64>() > 0.0;
         assert_eq!(normals.iter().filter(out).count(), 36);
     }
-    assert!((sum[1] - 9.81).abs() < 0.1 && sum[0].abs() < 0.05, "{sum:?}");
+    let gained = session.shown().momentum[1] - before[1];
+    assert!((sum[1] - 9.81 - gained).abs() < 0.4 && sum[0].abs() < 0.05, "{sum:?}, {gained}");
 }
 
 #[test]

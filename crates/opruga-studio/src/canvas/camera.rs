@@ -5,7 +5,7 @@ use opruga::draw::View;
 
 /// The room around a scene [points].
 const BORDER: f32 = 36.0;
-/// The room above it that the tools take [points].
+/// The room above it that the tools take, before anybody has seen them [points].
 const TOOLS: f32 = 50.0;
 
 /// The point in the middle and the scale.
@@ -23,15 +23,17 @@ impl Default for Flat {
 }
 
 impl Flat {
-    /// Shows the whole of a view.
-    pub(crate) fn fit(&mut self, view: &View, rect: Rect) {
+    /// Shows the whole of a view below the tools.
+    pub(crate) fn fit(&mut self, view: &View, rect: Rect, tools: Option<Rect>) {
+        let tools =
+            tools.map_or(TOOLS, |tools| tools.bottom() - rect.top()).clamp(TOOLS, (0.5 * rect.height()).max(TOOLS));
         // Bodies move: there is room around them for that.
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
-        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER - TOOLS).max(8.0))];
+        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER - tools).max(8.0))];
         self.scale = (room[0] / wide).min(room[1] / tall);
         let up = if view.y_down { -0.5 } else { 0.5 };
-        self.center = [view.center()[0], view.center()[1] + up * f64::from(TOOLS) / self.scale];
+        self.center = [view.center()[0], view.center()[1] + up * f64::from(tools) / self.scale];
     }
 
     pub(crate) fn to_screen(self, rect: Rect, point: [f64; 3], y_down: bool) -> Pos2 {

@@ -18,7 +18,7 @@ use crate::words::Language;
 use camera::Flat;
 use egui::{PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
-use opruga::draw::View;
+use opruga::draw::{ColliderPicture, View};
 use pick::Under;
 use std::sync::Arc;
 pub use tool::Tool;
@@ -51,6 +51,8 @@ pub struct Canvas {
     pub selected: Option<String>,
     /// Where it is in the window.
     rect: Option<Rect>,
+    /// Where the tools lie over it.
+    pub tools: Option<Rect>,
     flat: Flat,
     space: space::Space,
     /// What draws the scene beside it.
@@ -106,7 +108,7 @@ impl Canvas {
         self.fitted_size = None;
         self.space.look_at_all(&view);
         if let Some(rect) = self.rect {
-            self.flat.fit(&view, rect);
+            self.flat.fit(&view, rect, self.tools);
         }
     }
 
@@ -149,20 +151,26 @@ impl Canvas {
         };
         let hover = response.hover_pos().map(within);
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
-        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(shown, rect, at));
+        // Pictures of space are a moment behind: what is pressed is what is seen.
+        let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
+        let seen = seen.unwrap_or_else(|| Arc::clone(shown));
+        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(&seen, rect, at));
         let beside = hover.is_some_and(|(_, beside)| beside);
         self.press(ui, &response, shown, rect, under.as_ref(), beside, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
-        self.overlays(&look, under.as_ref(), language);
-        plane::legend(&look, language);
+        self.overlays(&Look { shown: &seen, ..look }, under.as_ref(), language);
+        if other.is_none() {
+            plane::legend(&look, self.tools, language);
+        }
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
             let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
             self.paint(ui, &look, &beside.right, true);
-            overlays::captions(&look, rect, beside, language);
+            plane::legend(&look, self.tools, language);
+            overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
         }
         asks
     }
@@ -200,7 +208,7 @@ impl Canvas {
             if let (Some(size), Some(view)) = (self.fitted_size, &self.scales)
                 && size != rect.size()
             {
-                self.flat.fit(view, rect);
+                self.flat.fit(view, rect, self.tools);
                 self.fitted_size = Some(rect.size());
             }
             return;
@@ -210,7 +218,7 @@ impl Canvas {
         self.fitted = shown.opened;
         self.scales = View::fit([&shown.picture]).ok().map(|view| with_floors(view, shown));
         if let Some(view) = &self.scales {
-            self.flat.fit(view, rect);
+            self.flat.fit(view, rect, self.tools);
             self.space.fit(view);
         }
         self.range = None;
@@ -360,7 +368,11 @@ impl Canvas {
                 ui.ctx().request_repaint();
             }
             Doing::Panning => self.pan(shown, rect, delta),
-            Doing::Turning => self.space.turn(delta),
+            Doing::Turning => {
+                let up =
+                    |c: &ColliderPicture| matches!(c, ColliderPicture::HalfSpace { normal, .. } if normal[1] > 0.0);
+                self.space.turn(delta, shown.picture.colliders.iter().any(up));
+            }
             Doing::Shifting(..) => {}
             Doing::Handling(held) => held.lead(at),
             Doing::Drawing(points) => {

@@ -6,7 +6,7 @@ use super::tool::Tool;
 use super::{Canvas, Doing, handles, plane};
 use crate::shown::{Beside, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2};
 use opruga::draw::{Lens, format_value};
 
 impl Canvas {
@@ -86,15 +86,14 @@ impl Canvas {
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
         {
-            plane::hint(painter, top, rect, language.drag_me());
+            plane::hint(painter, top, rect, self.tools, language.drag_me());
         }
     }
 }
 
 /// What the two scenes are, how far they are from one another, and why the second one has stopped.
-pub(super) fn captions(look: &Look<'_>, first: Rect, beside: &Beside, language: Language) {
-    let Look { painter, rect, paper, .. } = *look;
-    let whole = painter.with_clip_rect(first.union(rect));
+pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &Beside, language: Language) {
+    let Look { rect, paper, .. } = *look;
     let border = Stroke::new(1.5, paper.solid_edge);
     if rect.left() > first.left() {
         whole.vline(rect.left(), rect.y_range(), border);
@@ -102,7 +101,7 @@ pub(super) fn captions(look: &Look<'_>, first: Rect, beside: &Beside, language: 
         whole.hline(rect.x_range(), rect.top(), border);
     }
     let caption = |spot: Pos2, align: Align2, text: String, ink: Color32, width: f32| {
-        let galley = painter.layout(text, FontId::proportional(12.5), ink, width);
+        let galley = whole.layout(text, FontId::proportional(12.5), ink, width);
         let place = align.anchor_size(spot, galley.size());
         whole.rect_filled(place.expand2(Vec2::new(7.0, 4.0)), 5.0, paper.background.gamma_multiply(0.85));
         whole.galley(place.min, galley, ink);

@@ -323,10 +323,11 @@ pub(crate) fn ghost(
 }
 
 /// The hint for the first pull, above a body.
-pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
+pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>, text: &str) {
     // Below the toolbar, and where the body is out of sight, at the border next to it.
     let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
-    let tip = Pos2::new(across, top.y.clamp(rect.top() + 96.0, rect.bottom().max(rect.top() + 96.0)) - 8.0);
+    let highest = tools.map_or(rect.top(), |tools| tools.bottom()) + 54.0;
+    let tip = Pos2::new(across, top.y.clamp(highest, rect.bottom().max(highest)) - 8.0);
     let beat = (painter.ctx().input(|i| i.time) * 3.0).sin() as f32 * 3.0;
     let middle = tip - Vec2::new(0.0, 26.0 - beat);
     let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), Color32::WHITE);
@@ -339,14 +340,16 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, text: &str) {
 }
 
 /// What the colours mean.
-pub(crate) fn legend(look: &Look<'_>, language: Language) {
+pub(crate) fn legend(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
         return;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, rect.top() + 44.0), Vec2::new(12.0, tall));
+    // Beside the tools, or where there is no room for that, below them.
+    let below = tools.filter(|tools| tools.right() > rect.right() - 110.0).map_or(rect.top(), |tools| tools.bottom());
+    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, below + 44.0), Vec2::new(12.0, tall));
     let behind =
         Rect::from_min_max(bar.min - Vec2::new(24.0, 28.0), Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0));
     painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));

@@ -19,6 +19,8 @@ const MOST_PIXELS: f64 = 1400.0;
 struct Drawn {
     image: Image,
     outline: Vec<[[f32; 2]; 2]>,
+    shown: Arc<Shown>,
+    eye: Eye,
 }
 
 struct Order {
@@ -41,6 +43,8 @@ pub(crate) struct Space {
     done: Arc<Mutex<Option<Drawn>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
+    /// What the picture on the screen shows, and from where: what is drawn over it and pressed on it is that.
+    seen: Option<(Arc<Shown>, Eye)>,
     outline: Vec<[[f32; 2]; 2]>,
     /// What the last order was for, so that the same is not drawn twice.
     last: Option<Last>,
@@ -59,7 +63,7 @@ impl Space {
 
     pub(crate) fn fit(&mut self, view: &View) {
         self.eye = Some(Eye::of(view));
-        self.last = None;
+        (self.last, self.seen) = (None, None);
     }
 
     /// Whether a picture is being drawn or waits to be shown.
@@ -93,10 +97,11 @@ impl Space {
         }
     }
 
-    pub(crate) fn turn(&mut self, delta: Vec2) {
+    /// Turns about the point that is looked at; with a floor not below it, where nothing could be seen.
+    pub(crate) fn turn(&mut self, delta: Vec2, floor: bool) {
         if let Some(eye) = &mut self.eye {
             eye.azimuth -= f64::from(delta.x) * 0.4;
-            eye.elevation = (eye.elevation + f64::from(delta.y) * 0.4).clamp(-85.0, 85.0);
+            eye.elevation = (eye.elevation + f64::from(delta.y) * 0.4).clamp(if floor { 1.0 } else { -85.0 }, 85.0);
         }
     }
 
@@ -110,17 +115,25 @@ impl Space {
         }
     }
 
-    /// What turns points of space into points of the rectangle.
+    /// What the picture on the screen shows.
+    pub(crate) fn seen(&self) -> Option<&Arc<Shown>> {
+        self.seen.as_ref().map(|(shown, _)| shown)
+    }
+
+    /// What turns points of space into points of the rectangle, as in the picture on the screen.
     pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
-        Some(self.eye?.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
+        let eye = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?;
+        Some(eye.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
     }
 
     /// Shows the last picture and orders the next one.
     pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
         let Look { painter, rect, paper, range, .. } = *look;
         let Some(eye) = self.eye else { return };
-        if let Some(Drawn { image, outline }) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            self.outline = outline;
+        if let Some(Drawn { image, outline, shown, eye }) =
+            self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
+        {
+            (self.outline, self.seen) = (outline, Some((shown, eye)));
             let size = [image.width() as usize, image.height() as usize];
             let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
             match &mut self.texture {
@@ -206,5 +219,5 @@ fn drawn(order: &Order) -> Option<Drawn> {
         (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
     }
     let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
-    Some(Drawn { image, outline: outline_of(order) })
+    Some(Drawn { image, outline: outline_of(order), shown: Arc::clone(&order.shown), eye: order.eye })
 }

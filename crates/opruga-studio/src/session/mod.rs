@@ -404,6 +404,11 @@ impl Session {
         self.latest
     }
 
+    /// How many messages there have been.
+    pub fn told(&self) -> u64 {
+        self.messages
+    }
+
     /// Whether it goes to another moment.
     pub fn is_seeking(&self) -> bool {
         self.goal.is_some()
