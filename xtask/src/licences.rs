@@ -26,7 +26,7 @@ const ALLOWED: [&str; 15] = [
 /// Reads the dependency graph and refuses unknown licences.
 pub(crate) fn check() -> Result<(), String> {
     let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--locked"])
+        .args(["metadata", "--format-version", "1", "--locked", "--all-features"])
         .output()
         .map_err(|e| format!("cargo metadata: {e}"))?;
     let metadata: Value = serde_json::from_slice(&output.stdout).map_err(|e| format!("cargo metadata: {e}"))?;

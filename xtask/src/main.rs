@@ -1,18 +1,23 @@
-//! Chores of the workspace: `cargo xtask licences | goldens | bench`.
+//! Chores of the workspace: `cargo xtask licences | goldens | bench | web | web-trial`.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;
 mod goldens;
 mod licences;
+mod web;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match std::env::args().nth(1).as_deref() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match arguments.first().map(String::as_str) {
         Some("licences") => licences::check(),
         Some("goldens") => goldens::write(),
         Some("bench") => bench::compare(),
-        _ => Err("usage: cargo xtask licences | goldens | bench".into()),
+        Some("web") => web::build(&arguments[1..]),
+        Some("web-trial") => web::trial(&arguments[1..]),
+        _ => Err("usage: cargo xtask licences | goldens | bench | web [--serve] [--port NUMBER] | web-trial [PROFILE]"
+            .into()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -14,7 +14,7 @@ fn value(letter: u8) -> Option<u8> {
 }
 
 /// Bytes from letters; none for other letters. Groups of four may be filled up with `=` anywhere, as where several texts follow one another.
-pub(crate) fn decode(letters: &[u8]) -> Option<Vec<u8>> {
+pub fn decode(letters: &[u8]) -> Option<Vec<u8>> {
     decode_up_to(letters, usize::MAX).map(|found| found.0)
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usiz
 }
 
 /// Letters from bytes.
-pub(crate) fn encode(bytes: &[u8]) -> String {
+pub fn encode(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
         let mut word = [0; 4];

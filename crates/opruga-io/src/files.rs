@@ -34,6 +34,23 @@ impl Files {
         Files { held: files.into_iter().collect(), ..Files::default() }
     }
 
+    /// The same with more files that are held in memory; one of the same name takes the place of that before.
+    #[must_use]
+    pub fn with(mut self, files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
+        self.held.extend(files);
+        self
+    }
+
+    /// The files that are held in memory, in the order of their names.
+    pub fn held_files(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+        self.held.iter().map(|(name, bytes)| (name.as_str(), bytes))
+    }
+
+    /// A file that is held in memory.
+    pub fn held_file(&self, name: &str) -> Option<&Arc<[u8]>> {
+        self.held.get(name)
+    }
+
     /// The same, but files may lie anywhere.
     #[must_use]
     pub fn allow_outside(mut self, allow: bool) -> Files {

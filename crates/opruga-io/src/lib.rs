@@ -3,7 +3,7 @@
 
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
-mod base64;
+pub mod base64;
 pub mod catalogue;
 pub mod checkpoint;
 mod document;

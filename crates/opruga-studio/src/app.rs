@@ -1,6 +1,7 @@
 //! The window: what is where, shortcuts, messages.
 
 use crate::canvas::{Canvas, Tool};
+use crate::hand::{Arrived, Hand};
 use crate::pair::Difference;
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
@@ -32,6 +33,7 @@ pub struct Studio {
     plots: Plots,
     gallery: Gallery,
     keeping: Keeping,
+    hand: Hand,
     /// The language of the interface.
     pub language: Language,
     show: Show,
@@ -67,6 +69,7 @@ impl Studio {
             plots: Plots::default(),
             gallery: Gallery::default(),
             keeping: Keeping::default(),
+            hand: Hand::default(),
             language: Language::default(),
             show: Show::default(),
             plots_open: false,
@@ -90,6 +93,16 @@ impl Studio {
         self.link.ask(request);
     }
 
+    /// Says something to the person.
+    pub fn tell(&mut self, severity: Severity, text: String) {
+        self.keeping.tell(severity, text);
+    }
+
+    /// The simulation.
+    pub fn link(&self) -> &Link {
+        &self.link
+    }
+
     /// Where a point of the scene is in the window.
     pub fn on_screen(&self, point: [f64; 3]) -> Option<egui::Pos2> {
         self.canvas.on_screen(&self.link.shown(), point)
@@ -102,6 +115,7 @@ impl Studio {
 
     /// Shows the window for one frame.
     pub fn show(&mut self, ui: &mut Ui) {
+        self.link.turn();
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
         self.rate += 0.05 * (1.0 / seconds - self.rate);
@@ -215,6 +229,8 @@ impl Studio {
                 ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
             Chosen::Keep(what) => self.keeping.begin(what, &self.link, self.show),
+            Chosen::Link => self.hand.copy_link(&self.link),
+            Chosen::File => self.hand.choose_file(),
         }
     }
 
@@ -274,7 +290,7 @@ impl Studio {
             (Some(text), ..) => (text.to_string(), Severity::Refused, None),
             (None, Some(message), _) => (message.text.clone(), message.severity, message.offer.clone()),
             (None, None, Some((text, severity))) => {
-                let head = if severity == Severity::Told { format!("{} ", words.kept()) } else { String::new() };
+                let head = if self.keeping.is_written() { format!("{} ", words.kept()) } else { String::new() };
                 (format!("{head}{text}"), severity, None)
             }
             _ => return,
@@ -439,12 +455,12 @@ impl Studio {
         }
     }
 
-    /// Files that were dropped on the window: scenes are opened, shapes become bodies.
+    /// Files that were dropped on the window or chosen: scenes are opened, shapes become bodies.
     fn dropped(&mut self, ui: &Ui, asks: &mut Vec<Request>) {
-        for file in ui.input(|i| i.raw.dropped_files.clone()) {
-            match crate::dropping::take(file.path()) {
-                Ok(request) => asks.push(request),
-                Err(message) => self.keeping.tell(Severity::Refused, message),
+        for arrived in self.hand.arrived(ui, self.language) {
+            match arrived {
+                Arrived::Request(request) => asks.push(request),
+                Arrived::Told(severity, text) => self.keeping.tell(severity, text),
             }
         }
     }
@@ -471,5 +487,10 @@ fn difference(ask: Request, shown: &Shown) -> Result<Difference, Request> {
 impl eframe::App for Studio {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
     }
 }

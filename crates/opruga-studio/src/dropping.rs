@@ -20,13 +20,23 @@ const SHAPES: [(&str, &str, bool); 6] = [
 /// # Errors
 /// A sentence for the person.
 pub fn take(path: &Path) -> Result<Request, String> {
+    let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
+    let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(|e| format!("{file}: {e}"));
+    request(&file, bytes, || Files::beside(path))
+}
+
+/// The same for a file of this name, whatever holds it: its bytes are read where it is a scene.
+pub(crate) fn request(
+    file: &str,
+    bytes: impl FnOnce() -> Result<Vec<u8>, String>,
+    files: impl FnOnce() -> Files,
+) -> Result<Request, String> {
+    let path = Path::new(file);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name = path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned());
-    let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
     if ending == "toml" {
-        let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|e| format!("{file}: {e}"))?;
-        let text = String::from_utf8(bytes).map_err(|_| format!("{file} is no text in UTF-8"))?;
-        return Ok(Request::Open { name, text, files: Files::beside(path) });
+        let text = String::from_utf8(bytes()?).map_err(|_| format!("{file} is no text in UTF-8"))?;
+        return Ok(Request::Open { name, text, files: files() });
     }
     let Some((_, fields, space)) = SHAPES.iter().find(|(known, ..)| *known == ending) else {
         let known: Vec<&str> = SHAPES.iter().map(|(known, ..)| *known).collect();
@@ -35,7 +45,7 @@ pub fn take(path: &Path) -> Result<Request, String> {
     if file.contains(['"', '\\']) {
         return Err(format!("{file}: a scene cannot name this file; rename it without quotes and backslashes"));
     }
-    Ok(Request::Open { name: name.clone(), text: around(&file, fields, *space, &ending), files: Files::beside(path) })
+    Ok(Request::Open { name, text: around(file, fields, *space, &ending), files: files() })
 }
 
 /// A scene with one shape over a floor.

@@ -15,9 +15,17 @@ pub mod shown;
 pub mod app;
 pub mod canvas;
 pub mod dropping;
+mod hand;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
 pub mod panels;
 pub mod runner;
+pub mod share;
 pub mod theme;
 pub mod words;
+pub mod work;
+
+#[cfg(target_arch = "wasm32")]
+mod browser;
+#[cfg(target_arch = "wasm32")]
+pub mod page;

@@ -1,17 +1,22 @@
-//! The simulation on a thread of its own: the interface sends what is asked and takes the last picture; neither waits.
+//! The simulation beside the interface, which sends what is asked and takes the last picture: on a thread of its own, or in
+//! a browser in the time that a picture of the window leaves.
+
+pub mod sliced;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod threaded;
+
+#[cfg(target_arch = "wasm32")]
+pub use sliced::Link;
+#[cfg(not(target_arch = "wasm32"))]
+pub use threaded::Link;
 
 use crate::pair::Difference;
 use crate::session::{Request, Session};
 use crate::shown::Shown;
 use opruga::io::Files;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
-
-/// How long frames are computed before a new picture is shown.
-const BUDGET: Duration = Duration::from_millis(14);
-/// How long the thread sleeps while time passes and no frame is due.
-const NAP: Duration = Duration::from_millis(3);
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+use web_time::Instant;
 
 /// The scene as it can be run again from its start: its text, the files it names, and how many frames.
 #[derive(Clone, Debug)]
@@ -41,96 +46,52 @@ impl Copied {
     }
 }
 
+/// What the interface asks for.
 enum Ask {
     Do(Request),
     Copy(Sender<Copied>),
 }
 
-/// The end of the thread that the interface holds. When it goes, the thread ends.
-pub struct Link {
-    asks: Sender<Ask>,
-    last: Arc<Mutex<Arc<Shown>>>,
+/// A session and the clock that it follows.
+struct Course {
+    session: Session,
+    begin: Instant,
+    /// When time was last let pass.
+    last: Duration,
 }
 
-impl core::fmt::Debug for Link {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("Link")
-    }
-}
-
-impl Link {
-    /// Starts the thread of a session; `wake` is called whenever there is a new picture.
-    ///
-    /// # Errors
-    /// Where the system gives no thread.
-    pub fn start(mut session: Session, wake: impl Fn() + Send + 'static) -> std::io::Result<Link> {
-        let (asks, asked) = channel();
-        let last = Arc::new(Mutex::new(Arc::new(session.shown())));
-        let slot = Arc::clone(&last);
-        std::thread::Builder::new().name("simulation".into()).spawn(move || run(session, &asked, &slot, &wake))?;
-        Ok(Link { asks, last })
+impl Course {
+    fn new(session: Session) -> Course {
+        Course { session, begin: Instant::now(), last: Duration::ZERO }
     }
 
-    /// Asks for something; it is done between two frames.
-    pub fn ask(&self, request: Request) {
-        // Where the thread has ended there is nobody to ask: the last picture stays.
-        let _ = self.asks.send(Ask::Do(request));
+    /// Forgets the time that has passed: nothing moved in it.
+    fn rest(&mut self) {
+        self.last = self.begin.elapsed();
     }
 
-    /// Asks for a copy of the scene; it comes when the present frame is done.
-    pub fn copy(&self) -> Receiver<Copied> {
-        let (sender, receiver) = channel();
-        let _ = self.asks.send(Ask::Copy(sender));
-        receiver
-    }
-
-    /// The last picture.
-    pub fn shown(&self) -> Arc<Shown> {
-        Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-fn run(mut session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
-    let begin = Instant::now();
-    let clock = move || begin.elapsed();
-    let mut last = clock();
-    loop {
-        // While nothing moves the thread sleeps until somebody asks for something.
-        let first = if session.is_moving() {
-            match asked.recv_timeout(if session.is_seeking() { Duration::ZERO } else { NAP }) {
-                Ok(ask) => Some(ask),
-                Err(RecvTimeoutError::Timeout) => None,
-                Err(RecvTimeoutError::Disconnected) => return,
-            }
-        } else {
-            match asked.recv() {
-                Ok(ask) => {
-                    last = clock();
-                    Some(ask)
-                }
-                Err(_) => return,
-            }
-        };
-        let mut news = first.is_some();
-        for ask in first.into_iter().chain(asked.try_iter()) {
+    /// Does what is asked, and lets the time pass that has passed on the clock since the last turn; the picture, if there
+    /// is a new one.
+    fn turn(&mut self, asks: impl IntoIterator<Item = Ask>, budget: Duration) -> Option<Shown> {
+        let mut news = false;
+        for ask in asks {
+            news = true;
             match ask {
-                Ask::Do(request) => session.handle(request),
+                Ask::Do(request) => self.session.handle(request),
                 Ask::Copy(reply) => {
-                    let _ = reply.send(Copied::of(&session));
+                    // Who asked may be gone.
+                    let _ = reply.send(Copied::of(&self.session));
                 }
             }
         }
+        let begin = self.begin;
+        let clock = move || begin.elapsed();
         let now = clock();
-        let before = session.frames();
-        let (was_seeking, told) = (session.is_seeking(), session.told());
-        session.tick(now.saturating_sub(last), BUDGET, &clock);
-        last = now;
+        let (before, was_seeking, told) = (self.session.frames(), self.session.is_seeking(), self.session.told());
+        self.session.tick(now.saturating_sub(self.last), budget, &clock);
+        self.last = now;
         // A frame that fails is news too, though it leaves everything as it was.
-        news |= session.frames() != before || was_seeking || session.told() != told;
-        if news {
-            let shown = Arc::new(session.shown());
-            *slot.lock().unwrap_or_else(PoisonError::into_inner) = shown;
-            wake();
-        }
+        news |= self.session.frames() != before || was_seeking || self.session.told() != told;
+        news.then(|| self.session.shown())
     }
 }

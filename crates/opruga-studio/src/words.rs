@@ -53,6 +53,9 @@ words! {
     animation: "Animation (.gif)", "Animacija (.gif)";
     table: "Table of all frames (.csv)", "Tablica svih sličica (.csv)";
     kept: "Written:", "Zapisano:";
+    copy_link: "Copy a link with the whole scene", "Kopiraj poveznicu s cijelim prizorom";
+    link_copied: "The link is copied and stands in the address bar", "Poveznica je kopirana i stoji u adresnoj traci";
+    open_file: "Open a file …", "Otvori datoteku …";
     working: "Computing the scene again for the file …", "Prizor se računa ponovno za datoteku …";
     language: "Hrvatski", "English";
     dark: "Dark", "Tamno";

@@ -290,8 +290,8 @@ impl Canvas {
     /// Wheel, pinch, and dragging of the view.
     fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
         let Some(at) = at else { return };
-        let (scroll, pinch, touch) =
-            ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch().map(|t| t.translation_delta)));
+        let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
+        let at = touch.map_or(at, |touch| touch.center_pos);
         let factor = f64::from((scroll * 0.004).exp() * pinch);
         if factor != 1.0 {
             self.fitted_size = None;
@@ -301,8 +301,8 @@ impl Canvas {
                 self.flat.zoom(factor, rect, at, shown.picture.y_down)
             }
         }
-        if let Some(delta) = touch {
-            self.pan(shown, rect, delta);
+        if let Some(touch) = touch {
+            self.pan(shown, rect, touch.translation_delta);
         }
     }
 
@@ -336,6 +336,13 @@ impl Canvas {
             (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
         });
         let Some(at) = at else { return };
+        // Two fingers move the view: what the first of them took hold of is let go.
+        if ui.input(|i| i.multi_touch().is_some()) {
+            if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
+                asks.push(Request::Release);
+            }
+            return;
+        }
         let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
         if let (true, Some(button)) = (began, pressed) {
             self.refused = None;

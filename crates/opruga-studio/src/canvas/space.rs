@@ -1,4 +1,4 @@
-//! A scene of space: drawn by the same renderer as the pictures of the command line, on a thread of its own, into a
+//! A scene of space: drawn by the same renderer as the pictures of the command line, beside the interface, into a
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
 use super::look::Look;
@@ -7,7 +7,6 @@ use crate::shown::Shown;
 use egui::{Color32, ColorImage, Rect, Stroke, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The colour of the outline of the selected body.
@@ -37,11 +36,10 @@ struct Order {
 /// What a picture shows: scene, frame, eye, size, theme, what else is to be seen, the selected body.
 type Last = (u64, u64, Eye, [u32; 2], bool, u64, Option<String>);
 
-/// The eye, and the thread that draws what it sees.
+/// The eye, and what is drawn of what it sees.
 #[derive(Default)]
 pub(crate) struct Space {
     eye: Option<Eye>,
-    orders: Option<Sender<Order>>,
     done: Arc<Mutex<Option<Drawn>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
@@ -166,10 +164,15 @@ impl Space {
                 eye,
                 selected,
             };
-            let orders = self.orders.get_or_insert_with(|| artist(&self.done, &self.busy, ui.ctx().clone()));
-            if orders.send(order).is_err() {
-                self.busy.store(false, Ordering::Release);
-            }
+            let (done, busy, context) = (Arc::clone(&self.done), Arc::clone(&self.busy), ui.ctx().clone());
+            drop(crate::work::spawn(async move {
+                // A picture that cannot be drawn leaves the last one on the screen.
+                if let Some(drawn) = drawn(&order) {
+                    *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(drawn);
+                }
+                busy.store(false, Ordering::Release);
+                context.request_repaint();
+            }));
         }
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
@@ -204,34 +207,21 @@ fn fingerprint(shown: &Shown) -> u64 {
         + picture.bodies.len() as u64
 }
 
-/// Starts the thread that draws.
-fn artist(done: &Arc<Mutex<Option<Drawn>>>, busy: &Arc<AtomicBool>, context: egui::Context) -> Sender<Order> {
-    let (sender, orders): (Sender<Order>, Receiver<Order>) = channel();
-    let (done, busy) = (Arc::clone(done), Arc::clone(busy));
-    std::thread::spawn(move || {
-        while let Ok(order) = orders.recv() {
-            let mut picture = order.shown.picture.clone();
-            if let Some(legend) = &mut picture.legend {
-                legend.range = Some(order.range);
-            }
-            // Labels and pulls are drawn by the interface, sharper than in the picture.
-            picture.pulls.clear();
-            picture.bodies.iter_mut().for_each(|body| body.label.clear());
-            // A picture that cannot be drawn leaves the last one on the screen.
-            let mut view = order.view.clone();
-            if !picture.arrows.is_empty()
-                && let Ok(fitted) = View::fit([&picture])
-            {
-                (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
-            }
-            if let Ok(image) = draw_scene(&picture, &view, order.background, order.size) {
-                let outline = outline_of(&order);
-                let (shown, eye) = (Arc::clone(&order.shown), order.eye);
-                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(Drawn { image, outline, shown, eye });
-            }
-            busy.store(false, Ordering::Release);
-            context.request_repaint();
-        }
-    });
-    sender
+/// Draws what is ordered.
+fn drawn(order: &Order) -> Option<Drawn> {
+    let mut picture = order.shown.picture.clone();
+    if let Some(legend) = &mut picture.legend {
+        legend.range = Some(order.range);
+    }
+    // Labels and pulls are drawn by the interface, sharper than in the picture.
+    picture.pulls.clear();
+    picture.bodies.iter_mut().for_each(|body| body.label.clear());
+    let mut view = order.view.clone();
+    if !picture.arrows.is_empty()
+        && let Ok(fitted) = View::fit([&picture])
+    {
+        (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
+    }
+    let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
+    Some(Drawn { image, outline: outline_of(order), shown: Arc::clone(&order.shown), eye: order.eye })
 }

@@ -27,6 +27,10 @@ pub enum Chosen {
     Theme,
     /// A file.
     Keep(What),
+    /// An address that holds the scene; on a page.
+    Link,
+    /// A file to be opened; on a page, where a phone cannot drop one.
+    File,
 }
 
 /// The bar above the scene.
@@ -58,6 +62,15 @@ pub fn tools(
                     if ui.button(name).clicked() {
                         chosen = Chosen::Keep(what);
                         ui.close();
+                    }
+                }
+                if cfg!(target_arch = "wasm32") {
+                    ui.separator();
+                    for (other, name) in [(Chosen::Link, words.copy_link()), (Chosen::File, words.open_file())] {
+                        if ui.button(name).clicked() {
+                            chosen = other;
+                            ui.close();
+                        }
                     }
                 }
             });

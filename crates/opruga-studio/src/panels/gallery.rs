@@ -1,6 +1,7 @@
-//! The scenes that come with the program, with pictures of them that are drawn on a thread while they are looked at.
+//! The scenes that come with the program, with pictures of them that are drawn beside the interface while they are looked at.
 
 use crate::words::Language;
+use crate::work;
 use egui::{Color32, ColorImage, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Image, View, draw_scene};
 use opruga::io::scene;
@@ -106,15 +107,17 @@ impl Gallery {
         let coming = self.coming.get_or_insert_with(|| {
             let (sender, receiver) = channel();
             let context = ui.ctx().clone();
-            std::thread::spawn(move || {
+            // The pictures come one by one; nothing is to be said when all are there.
+            drop(work::spawn(async move {
                 for name in opruga::scenes::names() {
-                    let Some(image) = thumbnail(name) else { continue };
+                    work::breathe().await;
+                    let Some(image) = thumbnail(name).await else { continue };
                     if sender.send((name, image)).is_err() {
                         return;
                     }
                     context.request_repaint();
                 }
-            });
+            }));
             receiver
         });
         for (name, image) in coming.try_iter() {
@@ -126,22 +129,23 @@ impl Gallery {
 }
 
 /// A picture of a scene a little after its start; of a large one at its start.
-fn thumbnail(name: &str) -> Option<Image> {
+async fn thumbnail(name: &str) -> Option<Image> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
     let (blueprint, _) = scene::read(text.as_bytes(), name, &opruga::catalogue(), &options).ok()?;
     match blueprint {
-        AnyBlueprint::Plane(blueprint) => picture(World::new(blueprint, Options::default()).ok()?),
-        AnyBlueprint::Space(blueprint) => picture(World::new(blueprint, Options::default()).ok()?),
+        AnyBlueprint::Plane(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
+        AnyBlueprint::Space(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
     }
 }
 
-fn picture<const D: usize>(mut world: World<D>) -> Option<Image> {
+async fn picture<const D: usize>(mut world: World<D>) -> Option<Image> {
     let nodes: u64 = world.bodies().map(|body| world.node_count(body) as u64).sum();
     let frames = (0.25 * world.blueprint().time.seconds / world.blueprint().time.frame) as u64;
     let work = nodes * frames * u64::from(world.blueprint().time.substeps);
     if work <= 32 * WORK {
         for _ in 0..frames {
+            work::breathe().await;
             world.frame().ok()?;
         }
     }

@@ -1,16 +1,16 @@
-//! What is kept: the scene, pictures, films and tables. Films and tables are computed again from the scene, on a thread:
-//! what is kept is what the command line would make of it.
+//! What is kept: the scene, pictures, films and tables. Films and tables are computed again from the scene, beside the
+//! interface: what is kept is what the command line would make of it. A window writes files, a page hands them over as
+//! downloads.
 
 use crate::document::Document;
 use crate::engine;
 use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::shown::{Severity, Show};
+use crate::work::{self, breathe};
 use opruga::Options;
 use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
-use opruga::io::safe_write::safe_write;
-use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::Receiver;
 
 /// Pictures of a film for a simulated second.
 const RATE: f64 = 30.0;
@@ -38,6 +38,8 @@ pub struct Keeping {
     asked: Option<(What, Show, Receiver<Copied>)>,
     working: Option<Receiver<Result<String, String>>>,
     message: Option<(String, Severity)>,
+    /// Whether the message is the place of a file.
+    written: bool,
 }
 
 impl Keeping {
@@ -60,14 +62,12 @@ impl Keeping {
             && let Ok(copied) = copied.try_recv()
         {
             let (what, show) = (*what, *show);
-            let (sender, receiver) = channel();
-            std::thread::spawn(move || {
-                let _ = sender.send(write(what, &copied, show));
-            });
-            (self.asked, self.working) = (None, Some(receiver));
+            let file = work::spawn(async move { write(what, &copied, show).await });
+            (self.asked, self.working) = (None, Some(file));
         }
         if let Some(outcome) = self.working.as_ref().and_then(|working| working.try_recv().ok()) {
             self.working = None;
+            self.written = outcome.is_ok();
             self.message = Some(match outcome {
                 Ok(path) => (path, Severity::Told),
                 Err(error) => (error, Severity::Refused),
@@ -75,13 +75,19 @@ impl Keeping {
         }
     }
 
-    /// What there is to say about the last file.
+    /// What there is to say.
     pub fn message(&self) -> Option<(String, Severity)> {
         self.message.clone()
     }
 
+    /// Whether that is where the last file was written.
+    pub fn is_written(&self) -> bool {
+        self.written
+    }
+
     /// Says something else in its place.
     pub fn tell(&mut self, severity: Severity, text: String) {
+        self.written = false;
         self.message = Some((text, severity));
     }
 
@@ -91,22 +97,11 @@ impl Keeping {
     }
 }
 
-/// A file in the folder `out/studio` that is not there yet.
-fn free_path(name: &str, ending: &str) -> Result<PathBuf, String> {
-    let folder = PathBuf::from("out").join("studio");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("the folder {} cannot be made: {e}", folder.display()))?;
-    let path = |number: u32| {
-        let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
-        folder.join(name)
-    };
-    (1..10_000).map(path).find(|path| !path.exists()).ok_or_else(|| format!("{} is full", folder.display()))
-}
-
-/// Writes a file; its path.
+/// Writes a file; where it is.
 ///
 /// # Errors
 /// A sentence for the person.
-pub fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> {
+async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> {
     let ending = match what {
         What::Scene => "toml",
         What::Picture => "png",
@@ -114,28 +109,51 @@ pub fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> 
         What::Animation => "gif",
         What::Table => "csv",
     };
-    let keep = |name: &str, bytes: &[u8]| -> Result<String, String> {
-        let path = free_path(name, ending)?;
-        safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
-        Ok(path.display().to_string())
-    };
-    let first = keep(&copied.name, &content(what, copied, show)?)?;
+    let bytes = made(what, copied, show).await?;
+    let first = hand_over(&copied.name, ending, &bytes)?;
     // Side by side there are two scenes.
     let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
     let right = pair::right_of(&Document::new(&copied.name, &copied.text)?, differences)?;
-    let second = keep(&format!("{}-right", copied.name), right.text().as_bytes())?;
+    let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
     Ok(format!("{first}, {second}"))
+}
+
+/// A file in the folder `out/studio` that is not there yet.
+#[cfg(not(target_arch = "wasm32"))]
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+    let folder = std::path::PathBuf::from("out").join("studio");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("the folder {} cannot be made: {e}", folder.display()))?;
+    let path = |number: u32| {
+        let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
+        folder.join(name)
+    };
+    let free = (1..10_000).map(path).find(|path| !path.exists());
+    let path = free.ok_or_else(|| format!("{} is full", folder.display()))?;
+    opruga::io::safe_write::safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
+    Ok(path.display().to_string())
+}
+
+/// A download.
+#[cfg(target_arch = "wasm32")]
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+    let name = format!("{name}.{ending}");
+    crate::browser::download(&name, bytes).map(|()| name)
 }
 
 /// The bytes of a file.
 ///
 /// # Errors
 /// A sentence for the person.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+    work::finish(made(what, copied, show))
+}
+
+async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
     match what {
         What::Scene => Ok(copied.text.clone().into_bytes()),
-        What::Table => table(copied),
-        What::Picture | What::Film | What::Animation => film(what, copied, show),
+        What::Table => table(copied).await,
+        What::Picture | What::Film | What::Animation => film(what, copied, show).await,
     }
 }
 
@@ -146,11 +164,12 @@ fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
     built.map_err(|refusal| refusal.to_string())
 }
 
-fn table(copied: &Copied) -> Result<Vec<u8>, String> {
+async fn table(copied: &Copied) -> Result<Vec<u8>, String> {
     let mut engine = again(copied)?;
     let mut rows = Vec::new();
     rows.push(engine.row());
     for _ in 0..copied.frames {
+        breathe().await;
         engine.frame().map_err(|e| e.to_string())?;
         rows.push(engine.row());
     }
@@ -169,7 +188,7 @@ fn table(copied: &Copied) -> Result<Vec<u8>, String> {
     Ok(text.into_bytes())
 }
 
-fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
     let mut engine = again(copied)?;
     let every = ((1.0 / RATE / engine.frame_seconds()).round() as u64).max(1);
     let mut pictures: Vec<Picture> = Vec::new();
@@ -177,6 +196,7 @@ fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
         pictures.push(engine.moment(&show));
     }
     for _ in 0..copied.frames {
+        breathe().await;
         engine.frame().map_err(|e| e.to_string())?;
         if what != What::Picture && engine.frames().is_multiple_of(every) {
             pictures.push(engine.moment(&show));
@@ -199,17 +219,23 @@ fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
             let mut writer =
                 Mp4Writer::new(Vec::new(), [style.width, style.height], rate).map_err(|e| e.to_string())?;
             for picture in &pictures {
+                breathe().await;
                 writer.push(&image(picture)?).map_err(|e| e.to_string())?;
             }
             writer.finish().map_err(|e| e.to_string())
         }
         _ => {
             let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);
-            let images: Vec<Image> = pictures.iter().step_by(step).map(image).collect::<Result<_, _>>()?;
+            let mut images: Vec<Image> = Vec::new();
+            for picture in pictures.iter().step_by(step) {
+                breathe().await;
+                images.push(image(picture)?);
+            }
             let samples: Vec<Image> = images.iter().step_by((images.len() / 8).max(1)).cloned().collect();
             let mut bytes = Vec::new();
             let mut writer = GifWriter::new(&mut bytes, rate / step as f64, &samples).map_err(|e| e.to_string())?;
             for image in &images {
+                breathe().await;
                 writer.push(image).map_err(|e| e.to_string())?;
             }
             drop(writer);

@@ -26,8 +26,8 @@ use pointer::Held;
 use std::time::Duration;
 use travel::Past;
 
-/// What the keyframes may take [bytes].
-const KEYFRAME_BYTES: usize = 256 << 20;
+/// What the keyframes may take [bytes]; less on a page, which may be open on a phone.
+const KEYFRAME_BYTES: usize = if cfg!(target_arch = "wasm32") { 64 << 20 } else { 256 << 20 };
 
 /// The most frames that are computed to go to a moment before the interface is served again.
 const SEEK_BUDGET: Duration = Duration::from_millis(40);

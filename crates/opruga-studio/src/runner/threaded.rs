@@ -1,0 +1,86 @@
+//! The simulation on a thread of its own: the interface never waits for it.
+
+use super::{Ask, Copied, Course};
+use crate::session::{Request, Session};
+use crate::shown::Shown;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// How long frames are computed before a new picture is shown.
+const BUDGET: Duration = Duration::from_millis(14);
+/// How long the thread sleeps while time passes and no frame is due.
+const NAP: Duration = Duration::from_millis(3);
+
+/// The end of the thread that the interface holds. When it goes, the thread ends.
+pub struct Link {
+    asks: Sender<Ask>,
+    last: Arc<Mutex<Arc<Shown>>>,
+}
+
+impl core::fmt::Debug for Link {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Link")
+    }
+}
+
+impl Link {
+    /// Starts the thread of a session; `wake` is called whenever there is a new picture.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn start(mut session: Session, wake: impl Fn() + Send + 'static) -> std::io::Result<Link> {
+        let (asks, asked) = channel();
+        let last = Arc::new(Mutex::new(Arc::new(session.shown())));
+        let slot = Arc::clone(&last);
+        std::thread::Builder::new().name("simulation".into()).spawn(move || run(session, &asked, &slot, &wake))?;
+        Ok(Link { asks, last })
+    }
+
+    /// Asks for something; it is done between two frames.
+    pub fn ask(&self, request: Request) {
+        // Where the thread has ended there is nobody to ask: the last picture stays.
+        let _ = self.asks.send(Ask::Do(request));
+    }
+
+    /// Asks for a copy of the scene; it comes when the present frame is done.
+    pub fn copy(&self) -> Receiver<Copied> {
+        let (sender, receiver) = channel();
+        let _ = self.asks.send(Ask::Copy(sender));
+        receiver
+    }
+
+    /// The last picture.
+    pub fn shown(&self) -> Arc<Shown> {
+        Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The turn of the simulation before a picture of the window: the thread needs none.
+    pub fn turn(&self) {}
+}
+
+fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
+    let mut course = Course::new(session);
+    loop {
+        // While nothing moves the thread sleeps until somebody asks for something.
+        let first = if course.session.is_moving() {
+            match asked.recv_timeout(if course.session.is_seeking() { Duration::ZERO } else { NAP }) {
+                Ok(ask) => Some(ask),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        } else {
+            match asked.recv() {
+                Ok(ask) => {
+                    course.rest();
+                    Some(ask)
+                }
+                Err(_) => return,
+            }
+        };
+        if let Some(shown) = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET) {
+            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(shown);
+            wake();
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! A whole scene in an address: its text and the files that it names, compressed, as letters behind the `#`, which browsers
+//! keep to themselves.
+
+use flate2::read::DeflateDecoder;
+use flate2::write::DeflateEncoder;
+use opruga::io::{Files, base64};
+use serde_json::{Map, Value, json};
+use std::io::{Read as _, Write as _};
+use std::sync::Arc;
+
+/// What stands before the letters of a scene.
+const HEAD: &str = "scene=";
+/// The most letters that common browsers take in an address.
+pub const MOST_LETTERS: usize = 1 << 20;
+/// The most bytes that letters are unpacked to.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// A scene that an address names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// Its name.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// The files that it names.
+    pub files: Files,
+}
+
+/// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
+///
+/// # Errors
+/// A sentence for the person where the scene is too large for an address.
+pub fn to_fragment(scene: &Shared) -> Result<String, String> {
+    let known = opruga::scenes::files();
+    let own = scene.files.held_files().filter(|(name, bytes)| known.held_file(name) != Some(*bytes));
+    let files: Map<String, Value> = own.map(|(name, bytes)| (name.into(), base64::encode(bytes).into())).collect();
+    let whole = json!({ "name": scene.name, "text": scene.text, "files": files }).to_string();
+    let mut encoder = DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+    let packed = encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|e| e.to_string())?;
+    let letters = base64::encode(&packed).trim_end_matches('=').replace('+', "-").replace('/', "_");
+    if letters.len() > MOST_LETTERS {
+        return Err(format!(
+            "the scene is too large for an address: {} letters; allowed: {MOST_LETTERS}. Save it as a file",
+            letters.len()
+        ));
+    }
+    Ok(format!("{HEAD}{letters}"))
+}
+
+/// The scene that the part of an address behind its `#` names: one that comes with the program, or a whole one; none where it
+/// is empty.
+///
+/// # Errors
+/// A sentence for the person: there is no such scene, or the address was cut off.
+pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, String> {
+    let fragment = fragment.trim_start_matches('#');
+    let Some(letters) = fragment.strip_prefix(HEAD) else {
+        if fragment.is_empty() {
+            return Ok(None);
+        }
+        let text = opruga::scenes::find(fragment).ok_or_else(|| {
+            let known: Vec<&str> = opruga::scenes::names().collect();
+            format!("the address names no scene that comes with the program; allowed: {}", known.join(", "))
+        })?;
+        let shared = Shared { name: fragment.into(), text: text.into(), files: opruga::scenes::files() };
+        return Ok(Some(shared));
+    };
+    let cut =
+        || "the scene in the address is not whole: the address may have been cut off when it was copied".to_string();
+    let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or_else(cut)?;
+    let mut whole = Vec::new();
+    DeflateDecoder::new(packed.as_slice()).take(MOST_BYTES + 1).read_to_end(&mut whole).map_err(|_| cut())?;
+    if whole.len() as u64 > MOST_BYTES {
+        return Err(format!("the scene in the address is too large; allowed: {MOST_BYTES} bytes"));
+    }
+    let whole: Value = serde_json::from_slice(&whole).map_err(|_| cut())?;
+    let word = |key: &str| whole[key].as_str().map(String::from).ok_or_else(cut);
+    let mut own = Vec::new();
+    for (name, letters) in whole["files"].as_object().ok_or_else(cut)? {
+        let bytes = letters.as_str().and_then(|letters| base64::decode(letters.as_bytes())).ok_or_else(cut)?;
+        own.push((name.clone(), Arc::from(bytes)));
+    }
+    Ok(Some(Shared { name: word("name")?, text: word("text")?, files: opruga::scenes::files().with(own) }))
+}

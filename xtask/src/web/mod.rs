@@ -1,0 +1,82 @@
+//! The studio as a page: compiles it for browsers and lays the files of the page into a folder that any static server serves.
+
+#[cfg(feature = "web")]
+mod bindings;
+mod browser;
+#[cfg(feature = "web")]
+mod compiler;
+#[cfg(feature = "web")]
+mod pages;
+mod server;
+mod trial;
+
+use std::path::{Path, PathBuf};
+
+/// `cargo xtask web [--serve] [--port N]`.
+pub(crate) fn build(arguments: &[String]) -> Result<(), String> {
+    let mut port = None;
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "--serve" => port = port.or(Some(8080)),
+            "--port" => {
+                let number = rest.next().and_then(|number| number.parse::<u16>().ok());
+                port = Some(number.ok_or("--port wants a number between 0 and 65535")?);
+            }
+            other => return Err(format!("cargo xtask web does not know `{other}`; allowed: --serve, --port NUMBER")),
+        }
+    }
+    let folder = page()?;
+    match port {
+        Some(port) => server::serve(folder, port)?.run(),
+        None => Ok(()),
+    }
+}
+
+/// `cargo xtask web-trial [PROFILE]`: the page in Chromium, beside the native program that was built with this profile.
+pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
+    let profile = arguments.first().map_or("debug", String::as_str);
+    let native = target()?.join(profile).join("opruga");
+    if !native.is_file() {
+        return Err(format!("{} is missing: `cargo build` builds it", native.display()));
+    }
+    trial::run(&page()?, native)
+}
+
+/// Builds the page; its folder. What translates between the languages of the page is built for this alone: it stays away from
+/// the other chores.
+#[cfg(not(feature = "web"))]
+fn page() -> Result<PathBuf, String> {
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    cargo.args(["run", "--profile", "tools", "--quiet", "--package", "xtask", "--features", "web", "--", "web"]);
+    let status = cargo.current_dir(root()?).status().map_err(|e| format!("cargo run: {e}"))?;
+    if status.success() { Ok(folder()?) } else { Err("the page was not built".into()) }
+}
+
+/// Builds the page; its folder.
+#[cfg(feature = "web")]
+fn page() -> Result<PathBuf, String> {
+    let program = compiler::compile(&root()?)?;
+    let made = bindings::make(&program)?;
+    let folder = folder()?;
+    pages::lay_out(&root()?.join("crates/opruga-studio/web"), &made, &folder)?;
+    Ok(folder)
+}
+
+/// The folder of the workspace.
+fn root() -> Result<PathBuf, String> {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .map(PathBuf::from)
+        .ok_or_else(|| "the workspace has no folder".into())
+}
+
+/// Where cargo puts what it builds.
+fn target() -> Result<PathBuf, String> {
+    Ok(std::env::var_os("CARGO_TARGET_DIR").map_or(root()?.join("target"), PathBuf::from))
+}
+
+/// The folder of the page.
+fn folder() -> Result<PathBuf, String> {
+    Ok(target()?.join("page"))
+}

@@ -1,0 +1,75 @@
+//! The files of the page.
+
+use super::bindings::Made;
+use std::path::Path;
+
+/// The most that the page may take on its way [bytes].
+const MOST_BYTES: usize = 4 << 20;
+
+/// Lays the page into a folder: the program packed, its JavaScript, and what is written by hand with the names filled in.
+///
+/// # Errors
+/// What cannot be written, and a page that is too large.
+pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), String> {
+    let packed = packed(&made.program)?;
+    // Files of one version have one name, so that no browser mixes versions.
+    let version = format!("{:016x}", fingerprint(&[&packed, &made.script]));
+    // Some servers say of files that end in `gz` that they are packed on the way; then they would be unpacked twice.
+    let names = (format!("studio-{version}.wasm.gzip"), format!("studio-{version}.js"));
+    let source = |name: &str| {
+        let path = sources.join(name);
+        std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+    };
+    let page = source("index.html")?;
+    let page = page.replace("{{packed}}", &names.0).replace("{{glue}}", &names.1);
+    let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
+    let kept = ["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
+    let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
+    let worker = source("worker.js")?.replace("{{version}}", &version);
+    let worker = worker.replace("{{files}}", &serde_json::json!(kept).to_string());
+    let files = [
+        ("index.html", page.into_bytes()),
+        ("worker.js", worker.into_bytes()),
+        ("icon.svg", source("icon.svg")?.into_bytes()),
+        ("manifest.webmanifest", source("manifest.webmanifest")?.into_bytes()),
+        (&names.1, made.script.clone()),
+        (&names.0, packed),
+    ];
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut all = 0;
+    println!("{:>10}  {:>10}  file", "bytes", "packed");
+    for (name, bytes) in &files {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+        let (size, small) = match name.ends_with(".gzip") {
+            true => (made.program.len(), bytes.len()),
+            false => (bytes.len(), packed_size(bytes)?),
+        };
+        all += small;
+        println!("{size:>10}  {small:>10}  {name}");
+    }
+    println!("{:>10}  {all:>10}  in {}", "", folder.display());
+    if all > MOST_BYTES {
+        return Err(format!("the page takes {all} bytes on its way; allowed: {MOST_BYTES}"));
+    }
+    Ok(())
+}
+
+fn packed(bytes: &[u8]) -> Result<Vec<u8>, String> {
+    use std::io::Write as _;
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).map_err(|e| e.to_string())
+}
+
+fn packed_size(bytes: &[u8]) -> Result<usize, String> {
+    packed(bytes).map(|packed| packed.len())
+}
+
+/// A 64-bit hash (Fowler, Noll, Vo 1a): a name for what lies in files.
+fn fingerprint(parts: &[&[u8]]) -> u64 {
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    parts.iter().flat_map(|part| part.iter()).fold(0xcbf2_9ce4_8422_2325, step)
+}

@@ -1,0 +1,366 @@
+//! The page tried as a person uses it: it is loaded, the ball is dragged, its model changed, a body drawn, the scene saved
+//! and opened again from its link, on a screen and on a phone; and it comes to the bits of the native program.
+
+use super::browser::{self, Browser};
+use super::server;
+use serde_json::Value;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// How long anything may take on a slow machine that draws with its processor.
+const PATIENCE: Duration = Duration::from_secs(90);
+/// Scenes that take too long without a compiler for the machine at hand.
+const LARGE: [&str; 3] = ["million-vertices", "thousand-balls", "giant-ring"];
+
+/// Tries the page; pictures of it go into the folder that `PICTURES` names.
+///
+/// # Errors
+/// What does not hold.
+pub(super) fn run(page: &Path, native: PathBuf) -> Result<(), String> {
+    if !browser::is_there() {
+        return Err("there is no Chromium: on Debian `apt-get install chromium` gives one".into());
+    }
+    let folder = std::env::temp_dir().join(format!("opruga-web-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let (address, answers) = server::serve(page.to_path_buf(), 0)?.start();
+    let browser = Browser::start(&folder)?;
+    let mut trial = Trial { browser, address, folder: folder.clone(), native };
+    let outcome = trial.all(&answers);
+    if outcome.is_err() {
+        let _ = trial.keep_picture("web-failed");
+        trial.browser.troubles.iter().for_each(|trouble| eprintln!("the page says: {trouble}"));
+    }
+    drop(trial);
+    let _ = std::fs::remove_dir_all(&folder);
+    outcome
+}
+
+struct Trial {
+    browser: Browser,
+    address: String,
+    folder: PathBuf,
+    /// The native program.
+    native: PathBuf,
+}
+
+type Outcome = Result<(), String>;
+
+impl Trial {
+    fn all(&mut self, answers: &std::sync::atomic::AtomicBool) -> Outcome {
+        self.browser.size([1280, 720], 1.0, false)?;
+        self.loads_and_moves()?;
+        self.same_bits_as_golden()?;
+        self.drags()?;
+        self.changes_the_model()?;
+        self.draws_a_body()?;
+        let saved = self.saves()?;
+        self.link_holds_the_scene(&saved)?;
+        self.animation_is_handed_over()?;
+        self.phone()?;
+        answers.store(false, Ordering::Relaxed);
+        self.works_without_a_network()?;
+        match self.browser.troubles.first() {
+            None => Ok(()),
+            Some(trouble) => Err(format!("the page complains: {trouble}")),
+        }
+    }
+
+    fn loads_and_moves(&mut self) -> Outcome {
+        let begin = Instant::now();
+        let address = self.address.clone();
+        self.browser.open(&address)?;
+        self.until("the page begins", |state| state["frames"].as_u64() > Some(5))?;
+        println!("the ball moves {:.1} s after the page was opened", begin.elapsed().as_secs_f64());
+        let before = self.top()?;
+        self.until("the ball falls", |state| state["time"].as_f64() > Some(0.5))?;
+        let after = self.top()?;
+        holds(after[1] > before[1] + 5.0, || format!("the ball does not fall: {before:?}, {after:?}"))
+    }
+
+    /// Scenes of the program end with the bits that the native program ends with.
+    fn same_bits_as_golden(&mut self) -> Outcome {
+        let root = super::root()?;
+        let golden = std::fs::read_to_string(root.join("scenes/golden.txt")).map_err(|e| e.to_string())?;
+        let begin = Instant::now();
+        let mut compared = 0;
+        for line in golden.lines().filter(|line| !line.starts_with('#')) {
+            let [name, frames, hash] = line.split_whitespace().collect::<Vec<_>>()[..] else { continue };
+            if hash == "this_cpu_class" || LARGE.contains(&name) {
+                continue;
+            }
+            let found = self.browser.value(&format!("opruga_hash_after({name:?}, {frames})"))?;
+            holds(found == hash, || format!("{name} ends with {found} in the browser and {hash} natively"))?;
+            compared += 1;
+        }
+        println!("{compared} scenes end with the bits of the native program ({:.0} s)", begin.elapsed().as_secs_f64());
+        holds(compared >= 10, || format!("only {compared} scenes were compared"))
+    }
+
+    fn drags(&mut self) -> Outcome {
+        // The ball of the scene is led by a pointer of its own at first: afterwards a person may.
+        self.click("Reset")?;
+        self.until("the start", |state| state["frames"].as_u64() < Some(30))?;
+        let top = self.top()?;
+        self.browser.mouse("mouseMoved", top, false)?;
+        self.browser.mouse("mousePressed", top, true)?;
+        for step in 1..=10 {
+            let at = [top[0] + 12.0 * f64::from(step), top[1] - 8.0 * f64::from(step)];
+            self.browser.mouse("mouseMoved", at, true)?;
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        self.until("the ball is held", |state| state["pulls"].as_u64() >= Some(1))?;
+        self.keep_picture("web-pull")?;
+        self.browser.mouse("mouseReleased", [top[0] + 120.0, top[1] - 80.0], false)?;
+        self.until("the pull was written down", |state| state["recorded"].as_u64() == Some(1)).map(|_| ())
+    }
+
+    fn changes_the_model(&mut self) -> Outcome {
+        let models = |state: &Value| state["models"].as_array().map_or(0, Vec::len);
+        let before = models(&self.state()?);
+        self.click("Add a model")?;
+        self.click("drag")?;
+        self.until("another model on the moving ball", |state| models(state) == before + 1).map(|_| ())
+    }
+
+    fn draws_a_body(&mut self) -> Outcome {
+        self.click("Draw")?;
+        let [x, y, width, height] = self.place("canvas")?;
+        let point = |k: u32| {
+            let turn = f64::from(k) / 24.0 * std::f64::consts::TAU;
+            [x + 0.75 * width + 0.1 * width * turn.cos(), y + 0.5 * height + 0.12 * height * turn.sin()]
+        };
+        self.browser.mouse("mouseMoved", point(0), false)?;
+        self.browser.mouse("mousePressed", point(0), true)?;
+        for k in 1..24 {
+            self.browser.mouse("mouseMoved", point(k), true)?;
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        self.browser.mouse("mouseReleased", point(23), false)?;
+        self.until("a drawn body", |state| state["bodies"].as_u64() == Some(2))?;
+        self.click("Pull")?;
+        self.keep_picture("web-desktop")
+    }
+
+    /// The saved file holds what was done, and the native program comes to the same bits with it.
+    fn saves(&mut self) -> Result<String, String> {
+        self.click("Pause")?;
+        let state = self.until("time stands", |state| state["playing"] == false)?;
+        self.click("Save")?;
+        let path = self.folder.join("ball.toml");
+        let saved = self.file(&path)?;
+        let saved = String::from_utf8(saved).map_err(|e| e.to_string())?;
+        holds(self.browser.value("opruga.scene()")? == saved.as_str(), || "another scene was saved".into())?;
+        let native = self.native(&path, None)?;
+        holds(state["state_hash"] == native.as_str(), || format!("{native} natively, in the browser {state}"))?;
+        println!("the saved scene: state_hash {native} here and there, after {} s", state["time"]);
+        Ok(saved)
+    }
+
+    /// The link is opened anew, and after ten seconds the bits are those of the native program.
+    fn link_holds_the_scene(&mut self, saved: &str) -> Outcome {
+        self.click("Export")?;
+        self.click("Copy a link with the whole scene")?;
+        let begin = Instant::now();
+        let link = loop {
+            let link = self.browser.value("location.href")?;
+            match link.as_str() {
+                Some(link) if link.contains("#scene=") => break link.to_string(),
+                _ if begin.elapsed() > PATIENCE => return Err("no link stands in the address bar".into()),
+                _ => std::thread::sleep(Duration::from_millis(100)),
+            }
+        };
+        self.browser.open("about:blank")?;
+        self.browser.open(&link)?;
+        self.until("the scene of the link", |state| state["bodies"].as_u64() >= Some(1))?;
+        holds(self.browser.value("opruga.state()")?.as_str().is_some_and(|s| s.contains("\"name\":\"ball\"")), || {
+            "the link has lost the name of the scene".into()
+        })?;
+        self.until("ten seconds", |state| state["frames"].as_u64() >= Some(600))?;
+        self.browser.value("opruga.seek(600)")?;
+        let state = self.until("frame 600", |state| state["frames"].as_u64() == Some(600))?;
+        let path = self.folder.join("again.toml");
+        std::fs::write(&path, saved).map_err(|e| e.to_string())?;
+        let native = self.native(&path, Some("10"))?;
+        holds(state["state_hash"] == native.as_str(), || format!("{native} natively, in the browser {state}"))?;
+        println!("after 10 s from a link of {} letters: state_hash {native} here and there", link.len());
+        Ok(())
+    }
+
+    fn animation_is_handed_over(&mut self) -> Outcome {
+        self.browser.value("opruga.seek(45)")?;
+        self.until("frame 45", |state| state["frames"].as_u64() == Some(45))?;
+        self.click("Export")?;
+        self.click("Animation (.gif)")?;
+        let bytes = self.file(&self.folder.join("ball.gif"))?;
+        holds(bytes.starts_with(b"GIF89a"), || "no animation was handed over".into())
+    }
+
+    /// Held upright, a finger drags the ball, two zoom, and nothing scrolls.
+    fn phone(&mut self) -> Outcome {
+        self.browser.size([390, 844], 2.0, true)?;
+        let address = self.address.clone();
+        self.browser.open("about:blank")?;
+        self.browser.open(&address)?;
+        self.until("the page on a phone", |state| state["frames"].as_u64() > Some(20))?;
+        self.keep_picture("web-phone")?;
+        let top = self.top()?;
+        self.browser.fingers("touchStart", &[top])?;
+        for step in 1..=8 {
+            self.browser.fingers("touchMove", &[[top[0] + 6.0 * f64::from(step), top[1] - 10.0 * f64::from(step)]])?;
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        self.until("a finger holds the ball", |state| state["recorded"].as_u64() >= Some(1))?;
+        self.browser.fingers("touchEnd", &[])?;
+        self.browser.value("opruga.seek(0)")?;
+        self.until("the start", |state| state["frames"].as_u64() == Some(0))?;
+        let before = self.top()?;
+        let [x, y, width, height] = self.place("canvas")?;
+        let (x, y) = (x + 0.5 * width, y + 0.7 * height);
+        self.browser.fingers("touchStart", &[[x - 30.0, y], [x + 30.0, y]])?;
+        for step in 1..=8 {
+            let far = 30.0 + 8.0 * f64::from(step);
+            self.browser.fingers("touchMove", &[[x - far, y], [x + far, y]])?;
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        self.browser.fingers("touchEnd", &[])?;
+        let after = self.top()?;
+        holds((after[1] - before[1]).abs() > 20.0, || format!("two fingers do not zoom: {before:?}, {after:?}"))?;
+        holds(self.browser.value("scrollX + scrollY")? == 0, || "the page was scrolled".into())
+    }
+
+    fn works_without_a_network(&mut self) -> Outcome {
+        self.browser.size([1280, 720], 1.0, false)?;
+        let address = self.address.clone();
+        self.browser.open("about:blank")?;
+        // The server is away.
+        self.browser.open(&address)?;
+        self.until("the page without a network", |state| state["frames"].as_u64() > Some(5))?;
+        println!("it works without a network");
+        Ok(())
+    }
+
+    /// What the page says of itself; null before it begins.
+    fn state(&mut self) -> Result<Value, String> {
+        let state =
+            self.browser.value("window.opruga ? opruga.state() : document.querySelector('#about').innerText")?;
+        let state = state.as_str().unwrap_or_default();
+        Ok(serde_json::from_str(state).unwrap_or(Value::String(state.into())))
+    }
+
+    /// Waits until something holds of what the page says.
+    fn until(&mut self, what: &str, is: impl Fn(&Value) -> bool) -> Result<Value, String> {
+        let begin = Instant::now();
+        loop {
+            // Between two pages there is nobody to ask.
+            let state = self.state().unwrap_or(Value::Null);
+            if is(&state) {
+                return Ok(state);
+            }
+            if begin.elapsed() > PATIENCE {
+                return Err(format!("{what}: not within {} s; the page says {state}", PATIENCE.as_secs()));
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Where the highest node of the first body is.
+    fn top(&mut self) -> Result<[f64; 2], String> {
+        let spot = self.browser.value("Array.from(opruga.top_of(0))")?;
+        match numbers(&spot)[..] {
+            [x, y] => Ok([x, y]),
+            _ => Err("the ball is out of sight".into()),
+        }
+    }
+
+    /// Where something of this name is: left, top, width, height.
+    fn place(&mut self, name: &str) -> Result<[f64; 4], String> {
+        let begin = Instant::now();
+        while begin.elapsed() < PATIENCE {
+            let place = self.browser.value(&format!("Array.from(opruga.find({name:?}))"))?;
+            if let [x, y, width, height] = numbers(&place)[..] {
+                return Ok([x, y, width, height]);
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        Err(format!("nothing is called `{name}`"))
+    }
+
+    /// Presses something of this name; what is below the window is brought into it by the wheel.
+    fn click(&mut self, name: &str) -> Outcome {
+        let height = self.browser.value("innerHeight")?.as_f64().unwrap_or(0.0);
+        let begin = Instant::now();
+        let mut last = [0.0; 2];
+        loop {
+            let [x, y, width, tall] = self.place(name)?;
+            let middle = [x + 0.5 * width, y + 0.5 * tall];
+            let below = middle[1] > height - 90.0 && tall < 60.0 && x > 900.0;
+            if !below && middle == last {
+                self.browser.mouse("mouseMoved", middle, false)?;
+                self.browser.mouse("mousePressed", middle, true)?;
+                std::thread::sleep(Duration::from_millis(60));
+                return self.browser.mouse("mouseReleased", middle, false);
+            }
+            if below {
+                self.browser.wheel([middle[0], 0.5 * height], 200.0)?;
+            }
+            // It is pressed where it has come to rest.
+            last = middle;
+            if begin.elapsed() > PATIENCE {
+                return Err(format!("`{name}` does not come to rest in the window"));
+            }
+            std::thread::sleep(Duration::from_millis(250));
+        }
+    }
+
+    /// A file that is being downloaded.
+    fn file(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+        let begin = Instant::now();
+        while begin.elapsed() < PATIENCE {
+            if let Ok(bytes) = std::fs::read(path)
+                && !bytes.is_empty()
+            {
+                return Ok(bytes);
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        let said = self.state()?;
+        Err(format!("{} was not handed over; the page says {said}", path.display()))
+    }
+
+    /// The hash to which the native program comes with a scene.
+    fn native(&self, scene: &Path, seconds: Option<&str>) -> Result<String, String> {
+        let out = self.folder.join("run");
+        let mut run = Command::new(&self.native);
+        run.arg("run").arg(scene).args(["--no-pictures", "--force", "--json", "--out"]).arg(&out);
+        if let Some(seconds) = seconds {
+            run.args(["--seconds", seconds]);
+        }
+        let output = run.output().map_err(|e| format!("{}: {e}", self.native.display()))?;
+        let told: Value = serde_json::from_slice(&output.stdout)
+            .map_err(|_| format!("the native program: {}", String::from_utf8_lossy(&output.stderr)))?;
+        told["state_hash"].as_str().map(String::from).ok_or_else(|| format!("no hash in {told}"))
+    }
+
+    /// Keeps a picture of the page where pictures are wanted.
+    fn keep_picture(&mut self, name: &str) -> Outcome {
+        let Some(folder) = std::env::var_os("PICTURES") else { return Ok(()) };
+        let letters = self.browser.picture()?;
+        let path = PathBuf::from(folder).join(format!("{name}.png"));
+        let failed = |e: std::io::Error| format!("{}: {e}", path.display());
+        let file = std::fs::File::create(&path).map_err(failed)?;
+        let mut decode = Command::new("base64").arg("-d").stdin(Stdio::piped()).stdout(file).spawn().map_err(failed)?;
+        decode.stdin.take().map_or(Ok(()), |mut input| input.write_all(letters.as_bytes())).map_err(failed)?;
+        decode.wait().map_err(failed).map(|_| ())
+    }
+}
+
+fn holds(is: bool, otherwise: impl FnOnce() -> String) -> Outcome {
+    if is { Ok(()) } else { Err(otherwise()) }
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    list.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+}
