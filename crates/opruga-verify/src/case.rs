@@ -24,14 +24,8 @@ pub enum Family {
 
 impl Family {
     /// All, in the order of the reports.
-    pub const ALL: [Family; 6] = [
-        Family::Statics,
-        Family::Materials,
-        Family::Pressure,
-        Family::Dynamics,
-        Family::Integrators,
-        Family::Ledgers,
-    ];
+    pub const ALL: [Family; 6] =
+        [Family::Statics, Family::Materials, Family::Pressure, Family::Dynamics, Family::Integrators, Family::Ledgers];
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
@@ -209,9 +203,8 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     }
     let count = logs.len() as f64;
     let (x, y) = logs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / count, sum.1 + p.1 / count));
-    let (above, below) = logs.iter().fold((0.0, 0.0), |sum, p| {
-        (sum.0 + (p.0 - x) * (p.1 - y), sum.1 + (p.0 - x) * (p.0 - x))
-    });
+    let (above, below) =
+        logs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + (p.0 - x) * (p.1 - y), sum.1 + (p.0 - x) * (p.0 - x)));
     Some(above / below)
 }
 

@@ -27,8 +27,13 @@ pub(crate) fn together(panels: &[(&str, Vec<&Row>)]) -> Result<String, DrawError
         .iter()
         .filter(|(_, rows)| !rows.is_empty())
         .map(|(label, rows)| Panel { y: Axis::logarithmic(*label, ""), ..errors(rows) });
-    Chart { width: 720.0, x: Axis::logarithmic("size of the cells, one over their number along a side", ""), panels: panels.collect(), ..Chart::default() }
-        .to_svg()
+    Chart {
+        width: 720.0,
+        x: Axis::logarithmic("size of the cells, one over their number along a side", ""),
+        panels: panels.collect(),
+        ..Chart::default()
+    }
+    .to_svg()
 }
 
 fn size_axis(row: &Row) -> Axis {
@@ -47,7 +52,9 @@ fn errors(rows: &[&Row]) -> Panel {
             row.points.iter().map(|p| [row.case.over.size(p.level), p.error.max(NOTHING)]).collect();
         let name = if alone { "measured".to_string() } else { row.case.name.replace('-', " ") };
         lines.push(Line { name, points: points.clone(), marker: Some(Marker::Circle), ..Line::default() });
-        if let (Check::Order(order), Some(first), Some(last), true) = (row.case.check, points.first(), points.last(), alone) {
+        if let (Check::Order(order), Some(first), Some(last), true) =
+            (row.case.check, points.first(), points.last(), alone)
+        {
             let start = last[1] * (first[0] / last[0]).powf(order);
             let name = format!("order {order}");
             let points = vec![[first[0], start], *last];
@@ -72,8 +79,20 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
         height: 220.0,
         y: Axis::linear(if case.unit.is_empty() { "value" } else { "" }, case.unit),
         lines: vec![
-            Line { name: "expected".into(), points: of(|p| p.expected), colour: Some([120, 124, 132]), dashed: true, marker: Some(Marker::Square), ..Line::default() },
-            Line { name: "measured".into(), points: of(|p| p.computed), marker: Some(Marker::Circle), ..Line::default() },
+            Line {
+                name: "expected".into(),
+                points: of(|p| p.expected),
+                colour: Some([120, 124, 132]),
+                dashed: true,
+                marker: Some(Marker::Square),
+                ..Line::default()
+            },
+            Line {
+                name: "measured".into(),
+                points: of(|p| p.computed),
+                marker: Some(Marker::Circle),
+                ..Line::default()
+            },
         ],
         levels: Vec::new(),
     };

@@ -124,7 +124,10 @@ pub fn to_json(rows: &[Row]) -> Value {
 /// What is drawn beside the table: errors of several kinds of cells together.
 pub fn overview(rows: &[Row]) -> Option<String> {
     let named = |names: &[&str]| -> Vec<&Row> {
-        names.iter().filter_map(|name| rows.iter().find(|row| row.case.name == *name && !row.points.is_empty())).collect()
+        names
+            .iter()
+            .filter_map(|name| rows.iter().find(|row| row.case.name == *name && !row.points.is_empty()))
+            .collect()
     };
     let cook = named(&["cook-linear-triangles", "cook-linear-quadrilaterals", "cook-linear-quadratic-triangles"]);
     let tube = named(&["lame-tube-triangles", "lame-tube-quadrilaterals", "lame-tube-quadratic-triangles"]);
@@ -200,7 +203,9 @@ pub fn markdown(rows: &[Row], plots: Option<&str>) -> String {
         text.push_str("## What fails\n\n");
         for row in failed {
             let found = row.trouble.clone().unwrap_or_else(|| {
-                row.decisive().map_or_else(String::new, |p| format!("{} error {}, order {}", level(row), rough(p.error), orders(row)))
+                row.decisive().map_or_else(String::new, |p| {
+                    format!("{} error {}, order {}", level(row), rough(p.error), orders(row))
+                })
             });
             let _ = writeln!(text, "* `{}`: {}", row.case.name, found.replace('\n', " "));
         }
@@ -294,7 +299,10 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        assert_eq!([short(0.0), short(23.9676), short(-108_610.28), short(0.493457)], ["0", "23.9676", "-1.09e5", "0.493457"]);
+        assert_eq!(
+            [short(0.0), short(23.9676), short(-108_610.28), short(0.493457)],
+            ["0", "23.9676", "-1.09e5", "0.493457"]
+        );
         assert_eq!([short(1e-13), short(3.0), short(10_000.0)], ["1.00e-13", "3", "10000"]);
     }
 }

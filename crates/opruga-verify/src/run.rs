@@ -22,9 +22,9 @@ pub fn run_all(
     order.sort_by_key(|number| cases[*number].quick);
     let rows: Mutex<Vec<(usize, Row)>> = Mutex::new(Vec::new());
     let worker = || {
-        while let Some((number, case)) = {
-            order.get(next.fetch_add(1, Ordering::Relaxed)).map(|number| (*number, cases[*number]))
-        } {
+        while let Some((number, case)) =
+            { order.get(next.fetch_add(1, Ordering::Relaxed)).map(|number| (*number, cases[*number])) }
+        {
             if stop.load(Ordering::Relaxed) {
                 return;
             }

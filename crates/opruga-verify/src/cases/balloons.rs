@@ -87,7 +87,7 @@ fn blown(select: &[u32], pressure: f64) -> String {
 fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
-    let scene = Scene::statics(2, 1e-10)
+    let scene = Scene::statics(2, 1e-9)
         .add("load_steps = 5")
         .body(&mesh, &rubber(&symmetric(&mesh)))?
         .add(&blown(&inner, 0.275_711_536_803_4));
@@ -99,7 +99,7 @@ fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
 fn sphere(lab: &Lab, [n, layers]: [u32; 2], cells: Cells, outer: f64, pressure: f64) -> Result<f64, Trouble> {
     let mesh = octant::<3>(n, layers, Some(1.0), outer, cells)?;
     let inner = at_radius(&mesh, 1.0);
-    let scene = Scene::statics(3, 1e-10)
+    let scene = Scene::statics(3, 1e-9)
         .add("load_steps = 5")
         .body(&mesh, &rubber(&symmetric(&mesh)))?
         .add(&blown(&inner, pressure));

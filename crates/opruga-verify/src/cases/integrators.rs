@@ -45,9 +45,23 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "order-explicit-euler", measure: |lab, h| damped(lab, h, "explicit_euler"), ..ORDER },
     Case { name: "order-heun", check: Check::Order(2.0), measure: |lab, h| damped(lab, h, "heun"), ..ORDER },
     Case { name: "order-verlet", check: Check::Order(2.0), measure: |lab, h| damped(lab, h, "verlet"), ..ORDER },
-    Case { name: "order-runge-kutta", check: Check::Order(4.0), measure: |lab, h| damped(lab, h, "runge_kutta"), ..ORDER },
-    Case { name: "order-backward-euler", measure: |lab, h| damped(lab, h, "backward_euler\ntolerance = 1e-13"), ..ORDER },
-    Case { name: "order-bdf2", check: Check::Order(2.0), measure: |lab, h| damped(lab, h, "bdf2\ntolerance = 1e-13"), ..ORDER },
+    Case {
+        name: "order-runge-kutta",
+        check: Check::Order(4.0),
+        measure: |lab, h| damped(lab, h, "runge_kutta"),
+        ..ORDER
+    },
+    Case {
+        name: "order-backward-euler",
+        measure: |lab, h| damped(lab, h, "backward_euler\ntolerance = 1e-13"),
+        ..ORDER
+    },
+    Case {
+        name: "order-bdf2",
+        check: Check::Order(2.0),
+        measure: |lab, h| damped(lab, h, "bdf2\ntolerance = 1e-13"),
+        ..ORDER
+    },
     Case {
         name: "order-implicit-midpoint",
         check: Check::Order(2.0),

@@ -33,7 +33,11 @@ const ENERGY: Case = Case {
 };
 
 pub(super) const CASES: &[Case] = &[
-    Case { name: "momentum-symplectic-euler", measure: |lab, h| flight(lab, h, "symplectic_euler", Kept::Momentum), ..LINEAR },
+    Case {
+        name: "momentum-symplectic-euler",
+        measure: |lab, h| flight(lab, h, "symplectic_euler", Kept::Momentum),
+        ..LINEAR
+    },
     Case { name: "momentum-runge-kutta", measure: |lab, h| flight(lab, h, "runge_kutta", Kept::Momentum), ..LINEAR },
     Case {
         name: "momentum-implicit-midpoint",
@@ -47,7 +51,11 @@ pub(super) const CASES: &[Case] = &[
         measure: |lab, h| flight(lab, h, "symplectic_euler", Kept::AngularMomentum),
         ..ANGULAR
     },
-    Case { name: "angular-momentum-verlet", measure: |lab, h| flight(lab, h, "verlet", Kept::AngularMomentum), ..ANGULAR },
+    Case {
+        name: "angular-momentum-verlet",
+        measure: |lab, h| flight(lab, h, "verlet", Kept::AngularMomentum),
+        ..ANGULAR
+    },
     Case {
         name: "angular-momentum-implicit-midpoint",
         tolerance: 1e-10,
@@ -55,14 +63,23 @@ pub(super) const CASES: &[Case] = &[
         measure: |lab, h| flight(lab, h, "implicit_midpoint\ntolerance = 1e-12", Kept::AngularMomentum),
         ..ANGULAR
     },
-    Case { name: "energy-symplectic-euler", measure: |lab, h| flight(lab, h, "symplectic_euler", Kept::Energy), ..ENERGY },
+    Case {
+        name: "energy-symplectic-euler",
+        measure: |lab, h| flight(lab, h, "symplectic_euler", Kept::Energy),
+        ..ENERGY
+    },
     Case {
         name: "energy-verlet",
         check: Check::Order(2.0),
         measure: |lab, h| flight(lab, h, "verlet", Kept::Energy),
         ..ENERGY
     },
-    Case { name: "energy-heun", check: Check::Order(2.0), measure: |lab, h| flight(lab, h, "heun", Kept::Energy), ..ENERGY },
+    Case {
+        name: "energy-heun",
+        check: Check::Order(2.0),
+        measure: |lab, h| flight(lab, h, "heun", Kept::Energy),
+        ..ENERGY
+    },
     Case {
         name: "energy-runge-kutta",
         levels: &[1.0 / 480.0, 1.0 / 960.0, 1.0 / 1920.0],
@@ -126,9 +143,7 @@ fn flight(lab: &Lab, h: f64, rule: &str, kept: Kept) -> Result<f64, Trouble> {
         }
         let first = *before.get_or_insert(now);
         let change = match kept {
-            Kept::Momentum => {
-                (now.linear.0[0] - first.linear.0[0]).hypot(now.linear.0[1] - first.linear.0[1]) / sum
-            }
+            Kept::Momentum => (now.linear.0[0] - first.linear.0[0]).hypot(now.linear.0[1] - first.linear.0[1]) / sum,
             Kept::AngularMomentum => (now.angular[2] - first.angular[2]).abs() / turning,
             Kept::Energy => world.energy().closure,
         };

@@ -1,8 +1,8 @@
 //! The laws of materials: uniaxial stress, shear, damping.
 
 use super::BASE;
-use crate::bodies::{displacement, mapped, nodes};
 use crate::bodies::Cells;
+use crate::bodies::{displacement, mapped, nodes};
 use crate::case::{Case, Check, Family, Over};
 use crate::lab::{Lab, Scene, Trouble};
 
@@ -26,11 +26,8 @@ const STRESS: Case = Case {
     ..BASE
 };
 
-const SIDE: Case = Case {
-    quantity: "stretch across a cube under uniaxial stress, E = 100 kPa, ν = 0.45",
-    unit: "",
-    ..STRESS
-};
+const SIDE: Case =
+    Case { quantity: "stretch across a cube under uniaxial stress, E = 100 kPa, ν = 0.45", unit: "", ..STRESS };
 
 const PULLED_STRAIGHT: &[f64] = &[-50_000.0, -20_000.0, 20_000.0, 50_000.0, 100_000.0, 200_000.0];
 const NARROWED_STRAIGHT: &[f64] = &[1.225, 1.09, 0.91, 0.775, 0.55, 0.1];
@@ -69,13 +66,27 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "uniaxial-stress-fixed-corotated",
-        expected: &[-95_785.440_613_027, -23_627.335_522_732, 18_014.571_469_554, 41_003.800_659_287, 75_885.700_031_947, 143_483.969_257_27],
+        expected: &[
+            -95_785.440_613_027,
+            -23_627.335_522_732,
+            18_014.571_469_554,
+            41_003.800_659_287,
+            75_885.700_031_947,
+            143_483.969_257_27,
+        ],
         measure: |lab, x| pull(lab, "fixed_corotated", x, Of::Stress),
         ..STRESS
     },
     Case {
         name: "uniaxial-narrowing-fixed-corotated",
-        expected: &[1.333_333_333_333, 1.103_388_011_203, 0.920_174_316_718_4, 0.828_888_029_062_3, 0.722_069_131_293_7, 0.591_909_397_282_4],
+        expected: &[
+            1.333_333_333_333,
+            1.103_388_011_203,
+            0.920_174_316_718_4,
+            0.828_888_029_062_3,
+            0.722_069_131_293_7,
+            0.591_909_397_282_4,
+        ],
         measure: |lab, x| pull(lab, "fixed_corotated", x, Of::Side),
         ..SIDE
     },
@@ -97,37 +108,79 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "uniaxial-stress-neo-hookean",
-        expected: &[-108_610.280_862_16, -24_992.972_967_347, 17_023.918_306_269, 35_861.435_192_005, 59_879.627_027_422, 99_333.557_571_501],
+        expected: &[
+            -108_610.280_862_16,
+            -24_992.972_967_347,
+            17_023.918_306_269,
+            35_861.435_192_005,
+            59_879.627_027_422,
+            99_333.557_571_501,
+        ],
         measure: |lab, x| pull(lab, "neo_hookean", x, Of::Stress),
         ..STRESS
     },
     Case {
         name: "uniaxial-narrowing-neo-hookean",
-        expected: &[1.350_869_746_682, 1.104_462_300_326, 0.920_634_369_846, 0.830_678_980_802_9, 0.725_935_005_637_2, 0.598_314_709_228_7],
+        expected: &[
+            1.350_869_746_682,
+            1.104_462_300_326,
+            0.920_634_369_846,
+            0.830_678_980_802_9,
+            0.725_935_005_637_2,
+            0.598_314_709_228_7,
+        ],
         measure: |lab, x| pull(lab, "neo_hookean", x, Of::Side),
         ..SIDE
     },
     Case {
         name: "uniaxial-stress-stable-neo-hookean",
-        expected: &[-110_935.097_535_47, -25_033.200_462_132, 17_232.315_338_325, 37_542.792_792_545, 66_717.118_366_591, 120_136.232_413_33],
+        expected: &[
+            -110_935.097_535_47,
+            -25_033.200_462_132,
+            17_232.315_338_325,
+            37_542.792_792_545,
+            66_717.118_366_591,
+            120_136.232_413_33,
+        ],
         measure: |lab, x| pull(lab, "stable_neo_hookean", x, Of::Stress),
         ..STRESS
     },
     Case {
         name: "uniaxial-narrowing-stable-neo-hookean",
-        expected: &[1.331_936_849_894, 1.103_291_364_951, 0.920_161_894_488_3, 0.828_994_039_604_8, 0.722_880_839_003_5, 0.594_619_890_902_9],
+        expected: &[
+            1.331_936_849_894,
+            1.103_291_364_951,
+            0.920_161_894_488_3,
+            0.828_994_039_604_8,
+            0.722_880_839_003_5,
+            0.594_619_890_902_9,
+        ],
         measure: |lab, x| pull(lab, "stable_neo_hookean", x, Of::Side),
         ..SIDE
     },
     Case {
         name: "uniaxial-stress-mooney-rivlin",
-        expected: &[-120_990.765_740_67, -25_940.530_264_878, 16_533.603_262_334, 33_700.607_105_223, 54_246.728_610_588, 86_441.393_242_838],
+        expected: &[
+            -120_990.765_740_67,
+            -25_940.530_264_878,
+            16_533.603_262_334,
+            33_700.607_105_223,
+            54_246.728_610_588,
+            86_441.393_242_838,
+        ],
         measure: |lab, x| pull(lab, "mooney_rivlin", x, Of::Stress),
         ..STRESS
     },
     Case {
         name: "uniaxial-narrowing-mooney-rivlin",
-        expected: &[1.330_487_213_26, 1.103_090_589_903, 0.919_996_942_204_1, 0.828_062_010_534_5, 0.719_805_776_332_1, 0.586_582_755_512_7],
+        expected: &[
+            1.330_487_213_26,
+            1.103_090_589_903,
+            0.919_996_942_204_1,
+            0.828_062_010_534_5,
+            0.719_805_776_332_1,
+            0.586_582_755_512_7,
+        ],
         measure: |lab, x| pull(lab, "mooney_rivlin", x, Of::Side),
         ..SIDE
     },
@@ -186,8 +239,7 @@ fn pull(lab: &Lab, material: &str, stretch: f64, of: Of) -> Result<f64, Trouble>
 fn shear(lab: &Lab, angle: f64) -> Result<f64, Trouble> {
     let mesh = mapped([2; 3], Cells::Boxes, |x| x)?;
     let outside = crate::bodies::boundary(&mesh);
-    let pins =
-        crate::lab::moved_pins(outside.iter().map(|k| (*k, [angle * mesh.positions[*k as usize][1], 0.0, 0.0])));
+    let pins = crate::lab::moved_pins(outside.iter().map(|k| (*k, [angle * mesh.positions[*k as usize][1], 0.0, 0.0])));
     let scene = Scene::statics(3, 1e-11).body(&mesh, &format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"neo_hookean\", youngs_modulus = 1e5, poissons_ratio = 0.45 }}]\n{pins}"
     ))?;

@@ -33,8 +33,16 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "patch-tetrahedra", measure: |lab, n| space(lab, n, Cells::Linear, false), ..AFFINE },
     Case { name: "patch-quadratic-tetrahedra", measure: |lab, n| space(lab, n, Cells::Quadratic, false), ..AFFINE },
     Case { name: "patch-hexahedra", measure: |lab, n| space(lab, n, Cells::Boxes, false), ..AFFINE },
-    Case { name: "bending-patch-quadratic-triangles", measure: |lab, n| plane(lab, n, Cells::Quadratic, true), ..BENDING },
-    Case { name: "bending-patch-quadratic-tetrahedra", measure: |lab, n| space(lab, n, Cells::Quadratic, true), ..BENDING },
+    Case {
+        name: "bending-patch-quadratic-triangles",
+        measure: |lab, n| plane(lab, n, Cells::Quadratic, true),
+        ..BENDING
+    },
+    Case {
+        name: "bending-patch-quadratic-tetrahedra",
+        measure: |lab, n| space(lab, n, Cells::Quadratic, true),
+        ..BENDING
+    },
 ];
 
 /// Equal cells whose nodes are moved at random by up to an eighth of a cell.

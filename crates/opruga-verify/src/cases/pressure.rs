@@ -5,11 +5,7 @@ use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble};
 use opruga::World;
 
-const GAS: Case = Case {
-    family: Family::Pressure,
-    over: Over::Cells("vertices"),
-    ..BASE
-};
+const GAS: Case = Case { family: Family::Pressure, over: Over::Cells("vertices"), ..BASE };
 
 const LAW: Case = Case {
     quantity: "largest departure of P V^γ from its value at the start, in a ball that bounces; γ = 1: isothermal",
@@ -96,7 +92,11 @@ fn reading<const D: usize>(world: &mut World<D>, name: &str) -> Result<f64, Trou
 }
 
 fn gas_law(lab: &Lab, gamma: f64) -> Result<f64, Trouble> {
-    let process = if gamma > 1.0 { format!("process = \"adiabatic\", gamma = {gamma:?}") } else { "process = \"isothermal\"".into() };
+    let process = if gamma > 1.0 {
+        format!("process = \"adiabatic\", gamma = {gamma:?}")
+    } else {
+        "process = \"isothermal\"".into()
+    };
     let scene = Scene::new(2, 1.0 / 60.0, 40, "symplectic_euler").add(&format!(
         "[world]\ngravity = [0.0, -9.81]\n[[body]]\nname = \"ball\"\nmass = 1\nvelocity = [0, -6]\n\
          shape = {{ kind = \"ring\", radius = 0.5, vertices = 36, center = [0, 0.6] }}\n\
@@ -207,7 +207,7 @@ fn balloon_in_time(lab: &Lab, parts: f64) -> Result<f64, Trouble> {
 fn buckling(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let l = 2.0 * (std::f64::consts::PI / n).sin();
     let lowest = |pressure: f64| -> Result<f64, Trouble> {
-        let scene = Scene::statics(2, 1e-11).add(&format!(
+        let scene = Scene::statics(2, 1e-8).add(&format!(
             "[[body]]\nname = \"ring\"\nmass = 1.0\nshape = {{ kind = \"ring\", radius = 1.0, vertices = {n} }}\n\
              models = [{{ kind = \"bending\", stiffness = {:?} }}, {{ kind = \"mass_spring\", stiffness = {:?} }}]\n{}\n\
              [[load]]\nkind = \"pressure\"\nbody = \"ring\"\nvalue = {pressure:?}",

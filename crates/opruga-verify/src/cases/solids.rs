@@ -147,7 +147,9 @@ fn bar(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
 
 /// A solid of E = 1 Pa and ν = 0.3 with planes of symmetry.
 fn solid(pins: &str) -> String {
-    format!("density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = 0.3 }}]\n{pins}")
+    format!(
+        "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = 0.3 }}]\n{pins}"
+    )
 }
 
 fn pressed(select: &[u32], pressure: f64) -> String {
@@ -157,8 +159,7 @@ fn pressed(select: &[u32], pressure: f64) -> String {
 fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
-    let scene =
-        Scene::statics(2, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, SMALL));
+    let scene = Scene::statics(2, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, SMALL));
     let mut world = lab.plane(scene)?;
     world.frame()?;
     Ok(if stress { stress_at(&world, [1.0, 0.0], [1, 1])? } else { outward(&world, &inner) } / SMALL)
@@ -167,8 +168,7 @@ fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
 fn sphere(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<3>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
-    let scene =
-        Scene::statics(3, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, SMALL));
+    let scene = Scene::statics(3, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, SMALL));
     let mut world = lab.space(scene)?;
     world.frame()?;
     Ok(if stress { stress_at(&world, [1.0, 0.0, 0.0], [1, 1])? } else { outward(&world, &inner) } / SMALL)
@@ -177,8 +177,7 @@ fn sphere(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble>
 fn ball(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let mesh = octant::<3>(n as u32, n as u32, None, 1.0, Cells::Boxes)?;
     let outer = at_radius(&mesh, 1.0);
-    let scene =
-        Scene::statics(3, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&outer, SMALL));
+    let scene = Scene::statics(3, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&outer, SMALL));
     let mut world = lab.space(scene)?;
     world.frame()?;
     Ok(outward(&world, &outer) / SMALL)
@@ -221,8 +220,10 @@ fn hole(lab: &Lab, n: f64) -> Result<f64, Trouble> {
         let (r, t): (f64, f64) = (4.0, y.atan2(x));
         let factor = SMALL / (8.0 * shear);
         let far = 2.0 / (r * r * r);
-        let along = r * (kappa + 1.0) * t.cos() + 2.0 / r * ((1.0 + kappa) * t.cos() + (3.0 * t).cos()) - far * (3.0 * t).cos();
-        let across = r * (kappa - 3.0) * t.sin() + 2.0 / r * ((1.0 - kappa) * t.sin() + (3.0 * t).sin()) - far * (3.0 * t).sin();
+        let along =
+            r * (kappa + 1.0) * t.cos() + 2.0 / r * ((1.0 + kappa) * t.cos() + (3.0 * t).cos()) - far * (3.0 * t).cos();
+        let across =
+            r * (kappa - 3.0) * t.sin() + 2.0 / r * ((1.0 - kappa) * t.sin() + (3.0 * t).sin()) - far * (3.0 * t).sin();
         (*node, [factor * along, factor * across])
     });
     let pins = moved_pins(moved);

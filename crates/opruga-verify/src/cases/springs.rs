@@ -71,7 +71,7 @@ fn catenary(lab: &Lab, links: f64) -> Result<f64, Trouble> {
             [s, 0.75f64.sqrt() * ((2.0 * s - 1.0).abs() - 1.0)]
         })
         .collect();
-    let scene = Scene::statics(2, 1e-10).add(&format!(
+    let scene = Scene::statics(2, 1e-8).add(&format!(
         "[world]\ngravity = [0.0, -9.81]\n[[body]]\nname = \"chain\"\nmass = 1.0\nshape = {{ kind = \"polyline\", points = {points:?} }}\n\
          models = [{{ kind = \"mass_spring\", stiffness = 1e7 }}]\npin = [{{ select = {{ nodes = [0, {count}] }} }}]"
     ));

@@ -161,7 +161,9 @@ fn pressure_speed() -> f64 {
 
 /// A linear solid of E = 1 Pa and ρ = 1 kg/m³.
 fn solid(poisson: f64, plane: &str, pins: &str) -> String {
-    format!("density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{plane} }}]\n{pins}")
+    format!(
+        "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{plane} }}]\n{pins}"
+    )
 }
 
 /// No time passes: any rule will do that has no limit of its step.
