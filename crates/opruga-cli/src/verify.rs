@@ -102,16 +102,8 @@ fn list(cases: &[&Case]) -> String {
             let _ = writeln!(text, "{}", family.name());
         }
         for case in of {
-            let theory = match case.check {
-                Check::Order(order) => format!(", order {order}"),
-                Check::Finest => String::new(),
-                Check::Everywhere => " at every level".into(),
-            };
-            let _ = writeln!(
-                text,
-                "  {}\n    {}\n    within {}{theory}; {}",
-                case.name, case.quantity, case.tolerance, case.source
-            );
+            let _ =
+                writeln!(text, "  {}\n    {}\n    {}; {}", case.name, case.quantity, case.passes_when(), case.source);
         }
     }
     let _ = writeln!(text, "{} cases", cases.len());

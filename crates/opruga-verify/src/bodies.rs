@@ -197,39 +197,61 @@ pub(crate) fn outward<const D: usize>(world: &World<D>, which: &[u32]) -> f64 {
 /// A component of the Cauchy stress of body 0 at a place at rest: the mean stresses of the cells near by, continued by the
 /// quadratic polynomial that fits them best (recovery on a patch: Zienkiewicz and Zhu 1992).
 pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: [usize; 2]) -> Result<f64, Trouble> {
+    let samples = cell_stresses(world).into_iter().map(|(place, stress)| {
+        let away: Vec<f64> = (0..D).map(|d| place[d] - at[d]).collect();
+        (away.iter().map(|c| c * c).sum::<f64>().sqrt(), away, stress[i][j])
+    });
+    continued(samples.collect(), 3 * (D + 1) * (D + 2) / 2)
+}
+
+/// The stress around the origin at a radius, of a body of space whose stress depends on the distance from the origin alone: half
+/// of what is not radial of the mean stresses of the nearest `count` cells, continued by the quadratic polynomial of the radius.
+pub(crate) fn hoop_stress_at(world: &World<3>, radius: f64, count: usize) -> Result<f64, Trouble> {
+    let states = cell_stresses(world);
+    let samples = states.into_iter().map(|(place, stress)| {
+        let distance = place.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let ray = place.map(|c| c / distance);
+        let radial: f64 = (0..3).map(|a| (0..3).map(|b| ray[a] * stress[a][b] * ray[b]).sum::<f64>()).sum();
+        let around = 0.5 * (stress[0][0] + stress[1][1] + stress[2][2] - radial);
+        ((distance - radius).abs(), vec![distance - radius], around)
+    });
+    continued(samples.collect(), count)
+}
+
+/// Where cells of body 0 have their middle at rest, and their mean stress.
+fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 3])> {
     let mesh = &world.blueprint().bodies[0].mesh;
     let corners = |nodes: &[u32]| match nodes.len() {
         6 => 3,
         10 => 4,
         all => all,
     };
-    let mut samples: Vec<(f64, [f64; D], f64)> = mesh
-        .cells
-        .iter()
-        .zip(world.cell_states(0))
-        .map(|((_, _, nodes), state)| {
-            let count = corners(nodes);
-            let mut away = [0.0; D];
-            for node in &nodes[..count] {
-                for d in 0..D {
-                    away[d] += (mesh.positions[*node as usize][d] - at[d]) / count as f64;
-                }
-            }
-            (away.iter().map(|c| c * c).sum::<f64>(), away, state.stress[i][j])
-        })
-        .collect();
+    let place = |nodes: &[u32]| {
+        let count = corners(nodes);
+        let mut middle = [0.0; D];
+        for node in &nodes[..count] {
+            (0..D).for_each(|d| middle[d] += mesh.positions[*node as usize][d] / count as f64);
+        }
+        middle
+    };
+    mesh.cells.iter().zip(world.cell_states(0)).map(|((_, _, nodes), state)| (place(nodes), state.stress)).collect()
+}
+
+/// Samples, each with its distance, its way from the place that is asked for, and its value: the value there of the quadratic
+/// polynomial that fits the nearest `count` of them best.
+fn continued(mut samples: Vec<(f64, Vec<f64>, f64)>, count: usize) -> Result<f64, Trouble> {
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let terms = (D + 1) * (D + 2) / 2;
-    samples.truncate(3 * terms);
-    let reach = samples.last().ok_or("no cells")?.0.sqrt();
+    samples.truncate(count);
+    let reach = samples.last().ok_or("no cells")?.0;
     // 1, x, …, x², xy, …
-    let monomials = |away: &[f64; D]| -> Vec<f64> {
-        let x = away.map(|c| c / reach);
+    let monomials = |away: &[f64]| -> Vec<f64> {
+        let x: Vec<f64> = away.iter().map(|c| c / reach).collect();
         let mut out = vec![1.0];
-        out.extend(x);
-        (0..D).for_each(|a| (a..D).for_each(|b| out.push(x[a] * x[b])));
+        out.extend(&x);
+        (0..x.len()).for_each(|a| (a..x.len()).for_each(|b| out.push(x[a] * x[b])));
         out
     };
+    let terms = monomials(&samples[0].1).len();
     let mut matrix = vec![vec![0.0; terms + 1]; terms];
     for (_, away, value) in &samples {
         let row = monomials(away);

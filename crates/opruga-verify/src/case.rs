@@ -143,6 +143,21 @@ pub struct Row {
 }
 
 impl Case {
+    /// When it passes, in a few words: `order 2 ≤ 0.01`.
+    pub fn passes_when(&self) -> String {
+        let theory = match self.check {
+            Check::Order(order) => format!("order {order}"),
+            Check::Finest => "finest".into(),
+            Check::Everywhere => "everywhere".into(),
+        };
+        format!("{theory} ≤ {}", self.limit())
+    }
+
+    /// The largest error that passes, as a text.
+    pub(crate) fn limit(&self) -> String {
+        if self.tolerance < 1e-3 { format!("{:e}", self.tolerance) } else { self.tolerance.to_string() }
+    }
+
     /// Runs all levels on the calling thread.
     pub fn run(&'static self, lab: &Lab) -> Row {
         let start = std::time::Instant::now();

@@ -11,7 +11,7 @@
 //! ```
 //! use opruga_verify::{Lab, cases};
 //!
-//! let case = cases().find(|case| case.name == "solid-ball-under-pressure").expect("a case");
+//! let case = cases().find(|case| case.name == "uniaxial-stress-neo-hookean").expect("a case");
 //! let row = case.run(&Lab::default());
 //! assert!(row.pass, "{row:?}");
 //! ```

@@ -65,7 +65,7 @@ fn errors(rows: &[&Row]) -> Panel {
     for row in rows {
         let value = row.case.tolerance;
         if levels.iter().all(|level| level.value != value) {
-            levels.push(Level { value, label: format!("limit {value}") });
+            levels.push(Level { value, label: format!("limit {}", row.case.limit()) });
         }
     }
     Panel { height: 260.0, y: Axis::logarithmic("error", ""), lines, levels }
@@ -89,7 +89,8 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
             },
             Line {
                 name: "measured".into(),
-                points: of(|p| p.computed),
+                // A gap after each: the line is that of what is expected.
+                points: of(|p| p.computed).into_iter().flat_map(|point| [point, [f64::NAN; 2]]).collect(),
                 marker: Some(Marker::Circle),
                 ..Line::default()
             },
@@ -100,7 +101,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
         height: 150.0,
         y: Axis::logarithmic("error", ""),
         lines: vec![Line { points: of(|p| p.error.max(NOTHING)), marker: Some(Marker::Circle), ..Line::default() }],
-        levels: vec![Level { value: case.tolerance, label: format!("limit {}", case.tolerance) }],
+        levels: vec![Level { value: case.tolerance, label: format!("limit {}", case.limit()) }],
     };
     // Where nothing is expected, the value is the error.
     let panels = if case.expected.iter().all(|x| *x == 0.0) { vec![errors] } else { vec![values, errors] };

@@ -12,7 +12,7 @@ fn short(value: f64) -> String {
         return "0".into();
     }
     let size = value.abs();
-    if !(1e-3..1e5).contains(&size) {
+    if !(1e-3..1e7).contains(&size) {
         return format!("{value:.2e}");
     }
     let digits = (5 - size.log10().floor() as i32).clamp(0, 8) as usize;
@@ -147,11 +147,6 @@ fn level(row: &Row) -> &'static str {
 /// The lines of the Markdown table of a case: what it is, then what came of it.
 fn markdown_row(row: &Row) -> String {
     let case = row.case;
-    let theory = match case.check {
-        Check::Order(order) => format!("order {order}"),
-        Check::Finest => "finest".into(),
-        Check::Everywhere => "everywhere".into(),
-    };
     let (computed, expected, error) = match row.decisive() {
         Some(p) => (with_unit(p.computed, case), with_unit(p.expected, case), rough(p.error)),
         None => ("none".into(), with_unit(case.expected[0], case), "–".into()),
@@ -159,12 +154,11 @@ fn markdown_row(row: &Row) -> String {
     let order = row.observed_order.map_or("–".into(), |seen| format!("{seen:.2}"));
     let verdict = if row.pass { "pass" } else { "**fail**" };
     format!(
-        "| `{}` | {} | {} | {} ≤ {} | {computed} | {expected} | {error} | {order} | {verdict} |",
+        "| `{}` | {} | {} | {} | {computed} | {expected} | {error} | {order} | {verdict} |",
         case.name,
         escaped(case.quantity),
         escaped(case.source),
-        theory,
-        case.tolerance,
+        case.passes_when(),
     )
 }
 
@@ -301,7 +295,7 @@ mod tests {
     fn numbers_are_short() {
         assert_eq!(
             [short(0.0), short(23.9676), short(-108_610.28), short(0.493457)],
-            ["0", "23.9676", "-1.09e5", "0.493457"]
+            ["0", "23.9676", "-108610", "0.493457"]
         );
         assert_eq!([short(1e-13), short(3.0), short(10_000.0)], ["1.00e-13", "3", "10000"]);
     }

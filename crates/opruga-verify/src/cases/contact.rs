@@ -20,13 +20,13 @@ const SLOPE: Case = Case {
 
 const IMPACT: Case = Case {
     family: Family::Dynamics,
+    quick: false,
     quantity: "time from the touch of a bar with a wall to the moment when its momentum is zero, over L/c",
     source: "exact: half of the time of contact 2L/c (B. de Saint-Venant 1867)",
     over: Over::Cells("springs along the bar"),
     levels: &[25.0, 50.0, 100.0],
     expected: &[1.0],
     check: Check::Order(1.0),
-    quick: true,
     ..BASE
 };
 

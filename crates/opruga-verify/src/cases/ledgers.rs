@@ -95,6 +95,7 @@ pub(super) const CASES: &[Case] = &[
         expected: &[19.62],
         scale: Scale::Relative,
         tolerance: 1e-9,
+        quick: false,
         measure: lift,
         ..LINEAR
     },

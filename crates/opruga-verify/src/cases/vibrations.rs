@@ -221,7 +221,11 @@ fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trou
         along.abs() / square.sqrt()
     };
     let modes = world.modes(0, count)?;
-    Ok(modes.iter().find(|mode| likeness(&mode.shape) > 0.9).ok_or("it does not breathe")?.omega())
+    let most = modes.iter().max_by(|a, b| likeness(&a.shape).total_cmp(&likeness(&b.shape))).ok_or("no modes")?;
+    if likeness(&most.shape) < 0.7 {
+        return Err("it does not breathe".into());
+    }
+    Ok(most.omega())
 }
 
 fn disc(lab: &Lab, n: f64, cells: Cells, breathes: bool) -> Result<f64, Trouble> {
@@ -253,5 +257,5 @@ fn ball(lab: &Lab, n: f64, cells: Cells, motion: Motion) -> Result<f64, Trouble>
         _ => symmetric(&mesh),
     };
     let world = lab.space(still(3).body(&mesh, &solid(0.3, "", &pins))?)?;
-    if matches!(motion, Motion::Breathing) { breathing(&world, 12) } else { omega(&world, 0) }
+    if matches!(motion, Motion::Breathing) { breathing(&world, 20) } else { omega(&world, 0) }
 }
