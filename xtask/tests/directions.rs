@@ -1,5 +1,5 @@
 //! Which crate may see which:
-//! math ← mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, cli}.
+//! math ← mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,6 +20,7 @@ fn layers() -> BTreeMap<&'static str, u32> {
         ("opruga-draw", 7),
         ("opruga", 8),
         ("opruga-studio", 9),
+        ("opruga-verify", 9),
         ("opruga-cli", 10),
         ("xtask", 11),
     ])

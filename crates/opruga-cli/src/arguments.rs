@@ -59,6 +59,8 @@ pub(crate) enum Command {
     },
     /// Fill a surface or an outline with cells, look at a mesh, or write it in another format
     Mesh(Mesh),
+    /// Compare the engine with closed forms and published numbers; exit code 1 where a case fails
+    Verify(Verify),
     /// Measure speed
     Bench {
         #[command(subcommand)]
@@ -307,6 +309,29 @@ pub(crate) struct Run {
 }
 
 #[derive(Args, Debug)]
+pub(crate) struct Verify {
+    /// Only cases whose name contains this, or those of a family: statics, materials, pressure, dynamics, integrators,
+    /// ledgers; may be given several times
+    #[arg(long, value_name = "WORD")]
+    pub(crate) filter: Vec<String>,
+    /// List the cases with their sources, and run none
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write a report with a plot of every case to this folder: report.html, report.md
+    #[arg(long, value_name = "FOLDER", conflicts_with = "list")]
+    pub(crate) report: Option<PathBuf>,
+    /// Replace the report that is there
+    #[arg(long, requires = "report")]
+    pub(crate) force: bool,
+    /// Threads, 1 to 256; the results do not depend on them [default: one for each core]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: Option<u16>,
+}
+
+#[derive(Args, Debug)]
 pub(crate) struct Modes {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
@@ -439,6 +464,7 @@ impl Command {
             Command::Replay(replay) => replay.json,
             Command::Mesh(mesh) => mesh.json,
             Command::Modes(modes) => modes.json,
+            Command::Verify(verify) => verify.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::New { json, .. } => *json,

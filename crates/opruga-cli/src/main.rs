@@ -19,6 +19,7 @@ mod run;
 mod source;
 mod studio;
 mod sweep;
+mod verify;
 mod watch;
 
 use arguments::{Arguments, Command};
@@ -73,6 +74,7 @@ fn run_command(command: &Command) -> Result<u8, Failure> {
         Command::New { name, force, .. } => reports::new(name, *force),
         Command::Reference { schema } => reports::reference(*schema),
         Command::Bench { what } => reports::bench(what),
+        Command::Verify(call) => verify::verify(call),
     }
 }
 

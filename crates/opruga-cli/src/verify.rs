@@ -1,0 +1,133 @@
+//! `opruga verify`: the engine against closed forms and published numbers.
+
+use crate::arguments::Verify;
+use crate::failure::{Failure, print_data};
+use crate::interrupt;
+use crate::run::simd_from_environment;
+use opruga::core::spec::nearest;
+use opruga::io::problem::visible;
+use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga_verify::{Case, Check, Family, Lab, Row};
+use serde_json::json;
+use std::fmt::Write as _;
+use std::io::IsTerminal;
+
+/// Runs the cases; 1 where one fails.
+pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
+    let cases = chosen(&call.filter)?;
+    if call.list {
+        print_data(&if call.json { list_as_json(&cases) } else { list(&cases) })?;
+        return Ok(0);
+    }
+    let lab = Lab { simd: simd_from_environment()?, ..Lab::default() };
+    // Whether the report can be written is known before the work.
+    let existing = if call.force { Existing::Replace } else { Existing::Refuse };
+    let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose()?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = call.threads.map_or(cores, usize::from);
+    let stop = interrupt::asked_to_stop();
+    let bar = progress_bar(cases.len());
+    // Errors of a call with --json are JSON: nothing else is said beside it.
+    let tell = !call.json && !std::io::stderr().is_terminal();
+    let rows = opruga_verify::run_all(&cases, &lab, threads, stop, &|row: &Row| {
+        bar.inc(1);
+        if tell {
+            let verdict = if row.pass { "pass" } else { "FAIL" };
+            eprintln!("{verdict}  {} ({:.2} s)", row.case.name, row.seconds);
+        }
+    });
+    bar.finish_and_clear();
+    if rows.len() < cases.len() {
+        return Err(Failure::Interrupted);
+    }
+    if let Some(folder) = &folder {
+        write_report(folder, &rows)?;
+    }
+    let json = serde_json::to_string_pretty(&opruga_verify::to_json(&rows)).unwrap_or_default() + "\n";
+    print_data(&if call.json { json } else { opruga_verify::table(&rows) })?;
+    if let Some(folder) = folder.filter(|_| !call.json) {
+        eprintln!("written to {}", folder.path("").display());
+    }
+    Ok(u8::from(rows.iter().any(|row| !row.pass)))
+}
+
+/// The cases that any of the words names; all where there are no words.
+fn chosen(words: &[String]) -> Result<Vec<&'static Case>, Failure> {
+    for word in words {
+        let of_word = |case: &Case| case.name.contains(word.as_str()) || case.family.name() == word;
+        if !opruga_verify::cases().any(of_word) {
+            let families = Family::ALL.map(Family::name);
+            let known = opruga_verify::cases().map(|case| case.name).chain(families);
+            let near = nearest(word, known).map(|name| format!("did you mean `{name}`? "));
+            return Err(Failure::Call {
+                message: format!("no case is called `{}`; families are {}", visible(word), families.join(", ")),
+                hint: Some(format!("{}`opruga verify --list` shows all cases", near.unwrap_or_default())),
+            });
+        }
+    }
+    let wanted = |case: &&Case| {
+        words.is_empty() || words.iter().any(|word| case.name.contains(word.as_str()) || case.family.name() == word)
+    };
+    Ok(opruga_verify::cases().filter(wanted).collect())
+}
+
+/// `report.html`, `report.md`, `report.json`, and a plot for each case.
+fn write_report(folder: &OutputFolder, rows: &[Row]) -> Result<(), Failure> {
+    let write = |name: &str, text: &str| folder.write(name, false, |out| out.write_all(text.as_bytes()));
+    for row in rows {
+        if let Ok(svg) = opruga_verify::plot(row) {
+            write(&format!("{}.svg", row.case.name), &svg)?;
+        }
+    }
+    let mut text = String::from("# Verification\n\n");
+    if let Some(svg) = opruga_verify::overview(rows) {
+        write("overview.svg", &svg)?;
+        text.push_str("![Errors of the kinds of cells over their size](overview.svg)\n\n");
+    }
+    text.push_str(&opruga_verify::markdown(rows, Some("")));
+    write("report.md", &text)?;
+    let json = serde_json::to_string_pretty(&opruga_verify::to_json(rows)).unwrap_or_default();
+    write("report.json", &(json + "\n"))?;
+    // Who sees the page sees a whole report.
+    write("report.html", &opruga_verify::html(rows))?;
+    Ok(())
+}
+
+/// For people.
+fn list(cases: &[&Case]) -> String {
+    let mut text = String::new();
+    for family in Family::ALL {
+        let mut of = cases.iter().filter(|case| case.family == family).peekable();
+        if of.peek().is_some() {
+            let _ = writeln!(text, "{}", family.name());
+        }
+        for case in of {
+            let _ =
+                writeln!(text, "  {}\n    {}\n    {}; {}", case.name, case.quantity, case.passes_when(), case.source);
+        }
+    }
+    let _ = writeln!(text, "{} cases", cases.len());
+    text
+}
+
+fn list_as_json(cases: &[&Case]) -> String {
+    let rows: Vec<_> = cases
+        .iter()
+        .map(|case| {
+            let order = if let Check::Order(order) = case.check { Some(order) } else { None };
+            json!({"case": case.name, "family": case.family.name(), "quantity": case.quantity, "unit": case.unit,
+                   "expected": case.expected, "levels": case.levels, "tolerance": case.tolerance, "order": order,
+                   "source": case.source})
+        })
+        .collect();
+    serde_json::to_string_pretty(&json!({"schema": 1, "rows": rows})).unwrap_or_default() + "\n"
+}
+
+fn progress_bar(cases: usize) -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {elapsed}");
+    indicatif::ProgressBar::new(cases as u64)
+        .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
+}

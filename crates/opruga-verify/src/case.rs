@@ -1,0 +1,237 @@
+//! What a case says before it is run, and the row that comes of it.
+
+use crate::lab::{Lab, Trouble};
+
+/// By how much the observed order may fall short of the theory.
+pub(crate) const ORDER_MARGIN: f64 = 0.2;
+
+/// The part of mechanics that a case is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Family {
+    /// Equilibria of solids, beams and chains.
+    Statics,
+    /// Laws of materials.
+    Materials,
+    /// Gas, balloons, rings.
+    Pressure,
+    /// Vibrations, waves, impact, friction.
+    Dynamics,
+    /// Rules that step through time.
+    Integrators,
+    /// Energy and momentum.
+    Ledgers,
+}
+
+impl Family {
+    /// All, in the order of the reports.
+    pub const ALL: [Family; 6] =
+        [Family::Statics, Family::Materials, Family::Pressure, Family::Dynamics, Family::Integrators, Family::Ledgers];
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Statics => "statics",
+            Family::Materials => "materials",
+            Family::Pressure => "pressure",
+            Family::Dynamics => "dynamics",
+            Family::Integrators => "integrators",
+            Family::Ledgers => "ledgers",
+        }
+    }
+}
+
+/// What the numbers are that a case visits one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Over {
+    /// Cells along a side: their size goes like one over the number.
+    Cells(&'static str),
+    /// A step [s], or another size that shrinks.
+    Step(&'static str),
+    /// A parameter of the problem; every value has its own reference.
+    Parameter(&'static str),
+}
+
+impl Over {
+    /// The size that goes to zero.
+    pub(crate) fn size(self, level: f64) -> f64 {
+        match self {
+            Over::Cells(_) => 1.0 / level,
+            Over::Step(_) | Over::Parameter(_) => level,
+        }
+    }
+}
+
+/// What the difference of measured and expected is divided by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// The expected value.
+    Relative,
+    /// A size that belongs to the problem, in the unit of the quantity.
+    Of(f64),
+}
+
+/// How a case passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Check {
+    /// The error at the finest level is within the tolerance, and falls at this order (less 0.2) over all levels.
+    Order(f64),
+    /// The error at the finest level is within the tolerance: the reference has too few digits for an order, or is that of
+    /// a body that differs a little.
+    Finest,
+    /// The errors at all levels are within the tolerance.
+    Everywhere,
+}
+
+/// A case, frozen before it is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name, unique.
+    pub name: &'static str,
+    /// Where it belongs.
+    pub family: Family,
+    /// What is measured, in words of physics.
+    pub quantity: &'static str,
+    /// The unit of that.
+    pub unit: &'static str,
+    /// Where the expected values come from.
+    pub source: &'static str,
+    /// What the levels are.
+    pub over: Over,
+    /// Meshes, steps or values of the parameter, coarse ones first.
+    pub levels: &'static [f64],
+    /// The expected value, or one for each level.
+    pub expected: &'static [f64],
+    /// What errors are divided by.
+    pub scale: Scale,
+    /// The largest error that passes.
+    pub tolerance: f64,
+    /// At which levels, and at which order.
+    pub check: Check,
+    /// Whether it takes a moment only, so that the tests of the program run it.
+    pub quick: bool,
+    /// Runs a scene at a level and measures.
+    pub measure: fn(&Lab, f64) -> Result<f64, Trouble>,
+}
+
+/// What was found at a level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// The level.
+    pub level: f64,
+    /// What was measured.
+    pub computed: f64,
+    /// What was expected.
+    pub expected: f64,
+    /// The difference over the scale of the case.
+    pub error: f64,
+}
+
+/// The outcome of a case.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The case.
+    pub case: &'static Case,
+    /// What was found, level by level.
+    pub points: Vec<Point>,
+    /// The slope of the error over the size of the level, by least squares in logarithms; where an order is expected.
+    pub observed_order: Option<f64>,
+    /// Whether the case passes.
+    pub pass: bool,
+    /// Why there are no numbers, where the engine has refused something.
+    pub trouble: Option<String>,
+    /// How long it took [s].
+    pub seconds: f64,
+}
+
+impl Case {
+    /// When it passes, in a few words: `order 2 ≤ 0.01`.
+    pub fn passes_when(&self) -> String {
+        let theory = match self.check {
+            Check::Order(order) => format!("order {order}"),
+            Check::Finest => "finest".into(),
+            Check::Everywhere => "everywhere".into(),
+        };
+        format!("{theory} ≤ {}", self.limit())
+    }
+
+    /// The largest error that passes, as a text.
+    pub(crate) fn limit(&self) -> String {
+        if self.tolerance < 1e-3 { format!("{:e}", self.tolerance) } else { self.tolerance.to_string() }
+    }
+
+    /// Runs all levels on the calling thread.
+    pub fn run(&'static self, lab: &Lab) -> Row {
+        let start = std::time::Instant::now();
+        let mut row =
+            Row { case: self, points: Vec::new(), observed_order: None, pass: false, trouble: None, seconds: 0.0 };
+        for (number, level) in self.levels.iter().enumerate() {
+            match (self.measure)(lab, *level) {
+                Ok(computed) => {
+                    let expected = *self.expected.get(number).unwrap_or(&self.expected[0]);
+                    let scale = match self.scale {
+                        Scale::Relative => expected.abs(),
+                        Scale::Of(size) => size,
+                    };
+                    let error = (computed - expected).abs() / scale;
+                    row.points.push(Point { level: *level, computed, expected, error });
+                }
+                Err(trouble) => {
+                    row.trouble = Some(format!("at {level}: {trouble}"));
+                    break;
+                }
+            }
+        }
+        if matches!(self.check, Check::Order(_)) {
+            row.observed_order = slope(row.points.iter().map(|p| (self.over.size(p.level), p.error)));
+        }
+        row.pass = row.trouble.is_none() && self.passes(&row);
+        row.seconds = start.elapsed().as_secs_f64();
+        row
+    }
+
+    fn passes(&self, row: &Row) -> bool {
+        let finest = row.points.last().is_some_and(|point| point.error <= self.tolerance);
+        match self.check {
+            Check::Finest => finest,
+            Check::Everywhere => row.points.iter().all(|point| point.error <= self.tolerance),
+            Check::Order(order) => finest && row.observed_order.is_some_and(|seen| seen >= order - ORDER_MARGIN),
+        }
+    }
+}
+
+impl Row {
+    /// The point that decides: the finest one, or that of the largest error where all count.
+    pub fn decisive(&self) -> Option<&Point> {
+        match self.case.check {
+            Check::Everywhere => {
+                self.points.iter().reduce(|worst, point| if point.error > worst.error { point } else { worst })
+            }
+            _ => self.points.last(),
+        }
+    }
+}
+
+/// The slope of ln error over ln size by least squares; none for fewer than three points or an error of zero.
+fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points.map(|(size, error)| (size.ln(), error.ln())).collect();
+    if logs.len() < 3 || logs.iter().any(|(_, y)| !y.is_finite()) {
+        return None;
+    }
+    let count = logs.len() as f64;
+    let (x, y) = logs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / count, sum.1 + p.1 / count));
+    let (above, below) =
+        logs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + (p.0 - x) * (p.1 - y), sum.1 + (p.0 - x) * (p.0 - x)));
+    Some(above / below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slope;
+
+    #[test]
+    fn the_slope_of_a_power_is_its_exponent() {
+        let of = |exponent: f64| slope([0.5f64, 0.25, 0.1].into_iter().map(|h| (h, 3.0 * h.powf(exponent))));
+        assert!((of(2.0).unwrap() - 2.0).abs() < 1e-12 && (of(-0.5).unwrap() + 0.5).abs() < 1e-12);
+        assert_eq!(slope([(1.0, 1.0), (0.5, 0.5)].into_iter()), None);
+        assert_eq!(slope([(1.0, 1.0), (0.5, 0.0), (0.25, 0.1)].into_iter()), None);
+    }
+}

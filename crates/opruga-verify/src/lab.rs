@@ -1,0 +1,140 @@
+//! From the text of a scene to a world, and what is read off it.
+
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::core::spec::Value;
+use opruga::io::{Files, scene};
+use opruga::mesh::Mesh;
+use opruga::{Options, Simd, World};
+use std::sync::Arc;
+
+/// Why a case has no numbers.
+pub type Trouble = Box<dyn std::error::Error + Send + Sync>;
+
+/// Where scenes are run.
+#[derive(Clone, Copy, Debug)]
+pub struct Lab {
+    /// Vector instructions; none: the best that the processor has.
+    pub simd: Option<Simd>,
+    /// A factor on the shear modulus of every solid and on the stiffness of every spring and hinge: 1. Another factor shows
+    /// which cases would notice an error of that size.
+    pub stiffer: f64,
+}
+
+impl Default for Lab {
+    fn default() -> Lab {
+        Lab { simd: None, stiffer: 1.0 }
+    }
+}
+
+/// A scene as text, with the meshes that it names.
+pub(crate) struct Scene {
+    pub(crate) text: String,
+    files: Vec<(String, Arc<[u8]>)>,
+}
+
+impl Scene {
+    /// A scene that steps through time; `rule` is the integrator, with further fields of it on lines of their own.
+    pub(crate) fn new(dimension: usize, frame: f64, substeps: u32, rule: &str) -> Scene {
+        let (kind, fields) = rule.split_once('\n').unwrap_or((rule, ""));
+        let text = format!(
+            "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1.0\nframe = {frame:?}\nsubsteps = {substeps}\n\
+             [integrator]\nkind = \"{kind}\"\n{fields}\n"
+        );
+        Scene { text, files: Vec::new() }
+    }
+
+    /// Statics: every frame of 1 s ends in the equilibrium of that time. The tolerance is a part of the body's extent.
+    pub(crate) fn statics(dimension: usize, tolerance: f64) -> Scene {
+        Scene::new(dimension, 1.0, 1, &format!("equilibrium\ntolerance = {tolerance:?}"))
+    }
+
+    /// More text.
+    pub(crate) fn add(mut self, text: &str) -> Scene {
+        self.text.push_str(text);
+        self.text.push('\n');
+        self
+    }
+
+    /// A body of a mesh, with what else it says on lines of their own.
+    pub(crate) fn body<const D: usize>(mut self, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
+        let written = opruga::io::meshes::write(mesh, "vtk").map_err(|e| e.to_string())?;
+        let name = format!("mesh-{}.vtk", self.files.len());
+        let bytes = written.files.into_iter().next().ok_or("no file of the mesh")?.1;
+        self.files.push((name.clone(), bytes.into()));
+        Ok(self.add(&format!("[[body]]\nname = \"body\"\nshape = {{ kind = \"mesh\", file = \"{name}\" }}\n{rest}")))
+    }
+}
+
+/// A pin for every node of a list, with its displacement after the first second.
+pub(crate) fn moved_pins<const D: usize>(moves: impl IntoIterator<Item = (u32, [f64; D])>) -> String {
+    let rows: Vec<String> = moves
+        .into_iter()
+        .map(|(node, by)| {
+            let (start, end) = (vec!["0"; D].join(", "), by.map(|c| format!("{c:?}")).join(", "));
+            format!("{{ select = {{ node = {node} }}, motion = [[0, {start}], [1, {end}]] }}")
+        })
+        .collect();
+    format!("pin = [{}]", rows.join(",\n  "))
+}
+
+impl Lab {
+    fn read(&self, scene: Scene) -> Result<AnyBlueprint, Trouble> {
+        let options = scene::Options { files: Files::held(scene.files), ..scene::Options::default() };
+        match scene::read(scene.text.as_bytes(), "case.toml", &opruga::catalogue(), &options) {
+            Ok((blueprint, _)) => Ok(blueprint),
+            Err(errors) => Err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n").into()),
+        }
+    }
+
+    fn build<const D: usize>(&self, mut blueprint: Blueprint<D>) -> Result<World<D>, Trouble> {
+        if self.stiffer != 1.0 {
+            stiffen(&mut blueprint, self.stiffer)?;
+        }
+        Ok(World::new(blueprint, Options { simd: self.simd, allow_unstable: true, ..Options::default() })?)
+    }
+
+    /// A world in the plane.
+    pub(crate) fn plane(&self, scene: Scene) -> Result<World<2>, Trouble> {
+        match self.read(scene)? {
+            AnyBlueprint::Plane(blueprint) => self.build(blueprint),
+            AnyBlueprint::Space(_) => Err("the scene is in space".into()),
+        }
+    }
+
+    /// A world in space.
+    pub(crate) fn space(&self, scene: Scene) -> Result<World<3>, Trouble> {
+        match self.read(scene)? {
+            AnyBlueprint::Space(blueprint) => self.build(blueprint),
+            AnyBlueprint::Plane(_) => Err("the scene is in the plane".into()),
+        }
+    }
+}
+
+/// Multiplies μ of solids, with λ as it is, and the stiffness of springs and hinges.
+fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<(), Trouble> {
+    let specs = opruga::catalogue().models;
+    for values in blueprint.bodies.iter_mut().flat_map(|body| &mut body.models) {
+        let spec = specs.iter().find(|spec| spec.kind == values.kind()).ok_or("an unknown model")?;
+        let mut changed: Vec<(&str, f64)> = Vec::new();
+        match values.kind() {
+            "fem" => {
+                let young = values.number("youngs_modulus").ok_or("a solid without Young's modulus")?;
+                let poisson = values.number("poissons_ratio").ok_or("a solid without Poisson's ratio")?;
+                let mu = factor * young / (2.0 * (1.0 + poisson));
+                let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+                changed.push(("youngs_modulus", mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)));
+                changed.push(("poissons_ratio", lambda / (2.0 * (lambda + mu))));
+            }
+            "mass_spring" | "bending" => {
+                let known = |name: &'static str| values.number(name).map(|value| (name, factor * value));
+                changed.extend(known("stiffness"));
+                changed.extend(known("modulus"));
+            }
+            _ => {}
+        }
+        for (name, value) in changed {
+            values.set(spec, name, Value::Number(value), D).map_err(|e| format!("{name}: {e:?}"))?;
+        }
+    }
+    Ok(())
+}

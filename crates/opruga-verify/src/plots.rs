@@ -1,0 +1,109 @@
+//! Plots of errors.
+
+use crate::case::{Check, Over, Row};
+use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Panel};
+
+/// What an error of zero is drawn as, on an axis that has no zero.
+const NOTHING: f64 = 1e-17;
+
+/// The plot of a row as the text of an SVG file: its error over the size of cells or steps with the slope of the theory and
+/// the limit, or its values over a parameter beside what was expected.
+///
+/// # Errors
+/// [`DrawError`] for a row without numbers.
+pub fn plot(row: &Row) -> Result<String, DrawError> {
+    if row.points.is_empty() {
+        return Err(DrawError::Empty("the case has no numbers"));
+    }
+    match row.case.over {
+        Over::Parameter(_) => over_parameter(row),
+        _ => Chart { width: 640.0, x: size_axis(row), panels: vec![errors(&[row])], ..Chart::default() }.to_svg(),
+    }
+}
+
+/// Several rows in one panel.
+pub(crate) fn together(panels: &[(&str, Vec<&Row>)]) -> Result<String, DrawError> {
+    let panels = panels
+        .iter()
+        .filter(|(_, rows)| !rows.is_empty())
+        .map(|(label, rows)| Panel { y: Axis::logarithmic(*label, ""), ..errors(rows) });
+    Chart {
+        width: 720.0,
+        x: Axis::logarithmic("size of the cells, one over their number along a side", ""),
+        panels: panels.collect(),
+        ..Chart::default()
+    }
+    .to_svg()
+}
+
+fn size_axis(row: &Row) -> Axis {
+    match row.case.over {
+        Over::Cells(what) => Axis::logarithmic(format!("one over the number of {what}"), ""),
+        Over::Step(what) | Over::Parameter(what) => Axis::logarithmic(what, ""),
+    }
+}
+
+/// Errors over sizes, both in logarithms.
+fn errors(rows: &[&Row]) -> Panel {
+    let mut lines = Vec::new();
+    let alone = rows.len() == 1;
+    for row in rows {
+        let points: Vec<[f64; 2]> =
+            row.points.iter().map(|p| [row.case.over.size(p.level), p.error.max(NOTHING)]).collect();
+        let name = if alone { "measured".to_string() } else { row.case.name.replace('-', " ") };
+        lines.push(Line { name, points: points.clone(), marker: Some(Marker::Circle), ..Line::default() });
+        if let (Check::Order(order), Some(first), Some(last), true) =
+            (row.case.check, points.first(), points.last(), alone)
+        {
+            let start = last[1] * (first[0] / last[0]).powf(order);
+            let name = format!("order {order}");
+            let points = vec![[first[0], start], *last];
+            lines.push(Line { name, points, dashed: true, colour: Some([120, 124, 132]), ..Line::default() });
+        }
+    }
+    let mut levels: Vec<Level> = Vec::new();
+    for row in rows {
+        let value = row.case.tolerance;
+        if levels.iter().all(|level| level.value != value) {
+            levels.push(Level { value, label: format!("limit {}", row.case.limit()) });
+        }
+    }
+    Panel { height: 260.0, y: Axis::logarithmic("error", ""), lines, levels }
+}
+
+fn over_parameter(row: &Row) -> Result<String, DrawError> {
+    let case = row.case;
+    let Over::Parameter(what) = case.over else { return Err(DrawError::Empty("no parameter")) };
+    let of = |value: fn(&crate::case::Point) -> f64| row.points.iter().map(|p| [p.level, value(p)]).collect::<Vec<_>>();
+    let values = Panel {
+        height: 220.0,
+        y: Axis::linear(if case.unit.is_empty() { "value" } else { "" }, case.unit),
+        lines: vec![
+            Line {
+                name: "expected".into(),
+                points: of(|p| p.expected),
+                colour: Some([120, 124, 132]),
+                dashed: true,
+                marker: Some(Marker::Square),
+                ..Line::default()
+            },
+            Line {
+                name: "measured".into(),
+                // A gap after each: the line is that of what is expected.
+                points: of(|p| p.computed).into_iter().flat_map(|point| [point, [f64::NAN; 2]]).collect(),
+                marker: Some(Marker::Circle),
+                ..Line::default()
+            },
+        ],
+        levels: Vec::new(),
+    };
+    let errors = Panel {
+        height: 150.0,
+        y: Axis::logarithmic("error", ""),
+        lines: vec![Line { points: of(|p| p.error.max(NOTHING)), marker: Some(Marker::Circle), ..Line::default() }],
+        levels: vec![Level { value: case.tolerance, label: format!("limit {}", case.limit()) }],
+    };
+    // Where nothing is expected, the value is the error.
+    let panels = if case.expected.iter().all(|x| *x == 0.0) { vec![errors] } else { vec![values, errors] };
+    Chart { width: 640.0, x: Axis::linear(what, ""), panels, ..Chart::default() }.to_svg()
+}
