@@ -250,7 +250,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         vec![("load_factor", system.history.numbers[LOAD])]
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        self.arc_length.is_none() && same_bits_everywhere(self.settings.solver, system)
+        self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();

@@ -11,7 +11,9 @@
 //! |---|---|
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
-//! | `newton` | the iteration: derivatives, direction, line search |
+//! | `newton` | the exact iteration: derivatives, direction, line search |
+//! | `real_time` | the iteration with a fixed budget |
+//! | `kept` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
 //!
@@ -29,8 +31,10 @@
 //! dealt with at the end of the step: what a node brings along the normal is lost or returned by the restitution.
 
 pub(crate) mod contact;
+mod kept;
 pub(crate) mod linear;
 pub(crate) mod newton;
+mod real_time;
 pub(crate) mod room;
 pub(crate) mod settings;
 pub(crate) mod step;
