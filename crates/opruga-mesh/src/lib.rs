@@ -54,6 +54,7 @@ mod surface;
 mod transform;
 
 pub use adjacency::{Adjacency, node_neighbours};
+pub use boundary::Cut;
 pub use bending::{bends, hinges};
 pub use chambers::Component;
 pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
