@@ -156,7 +156,7 @@ impl Equilibrium {
         system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
         let before = system.stored_energy(Stage::Current, 0.0) + moving;
         let (mut load, complete) = (system.history.numbers[LOAD], system.history.numbers[COMPLETE] > 0.0);
-        room.contacting.clear();
+        room.contacting.clear(system.nodes);
         room.y.fill(0.0);
         room.z.fill(0.0);
         room.hold(system, 1.0, h);

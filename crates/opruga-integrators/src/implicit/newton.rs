@@ -1,5 +1,6 @@
 //! Newton's method on the balance of forces of a stage.
 
+use super::damped;
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -67,6 +68,9 @@ impl Keep {
 
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
+
+/// After so many iterations the derivative of damping forces by position counts.
+const MOST_SYMMETRIC: u32 = 8;
 
 /// The part of the slope that may be left after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
@@ -147,7 +151,13 @@ pub(crate) fn solve<const D: usize>(
         if far || solved.correction <= goal {
             full_step(system, room, balance)?;
         } else {
-            let length = line_search(system, room, balance, slope)?;
+            let mut length = 0.0;
+            if solved.iterations > MOST_SYMMETRIC && !moves && system.is_damped() {
+                length = damped::go(system, room, balance, settings, keep)?;
+            }
+            if length == 0.0 {
+                length = line_search(system, room, balance, slope)?;
+            }
             solved.correction *= length;
             if length == 0.0 && !changed {
                 solved.converged = at_rounding(system, room, balance, settings, size);

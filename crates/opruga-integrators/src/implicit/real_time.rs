@@ -17,13 +17,13 @@ use opruga_math::Lane;
 use opruga_solve::Indefinite;
 
 /// The part of what is out of balance that the linear solver leaves.
-const LINEAR: f64 = 0.03;
+const LINEAR: f64 = 0.05;
 
 /// The part with which an iteration is good enough.
-const ENOUGH: f64 = 0.1;
+const ENOUGH: f64 = 0.2;
 
 /// The part with which the matrix is made anew in the next step.
-const WORN: f64 = 0.1;
+const WORN: f64 = 0.2;
 
 /// What is out of balance counts as nothing where it moves nodes by less than this part of the extent.
 const NOTHING: f64 = 1e-9;

@@ -87,7 +87,7 @@ pub(crate) const ACCURACY: Field = Field::new(
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
 from the motion of the last step, at most 100 products each with a matrix that is kept as long as it leads to the end of a \
-step; a tenth of what is out of balance may be left, and is made up for in the steps that follow.",
+step; a fifth of what is out of balance may be left, and is made up for in the steps that follow.",
 );
 
 /// The fields of statics.
@@ -135,7 +135,7 @@ impl Solver {
         match self {
             Solver::Cholesky => true,
             Solver::ConjugateGradients | Solver::MatrixFree => false,
-            Solver::Auto => nodes >= 200 && (D == 2 || nodes <= 600),
+            Solver::Auto => nodes >= 50 && (D == 2 || nodes <= 600),
         }
     }
     /// Whether the sparse factor is taken for a body.

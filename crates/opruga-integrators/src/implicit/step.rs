@@ -68,6 +68,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         same_bits_everywhere(&self.settings, system)
     }
+    fn shares_threads(&self) -> bool {
+        self.settings.real_time
+    }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();
         room.own = self.rule.history();
@@ -114,7 +117,7 @@ fn attempt<R: Rule<D>, const D: usize>(
 ) -> Result<(), StepError> {
     system.begin_implicit();
     room.load(system);
-    room.contacting.clear();
+    room.contacting.clear(system.nodes);
     if R::TRAPEZOID {
         system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
     }
