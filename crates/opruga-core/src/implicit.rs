@@ -17,12 +17,21 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// [`StepError`] where a model refuses the state.
     pub fn evaluate(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) -> Result<(), StepError> {
-        let now = self.time + time;
         self.make_room();
-        self.prepare(stage, now)?;
+        self.prepare(stage, self.time + time)?;
+        self.gather_forces(stage, time, weight, out);
+        Ok(())
+    }
+
+    /// As [`System::evaluate`] of the state that was evaluated last, once more: what models worked out then still holds.
+    pub fn evaluate_again(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) {
+        self.gather_forces(stage, time, weight, out);
+    }
+
+    fn gather_forces(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) {
         let limited = self.work.limited_forces;
         for tile in 0..self.plan.len() {
-            self.add_forces(stage, now, weight, tile);
+            self.add_forces(stage, self.time + time, weight, tile);
             let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
             for d in 0..D {
                 out.0[d][range.clone()].copy_from_slice(&self.forces[d][buffer..buffer + range.len()]);
@@ -32,7 +41,11 @@ impl<const D: usize> System<D> {
             // A trial counts nothing.
             self.work.limited_forces = limited;
         }
-        Ok(())
+    }
+
+    /// Whether second derivatives depend on positions alone: not on the time, nor on what models remember.
+    pub fn hessian_is_of_positions(&self) -> bool {
+        self.members.iter().all(|m| m.memory.is_empty() && m.potential.account() == Account::Elastic)
     }
 
     /// The potential energy of all models and of the weight in a state [J], after [`System::evaluate`] of the same state;

@@ -44,6 +44,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
+    /// Whether its steps spread the work on one system over [`System::threads`].
+    fn shares_threads(&self) -> bool {
+        false
+    }
     /// Makes one substep of h [s].
     ///
     /// # Errors

@@ -190,6 +190,8 @@ pub struct Member<const D: usize> {
 pub struct System<const D: usize> {
     /// The vector instructions in force.
     pub simd: Simd,
+    /// Threads that the work on this system may be spread over; it then runs in a pool of them. They change no bits.
+    pub threads: usize,
     /// One body or eight.
     pub layout: Layout,
     /// Nodes of one body.
@@ -250,6 +252,7 @@ impl<const D: usize> System<D> {
         let one_mass = Parameter::column((0..nodes * layout.stride()).map(|p| inverse.at(p)).collect());
         System {
             simd,
+            threads: 1,
             layout,
             nodes,
             bodies,

@@ -3,6 +3,7 @@
 use crate::edges::ascending;
 use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES};
 use crate::quadratic::{TRIANGLE_SIDES, tetrahedron_parts};
+use crate::quality::HEXAHEDRON_EDGES;
 use crate::{Element, Mesh, MeshError};
 
 /// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. On a grid neighbours cut their common face alike.
@@ -10,6 +11,21 @@ use crate::{Element, Mesh, MeshError};
 /// # Source
 /// Kuhn, "Some combinatorial lemmas in topology", IBM J. Res. Dev. 4 (1960).
 const KUHN: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 5, 1, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 4, 5, 6], [0, 7, 4, 6]];
+
+/// The tetrahedra 0257 and 1346 of a hexahedron, whose edges are diagonals of its faces, each with the four corners that it leaves.
+const INSCRIBED: [[[usize; 4]; 5]; 2] = [
+    [[0, 5, 2, 7], [0, 1, 2, 5], [0, 2, 3, 7], [0, 4, 5, 7], [2, 5, 6, 7]],
+    [[1, 3, 4, 6], [0, 1, 3, 4], [1, 2, 3, 6], [1, 4, 5, 6], [3, 4, 6, 7]],
+];
+
+/// Into how many tetrahedra a hexahedron is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// Six around its diagonal 0–6, in every hexahedron alike.
+    Six,
+    /// Five: one inscribed and four corners, mirrored from hexahedron to hexahedron so that common faces are cut alike.
+    Five,
+}
 
 /// A face of a cell: its distinct nodes ascending (the key), and as seen from outside. Triangles and edges repeat their last node.
 struct Face {
@@ -88,22 +104,31 @@ impl<const D: usize> Mesh<D> {
 
     /// The same body of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra into six tetrahedra.
     ///
+    /// # Errors
+    /// Those of [`Mesh::facets_from_cells`].
+    pub fn into_simplices(self) -> Result<Mesh<D>, MeshError> {
+        self.into_simplices_by(Cut::Six)
+    }
+
+    /// The same body of simplices, hexahedra cut as told.
+    ///
     /// Nodes, groups, wires, sheets and quadratic cells stay; facets are found anew where there were cells, and the parts of a cell keep its groups and
     /// values.
     ///
     /// # Errors
-    /// Those of [`Mesh::facets_from_cells`].
-    pub fn into_simplices(mut self) -> Result<Mesh<D>, MeshError> {
+    /// Those of [`Mesh::facets_from_cells`]; [`MeshError::OddLoop`] where hexahedra cannot be mirrored from one to the next.
+    pub fn into_simplices_by(mut self, cut: Cut) -> Result<Mesh<D>, MeshError> {
         self.validate()?;
         if self.cells.is_empty() {
             return Ok(self);
         }
+        let parts = if cut == Cut::Five { INSCRIBED[0].len() } else { KUHN.len() };
         // Which old cell each new one comes from: each kind is followed by the parts of the next.
         let (triangles, quadrilaterals) = (self.cells.triangles.len(), self.cells.quadrilaterals.len());
         let (tetrahedra, hexahedra) = (self.cells.tetrahedra.len(), self.cells.hexahedra.len());
         let mut origins: Vec<u32> = Vec::new();
         let mut first = 0;
-        for (count, parts) in [(triangles, 1), (quadrilaterals, 2), (tetrahedra, 1), (hexahedra, KUHN.len())] {
+        for (count, parts) in [(triangles, 1), (quadrilaterals, 2), (tetrahedra, 1), (hexahedra, parts)] {
             origins.extend((first..first + count).flat_map(|cell| std::iter::repeat_n(cell as u32, parts)));
             first += count;
         }
@@ -117,12 +142,55 @@ impl<const D: usize> Mesh<D> {
                 self.cells.triangles.extend([[a, b, d], [b, c, d]]);
             }
         }
+        let odd = if cut == Cut::Five { self.odd_nodes()? } else { Vec::new() };
         for cell in std::mem::take(&mut self.cells.hexahedra) {
-            self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner])));
+            match cut {
+                Cut::Six => self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner]))),
+                Cut::Five => {
+                    let parts = INSCRIBED[usize::from(odd[cell[0] as usize])];
+                    self.cells.tetrahedra.extend(parts.map(|corners| corners.map(|corner| cell[corner])));
+                }
+            }
         }
         self.follow_cells(&origins);
         self.facets = self.facets_from_cells()?;
         Ok(self)
+    }
+
+    /// Which nodes are an odd number of edges of hexahedra away from the first of their piece, so that every diagonal of a
+    /// face joins nodes that are alike.
+    fn odd_nodes(&self) -> Result<Vec<bool>, MeshError> {
+        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(24 * self.cells.hexahedra.len());
+        for cell in &self.cells.hexahedra {
+            edges.extend(HEXAHEDRON_EDGES.iter().flat_map(|&[i, j]| [[cell[i], cell[j]], [cell[j], cell[i]]]));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let mut odd: Vec<Option<bool>> = vec![None; self.positions.len()];
+        let mut open: Vec<u32> = Vec::new();
+        for [first, _] in &edges {
+            if odd[*first as usize].is_none() {
+                odd[*first as usize] = Some(false);
+                open.push(*first);
+            }
+            while let Some(node) = open.pop() {
+                let own = odd[node as usize] == Some(true);
+                let start = edges.partition_point(|edge| edge[0] < node);
+                for [_, other] in edges[start..].iter().take_while(|edge| edge[0] == node) {
+                    match odd[*other as usize] {
+                        None => {
+                            odd[*other as usize] = Some(!own);
+                            open.push(*other);
+                        }
+                        Some(parity) if parity == own => {
+                            return Err(MeshError::OddLoop { edge: ascending(node, *other) });
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        Ok(odd.into_iter().map(|parity| parity == Some(true)).collect())
     }
 }
 

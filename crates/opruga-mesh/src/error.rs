@@ -150,6 +150,15 @@ pub enum MeshError {
         /// Kind of the cell.
         element: Element,
     },
+    /// Hexahedra that cannot be cut into five tetrahedra each with common faces cut alike.
+    #[error(
+        "the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges leads through it",
+        edge[0], edge[1]
+    )]
+    OddLoop {
+        /// An edge of such a loop, lower node first.
+        edge: [u32; 2],
+    },
     /// A quantity that is needed was not given.
     #[error("`{what}` is missing: {why}")]
     Missing {

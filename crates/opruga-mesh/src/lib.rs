@@ -55,6 +55,7 @@ mod transform;
 
 pub use adjacency::{Adjacency, node_neighbours};
 pub use bending::{bends, hinges};
+pub use boundary::Cut;
 pub use chambers::Component;
 pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
 pub use crossings::Crossings;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use opruga_mesh::{EdgeSet, Measure, Mesh, MeshError, Share, bandwidth, edge_runs, signed_volume};
+use opruga_mesh::{Cut, EdgeSet, Measure, Mesh, MeshError, Share, bandwidth, edge_runs, signed_volume};
 
 /// Relative agreement.
 #[track_caller]
@@ -176,6 +176,38 @@ fn simplices_fill_the_same_body() {
     assert_eq!(cut.facets.len(), solid.facets.len());
     close(cut.measure().unwrap().value(), 1.0);
     close(volume(&cut), 1.0);
+}
+
+#[test]
+fn five_tetrahedra_a_box_alternate_and_fill_the_same_body() {
+    let solid = Mesh::grid([0.0; 3], [1.0; 3], [2, 3, 2]).unwrap();
+    let cut = solid.clone().into_simplices_by(Cut::Five).unwrap();
+    sound(&cut);
+    assert_eq!(cut.cells.tetrahedra.len(), 5 * 12);
+    assert_eq!(cut.facets.len(), solid.facets.len());
+    close(volume(&cut), 1.0);
+    // One in five is inscribed, with a third of the volume of its box.
+    let size = |cell: &[u32; 4]| {
+        let [a, b, c, d] = cell.map(|node| cut.positions[node as usize]);
+        let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+        let normal = [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]];
+        (u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]) / 6.0
+    };
+    let inscribed = cut.cells.tetrahedra.iter().filter(|cell| (size(cell) - 1.0 / 36.0).abs() < 1e-15).count();
+    let corners = cut.cells.tetrahedra.iter().filter(|cell| (size(cell) - 1.0 / 72.0).abs() < 1e-15).count();
+    assert_eq!((inscribed, corners), (12, 48));
+
+    // Three boxes around an axis: a loop of three edges.
+    let mut ring = Mesh::<3> { positions: vec![[0.0; 3]; 14], ..Mesh::default() };
+    for k in 0..3u32 {
+        let (near, far, next) = (1 + 2 * k, 2 + 2 * k, 1 + 2 * ((k + 1) % 3));
+        ring.cells.hexahedra.push([0, near, far, next, 7, 7 + near, 7 + far, 7 + next]);
+    }
+    assert!(ring.clone().into_simplices_by(Cut::Five).is_ok(), "around an axis with spokes every loop is even");
+    // A wedge-like closure: an edge that leads back to a node of the same parity.
+    ring.cells.hexahedra.push([0, 2, 1, 4, 7, 9, 8, 11]);
+    let refused = ring.into_simplices_by(Cut::Five).unwrap_err();
+    assert!(matches!(refused, MeshError::OddLoop { .. }), "{refused}");
 }
 
 #[test]

@@ -103,6 +103,39 @@ pub fn inverse_of_lower<const D: usize>(l: &Block<D>) -> Block<D> {
     out
 }
 
+/// The inverse of a block; none where it is not positive definite.
+#[inline]
+pub fn inverse_of_positive<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
+    let l = inverse_of_lower(&lower(a)?);
+    let mut out = [[0.0; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for k in 0..D {
+                out[i][j] += l[k][i] * l[k][j];
+            }
+        }
+    }
+    Some(out)
+}
+
+/// A block without the directions that are held, and with what is as large as its diagonal in these: P A P + (1 − P) s.
+#[inline]
+pub fn held<const D: usize>(a: &Block<D>, projector: &Block<D>) -> Block<D> {
+    let mut size = 0.0;
+    for d in 0..D {
+        size += a[d][d].abs() / D as f64;
+    }
+    let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    let mut out = product(projector, &product(a, projector));
+    let unit = isotropic::<D>(size);
+    for i in 0..D {
+        for j in 0..D {
+            out[i][j] += unit[i][j] - size * projector[i][j];
+        }
+    }
+    out
+}
+
 /// The vectors of the nodes that a long vector is made of.
 #[inline(always)]
 pub fn nodes<const D: usize>(x: &[f64]) -> &[[f64; D]] {

@@ -4,19 +4,25 @@ use crate::Indefinite;
 use crate::matrix::BlockMatrix;
 use crate::scalars::Scalars;
 use crate::woodbury::Woodbury;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{MatMut, Side};
+use faer::{Conj, MatMut, Par, Side};
+use std::sync::{Mutex, PoisonError};
 
-/// A factored matrix S + Σ c u uᵀ, whose symbolic part is kept while the pattern stays.
+/// A factored matrix S + Σ c u uᵀ, whose symbolic part and memory are kept while the pattern stays.
 ///
 /// Results are the same bits on processors of one class only.
 #[derive(Default)]
 pub struct Cholesky {
     scalars: Scalars,
-    symbolic: Option<SymbolicLlt<usize>>,
-    factor: Option<Llt<usize, f64>>,
+    symbolic: Option<SymbolicCholesky<usize>>,
+    values: Vec<f64>,
+    factored: bool,
+    /// Memory that the library works in.
+    stack: Mutex<Option<MemBuffer>>,
     parts: Woodbury,
 }
 
@@ -26,42 +32,70 @@ impl core::fmt::Debug for Cholesky {
     }
 }
 
-fn solve(factor: &Llt<usize, f64>, x: &mut [f64]) {
-    let rows = x.len();
-    factor.solve_in_place(MatMut::from_column_major_slice_mut(x, rows, 1));
-}
-
 impl Cholesky {
     /// Factors a matrix.
     ///
     /// # Errors
     /// [`Indefinite`] where it is not positive definite, or not without its parts of rank one.
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
-        self.factor = None;
+        self.factored = false;
         let anew = self.scalars.take(matrix, true);
-        let factor = self.factored(anew)?;
-        self.parts.update(matrix, true, |x| solve(&factor, x))?;
-        self.factor = Some(factor);
+        self.factor(anew)?;
+        let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
+        let (values, stack) = (&self.values, &self.stack);
+        self.parts.update(matrix, true, |x| solve(symbolic, values, stack, x))?;
+        self.factored = true;
         Ok(())
     }
 
     /// The factor of the scalars, of no dimension of its own: compiled here, once.
-    fn factored(&mut self, anew: bool) -> Result<Llt<usize, f64>, Indefinite> {
+    fn factor(&mut self, anew: bool) -> Result<(), Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
-        let symbolic = match &self.symbolic {
-            Some(symbolic) if !anew => symbolic.clone(),
-            _ => SymbolicLlt::try_new(pattern, Side::Lower).map_err(|_| Indefinite)?,
-        };
-        self.symbolic = Some(symbolic.clone());
-        let values = SparseColMatRef::new(pattern, &self.scalars.values);
-        Llt::try_new_with_symbolic(symbolic, values, Side::Lower).map_err(|_| Indefinite)
+        if anew {
+            self.symbolic = None;
+        }
+        if self.symbolic.is_none() {
+            let (ordering, parameters) = (SymmetricOrdering::Amd, CholeskySymbolicParams::default());
+            let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, ordering, parameters);
+            let symbolic = symbolic.map_err(|_| Indefinite)?;
+            let need = StackReq::or(
+                symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
+                symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
+            );
+            self.stack = Mutex::new(Some(MemBuffer::new(need)));
+            self.values = vec![0.0; symbolic.len_val()];
+            self.symbolic = Some(symbolic);
+        }
+        let Some(symbolic) = &self.symbolic else { return Err(Indefinite) };
+        if let Some(stack) = self.stack.get_mut().unwrap_or_else(PoisonError::into_inner) {
+            symbolic
+                .factorize_numeric_llt(
+                    &mut self.values,
+                    SparseColMatRef::new(pattern, &self.scalars.values),
+                    Side::Lower,
+                    Default::default(),
+                    Par::Seq,
+                    MemStack::new(stack),
+                    Default::default(),
+                )
+                .map_err(|_| Indefinite)?;
+        }
+        Ok(())
     }
 
     /// Solves A x = b in place.
     pub fn solve(&self, x: &mut [f64]) {
-        let Some(factor) = &self.factor else { return };
-        solve(factor, x);
+        let Some(symbolic) = self.symbolic.as_ref().filter(|_| self.factored) else { return };
+        solve(symbolic, &self.values, &self.stack, x);
         self.parts.correct(x);
     }
+}
+
+fn solve(symbolic: &SymbolicCholesky<usize>, values: &[f64], stack: &Mutex<Option<MemBuffer>>, x: &mut [f64]) {
+    let mut stack = stack.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(stack) = &mut *stack else { return };
+    let rows = x.len();
+    let right = MatMut::from_column_major_slice_mut(x, rows, 1);
+    LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, right, Par::Seq, MemStack::new(stack));
 }

@@ -1,7 +1,7 @@
 //! Sparse linear systems and eigenvalues of Opruga: what implicit rules, equilibria and natural frequencies need.
 //!
 //! A [`BlockMatrix`] collects the second derivatives that models deliver. It is solved by [`conjugate_gradients`], whose
-//! sums have one order, so that it gives the same bits on every processor, or by [`Cholesky`] and [`Factors`] (the library
+//! sums have one order, so that it gives the same bits on every processor ([`Packed`]: in vector instructions and on threads), or by [`Cholesky`] and [`Factors`] (the library
 //! faer), which choose their instructions by the class of the processor. [`eigen`] finds the lowest natural frequencies.
 
 pub mod blocks;
@@ -11,14 +11,17 @@ pub mod dense;
 pub mod eigen;
 mod lu;
 mod matrix;
+pub mod packed;
 mod preconditioner;
 mod scalars;
+pub mod threads;
 mod woodbury;
 
 pub use cholesky::Cholesky;
 pub use conjugate_gradients::{Directions, Ended, conjugate_gradients};
 pub use lu::Factors;
 pub use matrix::BlockMatrix;
+pub use packed::Packed;
 pub use preconditioner::{BlockJacobi, IncompleteCholesky, Preconditioner};
 
 use opruga_math::{WIDTH, sum_in_fixed_order};

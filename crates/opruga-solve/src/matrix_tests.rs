@@ -1,8 +1,10 @@
 //! Assembly against a dense matrix, and all solvers against one another.
 
 use super::*;
-use crate::{BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Preconditioner, conjugate_gradients};
-use opruga_math::Lane;
+use crate::{
+    BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Packed, Preconditioner, conjugate_gradients,
+};
+use opruga_math::{Lane, Simd};
 
 /// A chain of springs in the plane with a gas that couples all of its nodes; `order` reverses the calls.
 fn deliver(nodes: usize, order: bool, sink: &mut BlockMatrix<2>) {
@@ -114,6 +116,26 @@ fn every_solver_finds_the_same_solution() {
             check(&x, "conjugate gradients");
             counts.push(ended.iterations);
         }
+        // In packs: with every set of instructions and number of threads the same bits, and the solution.
+        let mut bits = Vec::new();
+        for simd in Simd::available() {
+            for threads in [1, 2, 3] {
+                let mut packed = Packed::default();
+                packed.take(&matrix, threads);
+                packed.hold(&matrix, &vec![true; nodes], &vec![isotropic(1.0); nodes]).unwrap();
+                let mut x = vec![0.0; 2 * nodes];
+                let size = packed.begin(simd, threads, &b);
+                let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
+                check(&x, "packed");
+                assert_eq!(reached.iterations, counts[0], "{reached:?}");
+                bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+                let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
+                matrix.multiply(&b, &mut whole);
+                packed.multiply(simd, threads, &b, &mut product);
+                assert!(whole.iter().zip(&product).all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + a.abs())));
+            }
+        }
+        assert!(bits.iter().all(|x| *x == bits[0]));
         // A chain is factored exactly: only the two parts of rank one are left.
         assert!(counts[1] <= 4, "{counts:?}");
     }

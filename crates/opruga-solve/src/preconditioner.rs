@@ -2,7 +2,8 @@
 
 use crate::Indefinite;
 use crate::blocks::{
-    Block, inverse_of_lower, lower, nodes, nodes_mut, product, subtract_product_transposed, times, transposed_times,
+    Block, inverse_of_lower, inverse_of_positive, lower, nodes, nodes_mut, product, subtract_product_transposed, times,
+    transposed_times,
 };
 use crate::matrix::BlockMatrix;
 
@@ -26,15 +27,7 @@ impl<const D: usize> BlockJacobi<D> {
     pub fn update<'a>(&mut self, blocks: impl ExactSizeIterator<Item = &'a Block<D>>) -> Result<(), Indefinite> {
         self.inverse.resize(blocks.len(), [[0.0; D]; D]);
         for (inverse, block) in self.inverse.iter_mut().zip(blocks) {
-            let l = inverse_of_lower(&lower(block).ok_or(Indefinite)?);
-            *inverse = [[0.0; D]; D];
-            for i in 0..D {
-                for j in 0..D {
-                    for k in 0..D {
-                        inverse[i][j] += l[k][i] * l[k][j];
-                    }
-                }
-            }
+            *inverse = inverse_of_positive(block).ok_or(Indefinite)?;
         }
         Ok(())
     }

@@ -79,6 +79,9 @@ impl<const D: usize> Saved<D> {
     }
 }
 
+/// Nodes from which on threads share the work on one body.
+const SHARED_FROM: usize = 1000;
+
 /// What a frame needs to know.
 pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,
@@ -106,6 +109,11 @@ impl<const D: usize> Island<D> {
         };
         island.stock = take_stock(&mut island.system);
         island
+    }
+
+    /// Whether so many threads work on this island together: it is large, and its integrator knows how.
+    pub(crate) fn is_shared_by(&self, threads: usize) -> bool {
+        threads > 1 && self.system.nodes >= SHARED_FROM && self.integrator.shares_threads()
     }
 
     /// Looks at the state again after it was changed from outside.

@@ -235,7 +235,14 @@ pub const BODY: Section = Section {
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Cuts its quadrilaterals into two triangles each, its hexahedra into six tetrahedra.",
+                "Cuts its quadrilaterals into two triangles each, its hexahedra into tetrahedra.",
+            ),
+            Field::new(
+                "tetrahedra_per_hexahedron",
+                Allowed::Integer { least: 5, greatest: 6 },
+                "",
+                Default::Integer(6),
+                "Into how many `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four corners), which alternate from one to the next and favour no direction.",
             ),
             Field::new(
                 "order",

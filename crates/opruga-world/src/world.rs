@@ -194,7 +194,15 @@ impl<const D: usize> World<D> {
         match &self.pool {
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
-                islands.par_iter_mut().for_each(|island| {
+                // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
+                // its threads must not be handed another one, whose workspace would be its own.
+                let threads = pool.current_num_threads();
+                for island in islands.iter_mut().filter(|island| island.is_shared_by(threads)) {
+                    island.system.threads = threads;
+                    island.frame(&plan, &mut lock(&workspaces[0]));
+                    island.system.threads = 1;
+                }
+                islands.par_iter_mut().filter(|island| !island.is_shared_by(threads)).for_each(|island| {
                     let thread = rayon::current_thread_index().unwrap_or(0);
                     island.frame(&plan, &mut lock(&workspaces[thread]));
                 });

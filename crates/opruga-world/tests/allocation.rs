@@ -169,6 +169,29 @@ fn a_ball_with_gas_on_the_floor_under_a_pull_asks_for_no_memory() {
     }
 }
 
+/// Implicit rules, exact and in real time, with conjugate gradients and with the sparse factor.
+#[test]
+fn a_net_that_falls_on_the_floor_in_implicit_steps_asks_for_no_memory() {
+    let text = |text: &str| Value::Text(text.into());
+    let models = [model::<2>("mass_spring", &[("stiffness", 400.0), ("damping", 0.1)])];
+    for (rule, accuracy, solver) in [
+        ("backward_euler", "exact", "conjugate_gradients"),
+        ("backward_euler", "exact", "cholesky"),
+        ("bdf2", "exact", "conjugate_gradients"),
+        ("newmark", "exact", "conjugate_gradients"),
+        ("implicit_midpoint", "exact", "conjugate_gradients"),
+        ("backward_euler", "real_time", "conjugate_gradients"),
+        ("backward_euler", "real_time", "cholesky"),
+    ] {
+        let net = Mesh::grid([0.0, 0.02], [0.5, 0.5], [6, 6]).expect("a grid");
+        let mut blueprint = scene(net, 1, &models, "symplectic_euler", None);
+        blueprint.time.substeps = 4;
+        let spec = Registry::<2>::default().integrator(rule).expect("a rule").spec();
+        blueprint.integrator = values::<2>(spec, &[("accuracy", text(accuracy)), ("linear_solver", text(solver))]);
+        requests(&format!("{rule}, {accuracy}, {solver}"), blueprint);
+    }
+}
+
 #[test]
 fn a_ball_with_leaking_gas_asks_for_no_memory() {
     pulled_ball("symplectic_euler", &[("nRT", 55.0), ("ramp", 0.3), ("leak", 0.1)]);

@@ -36,6 +36,8 @@ scenes![
     "word",
     "emoji",
     "cantilever",
+    "cantilever-cube",
+    "cantilever-beam",
     "cooks-membrane",
     "jelly",
     "drawings",

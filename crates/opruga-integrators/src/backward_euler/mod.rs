@@ -17,11 +17,10 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::{FIELDS, Settings};
-use crate::implicit::step::{Rule, advance, same_bits_everywhere};
-use opruga_core::error::{BuildError, StepError};
+use crate::implicit::settings::FIELDS;
+use crate::implicit::step::{Implicit, Rule};
+use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
 use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
 
@@ -43,9 +42,7 @@ pub struct BackwardEulerKind;
 
 /// Backward Euler.
 #[derive(Clone, Copy, Debug)]
-pub struct BackwardEuler {
-    settings: Settings,
-}
+pub struct BackwardEuler;
 
 impl<const D: usize> IntegratorKind<D> for BackwardEulerKind {
     fn spec(&self) -> &'static Spec {
@@ -55,13 +52,20 @@ impl<const D: usize> IntegratorKind<D> for BackwardEulerKind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(BackwardEuler { settings: Settings::new(values) }))
+        Ok(Box::new(Implicit::new(SPEC.kind, BackwardEuler, values)?))
     }
 }
 
 impl<const D: usize> Rule<D> for BackwardEuler {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = false;
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        // v₁ (1 + h c + h²ω²) = v₀ − h ω² x₀.
+        let square = omega * omega;
+        let factor = 1.0 / (1.0 + h * c + h * h * square);
+        let (of_x, of_v) = (-h * square * factor, factor);
+        Amplification::new([[1.0 + h * of_x, h * of_v], [of_x, of_v]])
+    }
     fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
         for (y, v) in room.y.iter_mut().zip(&room.v0) {
             *y = h * v;
@@ -74,30 +78,5 @@ impl<const D: usize> Rule<D> for BackwardEuler {
             room.u1[k] = room.u[k];
             room.v1[k] = balance.beta * room.u[k];
         }
-    }
-}
-
-impl<const D: usize> Integrator<D> for BackwardEuler {
-    fn name(&self) -> &'static str {
-        SPEC.kind
-    }
-    fn needs(&self) -> Views {
-        Views { hessian: true, ..Views::default() }
-    }
-    fn work_columns(&self) -> usize {
-        1
-    }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // v₁ (1 + h c + h²ω²) = v₀ − h ω² x₀.
-        let square = omega * omega;
-        let factor = 1.0 / (1.0 + h * c + h * h * square);
-        let (of_x, of_v) = (-h * square * factor, factor);
-        Amplification::new([[1.0 + h * of_x, h * of_v], [of_x, of_v]])
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        same_bits_everywhere(self.settings.solver, system)
-    }
-    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        advance(*self, &self.settings, system, h)
     }
 }

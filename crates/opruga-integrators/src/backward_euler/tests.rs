@@ -1,12 +1,12 @@
 //! Order 1, no limit, the amplitude of an oscillation, free fall.
 
 use super::{BackwardEuler, SPEC};
-use crate::implicit::settings::Settings;
+use crate::implicit::step::Implicit;
 use crate::testing;
 use opruga_core::spec::Values;
 
-fn rule() -> BackwardEuler {
-    BackwardEuler { settings: Settings::new(&Values::defaults(&SPEC, 2)) }
+fn rule() -> Implicit<BackwardEuler> {
+    Implicit::new(SPEC.kind, BackwardEuler, &Values::defaults(&SPEC, 2)).unwrap()
 }
 
 #[test]

@@ -20,11 +20,10 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::{FIELDS, Settings};
-use crate::implicit::step::{Rule, advance, same_bits_everywhere};
-use opruga_core::error::{BuildError, StepError};
+use crate::implicit::settings::FIELDS;
+use crate::implicit::step::{Implicit, Rule};
+use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
 use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
 
@@ -45,9 +44,7 @@ pub struct Bdf2Kind;
 
 /// The backward differentiation formula of second order.
 #[derive(Clone, Copy, Debug)]
-pub struct Bdf2 {
-    settings: Settings,
-}
+pub struct Bdf2;
 
 impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
     fn spec(&self) -> &'static Spec {
@@ -57,13 +54,25 @@ impl<const D: usize> IntegratorKind<D> for Bdf2Kind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(Bdf2 { settings: Settings::new(values) }))
+        Ok(Box::new(Implicit::new(SPEC.kind, Bdf2, values)?))
     }
 }
 
 impl<const D: usize> Rule<D> for Bdf2 {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = true;
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: 2, numbers: 1 }
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        // Carried are x, v, the last displacement, the last v but one; z = x + ⅓ way, w = 4/3 v − ⅓ before.
+        let (square, g) = (omega * omega, 2.0 * h / 3.0);
+        let factor = 1.0 / (1.0 + g * c + g * g * square);
+        let third = 1.0 / 3.0;
+        let v = [-g * square * factor, 4.0 * third * factor, -g * square * third * factor, -third * factor];
+        let way = [g * v[0], g * v[1], third + g * v[2], g * v[3]];
+        Amplification::new([[1.0 + way[0], way[1], way[2], way[3]], v, way, [0.0, 1.0, 0.0, 0.0]])
+    }
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
         // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
         let last = system.history.numbers[0];
@@ -106,35 +115,5 @@ impl<const D: usize> Rule<D> for Bdf2 {
             }
         }
         system.history.numbers[0] = h;
-    }
-}
-
-impl<const D: usize> Integrator<D> for Bdf2 {
-    fn name(&self) -> &'static str {
-        SPEC.kind
-    }
-    fn needs(&self) -> Views {
-        Views { hessian: true, ..Views::default() }
-    }
-    fn work_columns(&self) -> usize {
-        1
-    }
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: 2, numbers: 1 }
-    }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // Carried are x, v, the last displacement, the last v but one; z = x + ⅓ way, w = 4/3 v − ⅓ before.
-        let (square, g) = (omega * omega, 2.0 * h / 3.0);
-        let factor = 1.0 / (1.0 + g * c + g * g * square);
-        let third = 1.0 / 3.0;
-        let v = [-g * square * factor, 4.0 * third * factor, -g * square * third * factor, -third * factor];
-        let way = [g * v[0], g * v[1], third + g * v[2], g * v[3]];
-        Amplification::new([[1.0 + way[0], way[1], way[2], way[3]], v, way, [0.0, 1.0, 0.0, 0.0]])
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        same_bits_everywhere(self.settings.solver, system)
-    }
-    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        advance(*self, &self.settings, system, h)
     }
 }

@@ -1,14 +1,14 @@
 //! Order 2, no limit, a step that changes its length, free fall.
 
 use super::{Bdf2, SPEC};
-use crate::implicit::settings::Settings;
+use crate::implicit::step::Implicit;
 use crate::testing;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::Values;
 use opruga_core::system::System;
 
-fn rule() -> Bdf2 {
-    Bdf2 { settings: Settings::new(&Values::defaults(&SPEC, 2)) }
+fn rule() -> Implicit<Bdf2> {
+    Implicit::new(SPEC.kind, Bdf2, &Values::defaults(&SPEC, 2)).unwrap()
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn the_order_stays_where_steps_change() {
 #[test]
 fn slow_motion_is_hardly_damped() {
     for z in [0.05, 0.1] {
-        let radius = <Bdf2 as Integrator<2>>::amplification(&rule(), 1.0, 0.0, z).spectral_radius();
+        let radius = <Implicit<Bdf2> as Integrator<2>>::amplification(&rule(), 1.0, 0.0, z).spectral_radius();
         let expected = z * z * z * z / 4.0;
         assert!(((1.0 - radius) / expected - 1.0).abs() < 0.05, "{z}: {radius}");
     }

@@ -156,7 +156,7 @@ impl Equilibrium {
         system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
         let before = system.stored_energy(Stage::Current, 0.0) + moving;
         let (mut load, complete) = (system.history.numbers[LOAD], system.history.numbers[COMPLETE] > 0.0);
-        room.contacting.clear();
+        room.contacting.clear(system.nodes);
         room.y.fill(0.0);
         room.z.fill(0.0);
         room.hold(system, 1.0, h);
@@ -250,7 +250,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         vec![("load_factor", system.history.numbers[LOAD])]
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        self.arc_length.is_none() && same_bits_everywhere(self.settings.solver, system)
+        self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();

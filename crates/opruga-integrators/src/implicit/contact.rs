@@ -80,9 +80,13 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Contacting<D> {
-    /// Forgets the contacts of an earlier step.
-    pub(crate) fn clear(&mut self) {
-        self.contacts.clear();
+    /// Forgets the contacts of an earlier step; so that there is room for one a node.
+    pub(crate) fn clear(&mut self, nodes: usize) {
+        for contacts in [&mut self.contacts, &mut self.known] {
+            contacts.clear();
+            contacts.reserve(nodes);
+        }
+        self.found.reserve(D);
     }
     /// Whether any node is held.
     pub(crate) fn any(&self) -> bool {
@@ -444,11 +448,13 @@ impl<const D: usize> Contacting<D> {
 /// The forces along the normals of the held contacts of one node that together make up what is normal in a force.
 fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
-    let held: Vec<usize> = (0..contacts.len().min(D)).filter(|k| contacts[*k].is_held()).collect();
-    if let [only] = held[..] {
+    let is_held = |k: &usize| contacts[*k].is_held();
+    let mut all = (0..contacts.len().min(D)).filter(is_held);
+    if let (Some(only), None) = (all.next(), all.next()) {
         out[only] = dot(force, &contacts[only].touch.normal);
         return out;
     }
+    let held: Vec<usize> = (0..contacts.len().min(D)).filter(is_held).collect();
     let n = held.len();
     let normal = |k: usize| &contacts[held[k]].touch.normal;
     let gram: Vec<f64> = (0..n * n).map(|k| dot(normal(k / n), normal(k % n))).collect();

@@ -3,7 +3,7 @@
 use super::settings::{Settings, Solver};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::system::{Stage, System};
-use opruga_solve::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
+use opruga_solve::blocks::{Block, held, isotropic, nodes, nodes_mut, times};
 use opruga_solve::{
     BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, IncompleteCholesky, Indefinite, conjugate_gradients,
 };
@@ -23,6 +23,9 @@ pub(crate) struct Linear<const D: usize> {
     factors: Factors,
     directions: Directions,
 }
+
+/// Iterations of conjugate gradients at most.
+const MOST_PRODUCTS: u32 = 20_000;
 
 /// What a matrix is made of.
 #[derive(Clone, Copy, Debug)]
@@ -189,19 +192,10 @@ impl<const D: usize> Linear<D> {
         b: &[f64],
         out: &mut [f64],
     ) -> Result<u32, Indefinite> {
-        let most = settings.products;
+        let most = MOST_PRODUCTS;
         if mixture.matrix_free {
             for (node, block) in self.diagonal.iter_mut().enumerate().filter(|(node, _)| !filter.free[*node]) {
-                let projector = &filter.projectors[node];
-                let inner = product(projector, &product(block, projector));
-                let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
-                let size = if size > 0.0 { size } else { 1.0 };
-                for i in 0..D {
-                    for j in 0..D {
-                        let unit = if i == j { 1.0 } else { 0.0 };
-                        block[i][j] = inner[i][j] + size * (unit - projector[i][j]);
-                    }
-                }
+                *block = held(block, &filter.projectors[node]);
             }
             self.jacobi.update(self.diagonal.iter())?;
             let mut directions = std::mem::take(&mut self.directions);
@@ -222,18 +216,22 @@ impl<const D: usize> Linear<D> {
         }
         let constrained = &self.constrained;
         let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
-        // The incomplete factor needs fewer products and takes longer to make: it pays where many would be needed.
-        let ended = if settings.budget {
-            self.jacobi.update((0..constrained.rows()).map(|node| constrained.diagonal_block(node)))?;
-            conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut self.directions)?
-        } else {
-            self.incomplete.update(constrained)?;
-            conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?
-        };
+        self.incomplete.update(constrained)?;
+        let ended = conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?;
         finite(out, ended.iterations)
     }
 
-    fn constrain(&mut self, filter: &Filter<D>) {
+    /// The matrix with nothing taken out.
+    pub(crate) fn whole(&self) -> &BlockMatrix<D> {
+        &self.whole
+    }
+    /// The matrix without what the last filter held.
+    pub(crate) fn constrained(&self) -> &BlockMatrix<D> {
+        &self.constrained
+    }
+
+    /// Takes the directions that are held out of the matrix.
+    pub(crate) fn constrain(&mut self, filter: &Filter<D>) {
         self.constrained.copy_from(&self.whole);
         self.constrained.constrain(filter.free, filter.projectors);
     }

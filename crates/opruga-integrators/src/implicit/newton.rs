@@ -1,5 +1,6 @@
 //! Newton's method on the balance of forces of a stage.
 
+use super::damped;
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -43,7 +44,7 @@ const LONGEST: f64 = 0.5;
 
 /// Which derivatives a direction is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Keep {
+pub(crate) enum Keep {
     /// The exact ones.
     Exact,
     /// Each element's without its negative eigenvalues.
@@ -53,10 +54,10 @@ enum Keep {
 }
 
 impl Keep {
-    fn definiteness(self) -> Definiteness {
+    pub(crate) fn definiteness(self) -> Definiteness {
         if self == Keep::Exact { Definiteness::Exact } else { Definiteness::Clamped }
     }
-    fn next(self) -> Option<Keep> {
+    pub(crate) fn next(self) -> Option<Keep> {
         match self {
             Keep::Exact => Some(Keep::Clamped),
             Keep::Clamped => Some(Keep::Raised(1e-8)),
@@ -68,11 +69,17 @@ impl Keep {
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
+/// After so many iterations the derivative of damping forces by position counts.
+const MOST_SYMMETRIC: u32 = 8;
+
 /// The part of the slope that may be left after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
 
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
+
+/// The part of the residual that the linear solver may leave, in the first iteration.
+const LINEAR_TOLERANCE: f64 = 1e-2;
 
 /// Rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
@@ -92,7 +99,7 @@ pub(crate) fn solve<const D: usize>(
     }
     evaluate(system, room, balance, false)?;
     let mut first_norm = 0.0;
-    let mut clamped = settings.budget;
+    let mut clamped = false;
     while solved.iterations < settings.iterations {
         solved.iterations += 1;
         // Which nodes are held, and how far they have to go.
@@ -141,10 +148,16 @@ pub(crate) fn solve<const D: usize>(
             room.step.iter_mut().for_each(|s| *s *= part);
             solved.correction *= part;
         }
-        if far || settings.budget || solved.correction <= goal {
+        if far || solved.correction <= goal {
             full_step(system, room, balance)?;
         } else {
-            let length = line_search(system, room, balance, slope)?;
+            let mut length = 0.0;
+            if solved.iterations > MOST_SYMMETRIC && !moves && system.is_damped() {
+                length = damped::go(system, room, balance, settings, keep)?;
+            }
+            if length == 0.0 {
+                length = line_search(system, room, balance, slope)?;
+            }
             solved.correction *= length;
             if length == 0.0 && !changed {
                 solved.converged = at_rounding(system, room, balance, settings, size);
@@ -152,7 +165,7 @@ pub(crate) fn solve<const D: usize>(
             }
         }
         // Derivatives that were not positive may be so near the solution.
-        clamped = settings.budget || (clamped && solved.correction > 1e-2 * room.extent);
+        clamped = clamped && solved.correction > 1e-2 * room.extent;
 
         // What the constraints would take says who stays held.
         if system.contacts.is_some() && solved.iterations < MOST_DECISIONS {
@@ -163,11 +176,10 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
     }
-    solved.converged |= settings.budget;
     Ok(solved)
 }
 
-fn look<const D: usize>(system: &System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
+pub(crate) fn look<const D: usize>(system: &System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
     let Room { contacting, x0, u, extent, .. } = room;
     contacting.look(system, x0, u, balance.theta, balance.h, *extent)
 }
@@ -226,9 +238,9 @@ fn find_direction<const D: usize>(
     let norm = dot(right, right).sqrt();
     *first_norm = norm.larger(*first_norm);
     // Far from the solution a rough direction does (Eisenstat and Walker 1996).
-    let share = if *first_norm > 0.0 && !settings.budget { (norm / *first_norm).larger(1e-9) } else { 1.0 };
+    let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
     let products =
-        linear.solve(&mixture, &filter, settings, settings.linear_tolerance * share, right, step).map_err(|_| 0u32)?;
+        linear.solve(&mixture, &filter, settings, LINEAR_TOLERANCE * share, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
     let slope = -dot(right, step);
     if moves {

@@ -1,7 +1,10 @@
 //! The vectors that an implicit step works on.
 
 use super::contact::Contacting;
+use super::damped::Krylov;
+use super::kept::Kept;
 use super::linear::Linear;
+use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
@@ -44,6 +47,11 @@ pub(crate) struct Room<const D: usize> {
     /// Nodes that met an obstacle in this step.
     pub(crate) struck: Vec<usize>,
     pub(crate) linear: Linear<D>,
+    pub(crate) krylov: Krylov,
+    /// The matrix of the real-time setting.
+    pub(crate) kept: Kept<D>,
+    /// Where the history of the real-time setting begins, behind that of the rule.
+    pub(crate) own: HistorySize,
     pub(crate) contacting: Contacting<D>,
     /// Work from outside before the step [J].
     pub(crate) work_before: f64,
@@ -76,6 +84,9 @@ impl<const D: usize> Default for Room<D> {
             free: Vec::new(),
             projectors: Vec::new(),
             linear: Linear::default(),
+            krylov: Krylov::default(),
+            kept: Kept::default(),
+            own: HistorySize::default(),
             contacting: Contacting::default(),
             work_before: 0.0,
             extent: 1.0,
@@ -113,6 +124,10 @@ impl<const D: usize> Room<D> {
             &mut self.held,
         ] {
             vector.resize(size, 0.0);
+        }
+        self.struck.reserve(system.nodes);
+        if system.is_damped() {
+            self.krylov.fit(size);
         }
         self.mass.clear();
         self.mass.extend((0..system.nodes).map(|node| system.mass.at(node)));

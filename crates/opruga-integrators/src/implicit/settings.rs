@@ -1,5 +1,6 @@
 //! The parameters that all implicit rules have.
 
+use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
 
 /// How the equations of a step are solved.
@@ -9,11 +10,8 @@ pub(crate) struct Settings {
     pub(crate) iterations: u32,
     /// The correction that ends the iteration, in extents of the body.
     pub(crate) tolerance: f64,
-    /// Whether a step that spent its iterations is as good as one that converged.
-    pub(crate) budget: bool,
-    /// Iterations of conjugate gradients at most, and their tolerance.
-    pub(crate) products: u32,
-    pub(crate) linear_tolerance: f64,
+    /// Whether a step has a fixed budget, and is as good as one that converged when that is spent.
+    pub(crate) real_time: bool,
     pub(crate) solver: Solver,
     pub(crate) otherwise: Otherwise,
 }
@@ -88,23 +86,34 @@ pub(crate) const ACCURACY: Field = Field::new(
     "",
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
-from the motion of the last step, at most 60 products with the matrix each; the rest of the error, of second order in the \
-rotation of a step, is made up for in the steps that follow.",
+from the motion of the last step, at most 100 products each with a matrix that is kept as long as it leads to the end of a \
+step; a fifth of what is out of balance may be left, and is made up for in the steps that follow.",
 );
 
 /// The fields of statics.
 pub(crate) const STATIC_FIELDS: [Field; 3] = [ITERATIONS, TOLERANCE, LINEAR_SOLVER];
 
 impl Settings {
+    /// From the parameters of a rule.
+    ///
+    /// # Errors
+    /// [`BuildError`] where they exclude one another.
+    pub(crate) fn of_rule(kind: &'static str, values: &Values) -> Result<Settings, BuildError> {
+        let settings = Settings::new(values);
+        if settings.real_time && settings.solver == Solver::MatrixFree {
+            let message = "`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix; allowed \
+                           with it: \"auto\", \"conjugate_gradients\", \"cholesky\"";
+            return Err(BuildError::new(kind, "integrator.no_matrix", message));
+        }
+        Ok(settings)
+    }
     /// From the parameters of a scene.
     pub(crate) fn new(values: &Values) -> Settings {
         let real_time = values.text("accuracy") == Some("real_time");
         Settings {
             iterations: values.integer("iterations").map_or(if real_time { 3 } else { 100 }, |n| n as u32),
             tolerance: values.number("tolerance").unwrap_or(1e-9),
-            budget: real_time,
-            products: if real_time { 60 } else { 20_000 },
-            linear_tolerance: if real_time { 1e-3 } else { 1e-2 },
+            real_time,
             solver: match values.text("linear_solver") {
                 Some("conjugate_gradients") => Solver::ConjugateGradients,
                 Some("matrix_free") => Solver::MatrixFree,
@@ -121,6 +130,14 @@ impl Settings {
 }
 
 impl Solver {
+    /// Whether the sparse factor is taken for a body in real time, where it is kept: for small stiff ones.
+    pub(crate) fn is_direct_in_real_time<const D: usize>(self, nodes: usize) -> bool {
+        match self {
+            Solver::Cholesky => true,
+            Solver::ConjugateGradients | Solver::MatrixFree => false,
+            Solver::Auto => nodes >= 50 && (D == 2 || nodes <= 600),
+        }
+    }
     /// Whether the sparse factor is taken for a body.
     pub(crate) fn is_direct<const D: usize>(self, nodes: usize) -> bool {
         match self {

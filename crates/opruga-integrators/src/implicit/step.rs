@@ -1,45 +1,89 @@
 //! A step of an implicit rule from start to ledger.
 
-use super::newton::{Balance, Solved, solve};
+use super::newton::{self, Balance, Solved};
+use super::real_time;
 use super::room::Room;
 use super::settings::{Otherwise, Settings, Solver};
-use opruga_core::error::StepError;
+use opruga_core::error::{BuildError, StepError};
+use opruga_core::integrator::{Amplification, HistorySize, Integrator};
+use opruga_core::potential::Views;
+use opruga_core::spec::Values;
 use opruga_core::system::{Stage, System};
 
 /// What makes one implicit rule differ from another.
-pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync {
+pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
     /// The word that names it.
     const NAME: &'static str;
     /// Whether works are integrated by the trapezoidal rule over start and end, or by the value in the stage.
     const TRAPEZOID: bool;
+    /// What it remembers from step to step.
+    fn history(&self) -> HistorySize {
+        HistorySize::default()
+    }
+    /// What one step makes of the damped oscillator, as [`Integrator::amplification`].
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
     /// Works y, z out of the state and the history, both less x₀, and the numbers of the balance.
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance;
     /// Works displacement `u1` and velocity `v1` of the end out of the stage.
     fn end(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64);
     /// Moves the history on, after obstacles have had their say; `room.struck` names the nodes that met one.
     fn remember(&self, _system: &mut System<D>, _room: &Room<D>, _h: f64) {}
-    /// Whether the forces at the start are needed in `room.force`.
-    fn needs_start(&self, _system: &System<D>) -> bool {
-        false
+}
+
+/// An implicit rule as an integrator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Implicit<R> {
+    pub(crate) rule: R,
+    pub(crate) settings: Settings,
+}
+
+impl<R> Implicit<R> {
+    /// A rule with the settings of a scene.
+    ///
+    /// # Errors
+    /// [`BuildError`] where they exclude one another.
+    pub(crate) fn new(kind: &'static str, rule: R, values: &Values) -> Result<Implicit<R>, BuildError> {
+        Ok(Implicit { rule, settings: Settings::of_rule(kind, values)? })
+    }
+}
+
+impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
+    fn name(&self) -> &'static str {
+        R::NAME
+    }
+    fn needs(&self) -> Views {
+        Views { hessian: true, ..Views::default() }
+    }
+    fn work_columns(&self) -> usize {
+        1
+    }
+    fn history(&self) -> HistorySize {
+        let own = self.rule.history();
+        let more = |here: usize| if self.settings.real_time { here } else { 0 };
+        HistorySize { columns: own.columns + more(real_time::COLUMNS), numbers: own.numbers + more(real_time::NUMBERS) }
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        self.rule.amplification(omega, c, h)
+    }
+    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
+        same_bits_everywhere(&self.settings, system)
+    }
+    fn shares_threads(&self) -> bool {
+        self.settings.real_time
+    }
+    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
+        let mut room = system.room.take::<Room<D>>();
+        room.own = self.rule.history();
+        let outcome = advance_in(self.rule, &self.settings, system, &mut room, h, 0);
+        system.room.put(room);
+        outcome
     }
 }
 
 /// Halvings of a step at most.
 const MOST_HALVINGS: u32 = 8;
 
-/// Makes a step of h.
-pub(crate) fn advance<R: Rule<D>, const D: usize>(
-    rule: R,
-    settings: &Settings,
-    system: &mut System<D>,
-    h: f64,
-) -> Result<(), StepError> {
-    let mut room = system.room.take::<Room<D>>();
-    let outcome = advance_in(rule, settings, system, &mut room, h, 0);
-    system.room.put(room);
-    outcome
-}
-
+/// Makes a step of h, or two of half the length where it does not converge.
 fn advance_in<R: Rule<D>, const D: usize>(
     rule: R,
     settings: &Settings,
@@ -73,10 +117,9 @@ fn attempt<R: Rule<D>, const D: usize>(
 ) -> Result<(), StepError> {
     system.begin_implicit();
     room.load(system);
-    room.contacting.clear();
-    if R::TRAPEZOID || rule.needs_start(system) {
-        let weight = if R::TRAPEZOID { 0.5 * h } else { 0.0 };
-        system.evaluate(Stage::Current, 0.0, weight, &mut room.force)?;
+    room.contacting.clear(system.nodes);
+    if R::TRAPEZOID {
+        system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
     }
     let balance = rule.begin(system, room, h);
     // From the motion of the last step; held axes are where they have to be.
@@ -84,7 +127,12 @@ fn attempt<R: Rule<D>, const D: usize>(
     for k in 0..room.u.len() {
         room.u[k] = if room.held[k].is_nan() { balance.theta * h * room.v0[k] } else { room.held[k] };
     }
-    let solved = solve(system, room, &balance, settings)?;
+    let solved = if settings.real_time {
+        real_time::predict(system, room, balance.theta, h);
+        real_time::solve(system, room, &balance, settings)?
+    } else {
+        newton::solve(system, room, &balance, settings)?
+    };
     report::<R, D>(settings, system, room, &solved)?;
 
     rule.end(system, room, &balance, h);
@@ -96,8 +144,8 @@ fn attempt<R: Rule<D>, const D: usize>(
         room.struck.clear();
     }
     if !R::TRAPEZOID {
-        // Damping, loads and pins by the forces of the stage.
-        system.evaluate(Room::<D>::STAGE, balance.time, h, &mut room.force)?;
+        // Damping, loads and pins by the forces of the stage, which was evaluated last.
+        system.evaluate_again(Room::<D>::STAGE, balance.time, h, &mut room.force);
     }
     commit(system, room);
     if R::TRAPEZOID {
@@ -105,6 +153,9 @@ fn attempt<R: Rule<D>, const D: usize>(
         system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
     }
     rule.remember(system, room, h);
+    if settings.real_time {
+        real_time::remember(system, room, h);
+    }
     system.end_implicit(h);
     Ok(())
 }
@@ -152,6 +203,9 @@ pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
 }
 
 /// Whether the same bits come out on every processor.
-pub(crate) fn same_bits_everywhere<const D: usize>(solver: Solver, system: &System<D>) -> bool {
-    !solver.is_direct::<D>(system.nodes)
+pub(crate) fn same_bits_everywhere<const D: usize>(settings: &Settings, system: &System<D>) -> bool {
+    let Settings { real_time, solver, .. } = *settings;
+    let direct: fn(Solver, usize) -> bool =
+        if real_time { Solver::is_direct_in_real_time::<D> } else { Solver::is_direct::<D> };
+    !direct(solver, system.nodes)
 }

@@ -17,11 +17,10 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::{FIELDS, Settings};
-use crate::implicit::step::{Rule, advance, same_bits_everywhere};
-use opruga_core::error::{BuildError, StepError};
+use crate::implicit::settings::FIELDS;
+use crate::implicit::step::{Implicit, Rule};
+use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
 use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
 
@@ -41,9 +40,7 @@ pub struct ImplicitMidpointKind;
 
 /// The implicit midpoint rule.
 #[derive(Clone, Copy, Debug)]
-pub struct ImplicitMidpoint {
-    settings: Settings,
-}
+pub struct ImplicitMidpoint;
 
 impl<const D: usize> IntegratorKind<D> for ImplicitMidpointKind {
     fn spec(&self) -> &'static Spec {
@@ -53,13 +50,20 @@ impl<const D: usize> IntegratorKind<D> for ImplicitMidpointKind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(ImplicitMidpoint { settings: Settings::new(values) }))
+        Ok(Box::new(Implicit::new(SPEC.kind, ImplicitMidpoint, values)?))
     }
 }
 
 impl<const D: usize> Rule<D> for ImplicitMidpoint {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = false;
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        // The mean velocity w obeys w (1 + ½hc + ¼h²ω²) = v₀ − ½hω² x₀.
+        let square = omega * omega;
+        let factor = 1.0 / (1.0 + 0.5 * h * c + 0.25 * h * h * square);
+        let (of_x, of_v) = (-0.5 * h * square * factor, factor);
+        Amplification::new([[1.0 + h * of_x, h * of_v], [2.0 * of_x, 2.0 * of_v - 1.0]])
+    }
     fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
         for (y, v) in room.y.iter_mut().zip(&room.v0) {
             *y = 0.5 * h * v;
@@ -72,30 +76,5 @@ impl<const D: usize> Rule<D> for ImplicitMidpoint {
             room.u1[k] = 2.0 * room.u[k];
             room.v1[k] = 2.0 * (balance.beta * room.u[k]) - room.v0[k];
         }
-    }
-}
-
-impl<const D: usize> Integrator<D> for ImplicitMidpoint {
-    fn name(&self) -> &'static str {
-        SPEC.kind
-    }
-    fn needs(&self) -> Views {
-        Views { hessian: true, ..Views::default() }
-    }
-    fn work_columns(&self) -> usize {
-        1
-    }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // The mean velocity w obeys w (1 + ½hc + ¼h²ω²) = v₀ − ½hω² x₀.
-        let square = omega * omega;
-        let factor = 1.0 / (1.0 + 0.5 * h * c + 0.25 * h * h * square);
-        let (of_x, of_v) = (-0.5 * h * square * factor, factor);
-        Amplification::new([[1.0 + h * of_x, h * of_v], [2.0 * of_x, 2.0 * of_v - 1.0]])
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        same_bits_everywhere(self.settings.solver, system)
-    }
-    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        advance(*self, &self.settings, system, h)
     }
 }

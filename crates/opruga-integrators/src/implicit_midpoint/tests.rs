@@ -1,12 +1,12 @@
 //! Order 2, no limit, momentum and the energy of linear systems are kept, free fall is exact.
 
 use super::{ImplicitMidpoint, SPEC};
-use crate::implicit::settings::Settings;
+use crate::implicit::step::Implicit;
 use crate::testing;
 use opruga_core::spec::Values;
 
-fn rule() -> ImplicitMidpoint {
-    ImplicitMidpoint { settings: Settings::new(&Values::defaults(&SPEC, 2)) }
+fn rule() -> Implicit<ImplicitMidpoint> {
+    Implicit::new(SPEC.kind, ImplicitMidpoint, &Values::defaults(&SPEC, 2)).unwrap()
 }
 
 #[test]

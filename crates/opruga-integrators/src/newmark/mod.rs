@@ -21,11 +21,10 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::{FIELDS, Settings};
-use crate::implicit::step::{Rule, advance, same_bits_everywhere};
-use opruga_core::error::{BuildError, StepError};
+use crate::implicit::settings::FIELDS;
+use crate::implicit::step::{Implicit, Rule};
+use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
 use opruga_solve::blocks::times;
@@ -66,7 +65,6 @@ pub struct Newmark {
     alpha_f: f64,
     beta: f64,
     gamma: f64,
-    settings: Settings,
 }
 
 impl<const D: usize> IntegratorKind<D> for NewmarkKind {
@@ -77,26 +75,45 @@ impl<const D: usize> IntegratorKind<D> for NewmarkKind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(Newmark::new(values)))
+        Ok(Box::new(Implicit::new(SPEC.kind, Newmark::new(values), values)?))
     }
 }
 
 impl Newmark {
     fn new(values: &Values) -> Newmark {
-        let settings = Settings::new(values);
         let (alpha_m, alpha_f) = match values.number("spectral_radius") {
             Some(rho) => ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)),
             None => (0.0, 0.0),
         };
         let excess = alpha_f - alpha_m;
         let beta = 0.25 * (1.0 + excess) * (1.0 + excess);
-        Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess, settings }
+        Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess }
     }
 }
 
 impl<const D: usize> Rule<D> for Newmark {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = true;
+    fn history(&self) -> HistorySize {
+        HistorySize { columns: 1, numbers: 1 }
+    }
+    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
+        let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
+        let (square, theta) = (omega * omega, 1.0 - alpha_f);
+        let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
+        let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
+        let a = [
+            -square * factor,
+            -(square * theta * h + c) * factor,
+            -(alpha_m + square * theta * early + c * theta * kick) * factor,
+        ];
+        let (x, v) = (h * h * beta, h * gamma);
+        Amplification::new([
+            [1.0 + x * a[0], h + x * a[1], early + x * a[2]],
+            [v * a[0], 1.0 + v * a[1], kick + v * a[2]],
+            a,
+        ])
+    }
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
         let begun = system.history.numbers[0] > 0.0;
@@ -155,43 +172,5 @@ impl Newmark {
     /// a₁ from the displacement of the step.
     fn acceleration<const D: usize>(&self, room: &Room<D>, k: usize, h: f64) -> f64 {
         (room.u1[k] - h * room.v0[k] - h * h * (0.5 - self.beta) * room.a0[k]) / (self.beta * h * h)
-    }
-}
-
-impl<const D: usize> Integrator<D> for Newmark {
-    fn name(&self) -> &'static str {
-        SPEC.kind
-    }
-    fn needs(&self) -> Views {
-        Views { hessian: true, ..Views::default() }
-    }
-    fn work_columns(&self) -> usize {
-        1
-    }
-    fn history(&self) -> HistorySize {
-        HistorySize { columns: 1, numbers: 1 }
-    }
-    fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
-        let (square, theta) = (omega * omega, 1.0 - alpha_f);
-        let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
-        let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
-        let a = [
-            -square * factor,
-            -(square * theta * h + c) * factor,
-            -(alpha_m + square * theta * early + c * theta * kick) * factor,
-        ];
-        let (x, v) = (h * h * beta, h * gamma);
-        Amplification::new([
-            [1.0 + x * a[0], h + x * a[1], early + x * a[2]],
-            [v * a[0], 1.0 + v * a[1], kick + v * a[2]],
-            a,
-        ])
-    }
-    fn same_bits_everywhere(&self, system: &System<D>) -> bool {
-        same_bits_everywhere(self.settings.solver, system)
-    }
-    fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
-        advance(*self, &self.settings, system, h)
     }
 }

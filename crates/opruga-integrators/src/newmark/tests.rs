@@ -1,16 +1,17 @@
 //! Order 2, no limit, damping at high frequencies as asked for, free fall is exact.
 
 use super::{Newmark, SPEC};
+use crate::implicit::step::Implicit;
 use crate::testing;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 
-fn rule(spectral_radius: Option<f64>) -> Newmark {
+fn rule(spectral_radius: Option<f64>) -> Implicit<Newmark> {
     let mut values = Values::defaults(&SPEC, 2);
     if let Some(rho) = spectral_radius {
         values.set(&SPEC, "spectral_radius", Value::Number(rho), 2).unwrap();
     }
-    Newmark::new(&values)
+    Implicit::new(SPEC.kind, Newmark::new(&values), &values).unwrap()
 }
 
 const ALL: [Option<f64>; 5] = [None, Some(0.0), Some(0.5), Some(0.8), Some(1.0)];

@@ -9,7 +9,7 @@ use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::Values;
-use opruga_mesh::{Measure, Mesh, MeshError};
+use opruga_mesh::{Cut, Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
 use opruga_world::{schema, shapes};
 use std::collections::{BTreeMap, BTreeSet};
@@ -344,7 +344,8 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
         let error = SceneError::new("scene.shape", format!("`{key}` is about cells, and the shape has none"));
         return refuse(reader, error.hint("filled shapes are `grid`, files with a `filling`, and `mesh`"));
     }
-    let cut = if simplices { mesh.into_simplices() } else { Ok(mesh) };
+    let cut = if draft.values.integer("tetrahedra_per_hexahedron") == Some(5) { Cut::Five } else { Cut::Six };
+    let cut = if simplices { mesh.into_simplices_by(cut) } else { Ok(mesh) };
     match cut.and_then(|mesh| if quadratic { mesh.into_quadratic() } else { Ok(mesh) }) {
         Ok(mesh) => Some(mesh),
         Err(refusal @ MeshError::NotSimplices { .. }) => {

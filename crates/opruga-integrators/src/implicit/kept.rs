@@ -1,0 +1,146 @@
+//! The matrix that the real-time setting keeps from step to step.
+//!
+//! It is made in one shape of the body, the *reference*, and used until it no longer leads to the end of a step. The
+//! reference is part of the state: a run that is taken up again makes the same matrix from it.
+
+use super::linear::{Filter, Linear, Mixture};
+use opruga_core::potential::Definiteness;
+use opruga_core::state::Columns;
+use opruga_core::system::System;
+use opruga_solve::blocks::Block;
+use opruga_solve::{Cholesky, Indefinite, Packed};
+
+/// What the matrix at hand was made of, and what solves with it.
+#[derive(Debug)]
+pub(crate) struct Kept<const D: usize> {
+    /// Whether there is one.
+    there: bool,
+    sigma: f64,
+    beta: f64,
+    /// How much the diagonal is raised; none where the derivatives are the exact ones.
+    raised: Option<f64>,
+    reference: Columns<D>,
+    /// The directions that were free when it was made ready to be solved with.
+    ready: bool,
+    free: Vec<bool>,
+    projectors: Vec<Block<D>>,
+    packed: Packed<D>,
+    cholesky: Cholesky,
+}
+
+impl<const D: usize> Default for Kept<D> {
+    fn default() -> Self {
+        Kept {
+            there: false,
+            sigma: 0.0,
+            beta: 0.0,
+            raised: None,
+            reference: Columns::zeros(0),
+            ready: false,
+            free: Vec::new(),
+            projectors: Vec::new(),
+            packed: Packed::default(),
+            cholesky: Cholesky::default(),
+        }
+    }
+}
+
+impl<const D: usize> Kept<D> {
+    /// Whether the matrix at hand is the one of a shape, of factors and of a way to keep it definite.
+    pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: Option<f64>) -> bool {
+        let nodes = mixture.mass.len();
+        self.there
+            && (self.sigma, self.beta, self.raised) == (mixture.sigma, mixture.beta, raised)
+            && self.reference.0.iter().zip(&reference.0).all(|(a, b)| a.get(..nodes) == b.get(..nodes))
+    }
+
+    /// Makes the matrix in the shape that was evaluated last, which is `reference`.
+    pub(crate) fn make(
+        &mut self,
+        linear: &mut Linear<D>,
+        mixture: &Mixture<D>,
+        raised: Option<f64>,
+        reference: &Columns<D>,
+    ) {
+        linear.assemble(mixture);
+        if let Some(part) = raised.filter(|part| *part > 0.0) {
+            linear.raise(part);
+        }
+        self.packed.take(linear.whole(), mixture.system.threads);
+        (self.there, self.ready) = (true, false);
+        (self.sigma, self.beta, self.raised) = (mixture.sigma, mixture.beta, raised);
+        for (own, column) in self.reference.0.iter_mut().zip(&reference.0) {
+            own.grow(column.len());
+            own[..column.len()].copy_from_slice(column);
+        }
+    }
+
+    /// Makes it ready to be solved with in the free directions.
+    pub(crate) fn hold(&mut self, linear: &mut Linear<D>, filter: &Filter<D>, direct: bool) -> Result<(), Indefinite> {
+        let same = self.ready && self.free == filter.free;
+        let held = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
+        if same && (0..filter.free.len()).all(held) {
+            return Ok(());
+        }
+        self.ready = false;
+        self.packed.hold(linear.whole(), filter.free, filter.projectors)?;
+        if direct {
+            linear.constrain(filter);
+            self.cholesky.update(linear.constrained())?;
+        }
+        refill(&mut self.free, filter.free);
+        refill(&mut self.projectors, filter.projectors);
+        self.ready = true;
+        Ok(())
+    }
+
+    /// The sum over the nodes of the mean diagonal of their blocks [N/m].
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.packed.stiffness()
+    }
+    /// Notes that there is no right-hand side that could be solved for.
+    pub(crate) fn forget_right_hand_side(&mut self) {
+        self.ready = false;
+    }
+
+    /// Takes a right-hand side; gives its size in the norm of the inverse diagonal blocks.
+    pub(crate) fn begin(&mut self, system: &System<D>, right: &[f64]) -> f64 {
+        self.packed.begin(system.simd, system.threads, right)
+    }
+
+    /// Solves for the right-hand side that was taken; gives the products and whether the matrix turned out indefinite.
+    pub(crate) fn solve(
+        &mut self,
+        system: &System<D>,
+        right: &[f64],
+        direct: bool,
+        goal: f64,
+        most: u32,
+        out: &mut [f64],
+    ) -> Result<(u32, bool), Indefinite> {
+        if !self.ready {
+            return Err(Indefinite);
+        }
+        let outcome = if direct {
+            out.copy_from_slice(right);
+            self.cholesky.solve(out);
+            (1, false)
+        } else {
+            let reached = self.packed.solve(system.simd, system.threads, goal, most, out)?;
+            (reached.iterations, reached.indefinite)
+        };
+        if out.iter().all(|x| x.is_finite()) { Ok(outcome) } else { Err(Indefinite) }
+    }
+}
+
+/// Which derivatives a number of the history stands for: those of the exact energy, or those of elements without negative
+/// eigenvalues, with the diagonal raised by a part of itself.
+pub(crate) fn definiteness(raised: Option<f64>) -> Definiteness {
+    if raised.is_none() { Definiteness::Exact } else { Definiteness::Clamped }
+}
+
+/// A vector becomes a copy of a slice, in memory that is there already.
+fn refill<T: Copy>(own: &mut Vec<T>, from: &[T]) {
+    own.clear();
+    own.extend_from_slice(from);
+}

@@ -1,0 +1,307 @@
+//! The real-time setting: few iterations with a matrix that is kept, as long as it leads to the end of a step.
+//!
+//! Every iteration balances the exact forces; the matrix only says how far to go. Where it is of another shape of the body,
+//! or its equations are solved roughly, what is left out of balance is a part of what there was; the next step begins with
+//! it. At rest nothing is left. The iteration begins where the body would come to under the acceleration of the last step.
+//!
+//! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
+
+use super::kept::definiteness;
+use super::linear::{Filter, Mixture};
+use super::newton::{Balance, Solved, evaluate, look};
+use super::room::Room;
+use super::settings::Settings;
+use opruga_core::error::StepError;
+use opruga_core::system::System;
+use opruga_math::Lane;
+use opruga_solve::Indefinite;
+
+/// The part of what is out of balance that the linear solver leaves.
+const LINEAR: f64 = 0.05;
+
+/// The part with which an iteration is good enough.
+const ENOUGH: f64 = 0.2;
+
+/// The part with which the matrix is made anew in the next step.
+const WORN: f64 = 0.2;
+
+/// What is out of balance counts as nothing where it moves nodes by less than this part of the extent.
+const NOTHING: f64 = 1e-9;
+
+/// Products with the matrix in an iteration at most.
+const PRODUCTS: u32 = 100;
+
+/// What the setting adds to what a rule remembers: the reference shape of the matrix and the velocities before the step;
+/// which matrix it is, and the length of the step.
+pub(crate) const COLUMNS: usize = 2;
+pub(crate) const NUMBERS: usize = 2;
+
+/// Numbers of the history: the exact matrix, the clamped one; above it raised ones. Zero is none, a negative number one that
+/// is to be made anew.
+const EXACT: f64 = 1.0;
+const CLAMPED: f64 = 2.0;
+const MOST_RAISED: f64 = 6.0;
+
+/// By how much the diagonal is raised; none for the exact derivatives.
+fn raised(kind: f64) -> Option<f64> {
+    if kind <= EXACT {
+        return None;
+    }
+    let mut part = 0.0;
+    for k in 0..(kind - CLAMPED) as u32 {
+        part = if k == 0 { 1e-8 } else { 100.0 * part };
+    }
+    Some(part)
+}
+
+/// Where the body would come to under the acceleration of the last step, less x₀: in `room.u`.
+pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
+    let last = system.history.numbers[room.own.numbers + 1];
+    if last <= 0.0 {
+        return;
+    }
+    let before = &system.history.columns[room.own.columns + 1];
+    let share = theta * theta * h * h / last;
+    for node in 0..system.nodes {
+        for d in 0..D {
+            let k = node * D + d;
+            if room.held[k].is_nan() {
+                room.u[k] += share * (room.v0[k] - before.0[d][node]);
+            }
+        }
+    }
+}
+
+/// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
+pub(crate) fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h: f64) {
+    system.history.numbers[room.own.numbers + 1] = h;
+    let before = &mut system.history.columns[room.own.columns + 1];
+    for node in 0..system.nodes {
+        for d in 0..D {
+            before.0[d][node] = room.v0[node * D + d];
+        }
+    }
+    for contact in &room.contacting.contacts {
+        for d in 0..D {
+            before.0[d][contact.node] = room.v1[contact.node * D + d];
+        }
+    }
+}
+
+/// What an iteration needs to know beside the room.
+#[derive(Clone, Copy, Debug)]
+struct Task<'a> {
+    balance: &'a Balance,
+    direct: bool,
+}
+
+impl Task<'_> {
+    fn mixture<'a, const D: usize>(&self, system: &'a System<D>, mass: &'a [f64], kind: f64) -> Mixture<'a, D> {
+        Mixture {
+            system,
+            sigma: self.balance.sigma,
+            beta: self.balance.beta,
+            mass,
+            stage: Room::<D>::STAGE,
+            time: self.balance.time,
+            keep: definiteness(raised(kind)),
+            matrix_free: false,
+        }
+    }
+
+    /// Makes the matrix of the reference shape, which was evaluated last.
+    fn make<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) {
+        let kind = system.history.numbers[room.own.numbers];
+        let Room { kept, linear, mass, own, .. } = room;
+        let mixture = self.mixture(system, mass, kind);
+        kept.make(linear, &mixture, raised(kind), &system.history.columns[own.columns]);
+    }
+
+    /// Makes the matrix of the present shape, which becomes the reference.
+    fn make_here<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, kind: f64) {
+        let System { history, state, nodes, .. } = system;
+        history.numbers[room.own.numbers] = kind;
+        for (own, column) in history.columns[room.own.columns].0.iter_mut().zip(&state.work[0][0].0) {
+            own[..*nodes].copy_from_slice(&column[..*nodes]);
+        }
+        self.make(system, room);
+    }
+
+    /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
+    fn recall<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>) -> Result<bool, StepError> {
+        let kind = system.history.numbers[room.own.numbers];
+        if kind <= 0.0 || !system.hessian_is_of_positions() {
+            return Ok(false);
+        }
+        let mixture = self.mixture(system, &room.mass, kind);
+        if !room.kept.is_of(&system.history.columns[room.own.columns], &mixture, raised(kind)) {
+            let (nodes, places) = (system.nodes, system.places());
+            let System { history, state, .. } = system;
+            for (to, from) in state.work[0][0].0.iter_mut().zip(&history.columns[room.own.columns].0) {
+                for place in 0..places {
+                    to[place] = from[place.min(nodes - 1)];
+                }
+            }
+            system.evaluate(Room::<D>::STAGE, self.balance.time, 0.0, &mut room.force)?;
+            self.make(system, room);
+        }
+        Ok(true)
+    }
+
+    /// What is out of balance in the free directions, friction and what is prescribed included, as the right-hand side; gives
+    /// its size.
+    fn out_of_balance<const D: usize>(
+        &self,
+        system: &System<D>,
+        room: &mut Room<D>,
+        moves: bool,
+    ) -> Result<f64, Indefinite> {
+        let Room { kept, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, .. } = room;
+        trial.copy_from_slice(residual);
+        contacting.subtract_friction(trial);
+        if moves {
+            linear.multiply(&self.mixture(system, mass, EXACT), prescribed, right);
+            for (t, r) in trial.iter_mut().zip(&*right) {
+                *t += r;
+            }
+        }
+        for (r, t) in right.iter_mut().zip(&*trial) {
+            *r = -t;
+        }
+        let filter = Filter { free, projectors };
+        filter.apply(right);
+        kept.hold(linear, &filter, self.direct)?;
+        Ok(kept.begin(system, right))
+    }
+
+    /// Solves for the step of an iteration, if need be with another matrix; gives the products, and whether that worked.
+    fn direction<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        moves: bool,
+        goal: f64,
+    ) -> (u32, bool) {
+        let mut spent = 0;
+        loop {
+            let Room { kept, right, step, .. } = &mut *room;
+            match kept.solve(system, right, self.direct, goal, PRODUCTS, step) {
+                Ok((products, indefinite)) => {
+                    if indefinite {
+                        // What was found leads downhill; the next matrix is a definite one.
+                        system.history.numbers[room.own.numbers] = -CLAMPED;
+                    }
+                    return (spent + products, true);
+                }
+                Err(Indefinite) => {
+                    spent += 1;
+                    // Of the exact derivatives, or of those of a shape that no longer holds, none may be definite.
+                    let kind = system.history.numbers[room.own.numbers].abs();
+                    if kind >= MOST_RAISED {
+                        return (spent, false);
+                    }
+                    let next = if kind < CLAMPED { CLAMPED } else { kind + 1.0 };
+                    self.make_here(system, room, next);
+                    if self.out_of_balance(system, room, moves).is_err() {
+                        room.kept.forget_right_hand_side();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Looks for the stage from the displacement in `room.u` on; forces and residual belong to what is found.
+pub(crate) fn solve<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Result<Solved, StepError> {
+    let task = Task { balance, direct: settings.solver.is_direct_in_real_time::<D>(system.nodes) };
+    let number = room.own.numbers;
+    let mut solved = Solved { converged: true, ..Solved::default() };
+    // Whether the matrix is of this step.
+    let mut fresh = !task.recall(system, room)?;
+    evaluate(system, room, balance, false)?;
+    if fresh {
+        let kind = system.history.numbers[number];
+        task.make_here(system, room, if kind == -CLAMPED { CLAMPED } else { EXACT });
+    }
+    let (mut first, mut undecided) = (0.0, false);
+    loop {
+        let last = solved.iterations == settings.iterations;
+        // Which nodes are held, and how far they have to go.
+        let mut moves = false;
+        if !last {
+            undecided |= look(system, room, balance);
+            let Room { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *room;
+            moves = contacting.hold(u, balance.theta, held, x0, free, projectors, prescribed) > 0.0;
+        }
+        let mut size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
+        if solved.iterations == 0 {
+            first = size;
+        }
+        let floor = NOTHING * room.extent * room.kept.stiffness().sqrt();
+        let settled = !undecided && !moves;
+        let enough = if solved.iterations > 0 { (ENOUGH * first).larger(floor) } else { floor };
+        if last || settled && size <= enough {
+            if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
+                system.history.numbers[number] = -EXACT;
+            }
+            return Ok(solved);
+        }
+        if solved.iterations > 0 && !fresh && settled && size > WORN * first {
+            // The matrix of another shape does not lead there.
+            task.make_here(system, room, EXACT);
+            fresh = true;
+            size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
+        }
+        if size.is_nan() {
+            room.kept.forget_right_hand_side();
+        }
+        solved.iterations += 1;
+        let (products, found) = task.direction(system, room, moves, (LINEAR * first).larger(floor));
+        solved.products += products;
+        if !found {
+            solved.converged = false;
+            return Ok(solved);
+        }
+        go(system, room, &task, moves, &mut solved)?;
+        undecided = system.contacts.is_some()
+            && room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+    }
+}
+
+/// Goes the step that was found, and what is prescribed; `room.reaction` is then what the constraints take.
+fn go<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    task: &Task<'_>,
+    moves: bool,
+    solved: &mut Solved,
+) -> Result<(), StepError> {
+    let Room { linear, mass, free, projectors, residual, reaction, step, prescribed, contacting, u, .. } = &mut *room;
+    Filter { free, projectors }.apply(step);
+    if moves {
+        for (s, p) in step.iter_mut().zip(&*prescribed) {
+            *s += p;
+        }
+    }
+    // What is out of balance after the step in the directions that are held: r + A Δ.
+    if contacting.any() {
+        linear.multiply(&task.mixture(system, mass, EXACT), step, reaction);
+        for (r, residual) in reaction.iter_mut().zip(&*residual) {
+            *r += residual;
+        }
+    }
+    let mut longest: f64 = 0.0;
+    for node in step.as_chunks::<D>().0 {
+        longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
+    }
+    solved.correction = longest.sqrt();
+    for (u, s) in u.iter_mut().zip(&*step) {
+        *u += s;
+    }
+    evaluate(system, room, task.balance, false)
+}

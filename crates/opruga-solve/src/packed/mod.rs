@@ -1,0 +1,225 @@
+//! A matrix of blocks laid out for vector instructions and threads.
+//!
+//! ```text
+//! rows of about the same length ─→ packs of eight ─→ pieces of 32 packs, one thread each
+//!                     k-th blocks of the eight rows side by side: D² packs of numbers
+//! ```
+//!
+//! Rows are sorted by length within windows, so that little is filled up; a node's number in that order is its *seat*.
+//! Pieces and the order of their sums depend on the matrix alone: every number of threads gives the same bits.
+
+mod gradients;
+
+use crate::Indefinite;
+use crate::blocks::{Block, held, inverse_of_positive, product};
+use crate::matrix::BlockMatrix;
+use crate::threads::each;
+use opruga_math::{Column, ROW, Simd, WIDTH};
+
+pub use gradients::Reached;
+
+/// Packs of rows in a piece.
+const PACKS: usize = 32;
+
+/// Rows that are sorted by length among themselves.
+const WINDOW: usize = 512;
+
+/// Where a lane of a pack has no block.
+const NONE: u32 = u32::MAX;
+
+/// A matrix in packs, and conjugate gradients on it with the inverses of the diagonal blocks.
+#[derive(Debug, Default)]
+pub struct Packed<const D: usize> {
+    generation: u64,
+    /// The node of each seat; seats behind the last node fill a pack up.
+    node: Vec<u32>,
+    /// The seat of each node.
+    seat: Vec<u32>,
+    pieces: Vec<Piece<D>>,
+    /// Vectors of the direction by seat, [`ROW`] numbers each, as products gather them.
+    rows: Column,
+    rank_one: Vec<Part<D>>,
+    ranks: usize,
+    /// The sum over the nodes of the mean diagonal of their blocks.
+    stiffness: f64,
+    /// The square of the size of the right-hand side in the norm of the preconditioner.
+    size: f64,
+}
+
+/// c·u uᵀ, by seat.
+#[derive(Debug, Default)]
+struct Part<const D: usize> {
+    factor: f64,
+    entries: Vec<(u32, [f64; D])>,
+}
+
+/// Some packs of rows: the matrix and what conjugate gradients keep of the vectors, in packs as well.
+#[derive(Debug, Default)]
+struct Piece<const D: usize> {
+    /// Where the blocks of each pack begin, and where the last ends.
+    start: Vec<u32>,
+    /// Eight seats of columns for every eight blocks.
+    column: Vec<u32>,
+    /// Their places in the matrix.
+    source: Vec<u32>,
+    values: Column,
+    /// The approximate inverse of the diagonal blocks: D² packs each, the held directions taken out.
+    inverse: Column,
+    residual: Column,
+    improved: Column,
+    direction: Column,
+    product: Column,
+    solution: Column,
+    /// The part of a scalar product.
+    sum: f64,
+}
+
+impl<const D: usize> Packed<D> {
+    /// Takes the values of a matrix, and its pattern where that is new.
+    pub fn take(&mut self, matrix: &BlockMatrix<D>, threads: usize) {
+        if self.generation != matrix.generation || self.seat.len() != matrix.rows() || self.pieces.is_empty() {
+            self.take_pattern(matrix);
+        }
+        let values = &matrix.values;
+        each(threads, &mut self.pieces, |piece| {
+            for (sources, packs) in piece.source.chunks_exact(WIDTH).zip(piece.values.chunks_exact_mut(D * D * WIDTH)) {
+                for (l, source) in sources.iter().enumerate().filter(|(_, source)| **source != NONE) {
+                    let block = &values[*source as usize];
+                    for i in 0..D {
+                        for j in 0..D {
+                            packs[(i * D + j) * WIDTH + l] = block[i][j];
+                        }
+                    }
+                }
+            }
+        });
+        let parts = matrix.rank_one();
+        self.ranks = parts.len();
+        if self.rank_one.len() < self.ranks {
+            self.rank_one.resize_with(self.ranks, Part::default);
+        }
+        for (own, part) in self.rank_one.iter_mut().zip(parts) {
+            own.factor = part.factor;
+            own.entries.clear();
+            own.entries.extend(part.entries.iter().map(|(node, u)| (self.seat[*node as usize], *u)));
+        }
+    }
+
+    fn take_pattern(&mut self, matrix: &BlockMatrix<D>) {
+        let nodes = matrix.rows();
+        self.generation = matrix.generation;
+        self.node = (0..nodes as u32).collect();
+        for window in self.node.chunks_mut(WINDOW) {
+            window.sort_by_key(|node| core::cmp::Reverse(matrix.row(*node as usize).len()));
+        }
+        self.seat = vec![0; nodes];
+        for (seat, node) in self.node.iter().enumerate() {
+            self.seat[*node as usize] = seat as u32;
+        }
+        let packs = nodes.div_ceil(WIDTH);
+        self.rows = Column::zeros(packs * WIDTH * ROW);
+        self.pieces.clear();
+        for first in (0..packs).step_by(PACKS) {
+            let count = PACKS.min(packs - first);
+            let zeros = |times: usize| Column::zeros(count * times * WIDTH);
+            let mut piece = Piece {
+                start: vec![0],
+                inverse: zeros(D * D),
+                residual: zeros(D),
+                improved: zeros(D),
+                direction: zeros(D),
+                product: zeros(D),
+                solution: zeros(D),
+                ..Piece::default()
+            };
+            for pack in first..first + count {
+                let row = |lane: usize| self.node.get(pack * WIDTH + lane).map_or(0..0, |n| matrix.row(*n as usize));
+                let longest = (0..WIDTH).map(|lane| row(lane).len()).max().unwrap_or(0);
+                for k in 0..longest {
+                    for lane in 0..WIDTH {
+                        let at = row(lane).nth(k);
+                        piece.source.push(at.map_or(NONE, |at| at as u32));
+                        piece.column.push(at.map_or(0, |at| self.seat[matrix.column[at] as usize]));
+                    }
+                }
+                piece.start.push((piece.source.len() / WIDTH) as u32);
+            }
+            piece.values = Column::zeros(piece.source.len() * D * D);
+            self.pieces.push(piece);
+        }
+    }
+
+    /// Takes out the directions that are not free, and inverts the diagonal blocks of what is left; `matrix` is the one
+    /// whose values were taken.
+    ///
+    /// # Errors
+    /// [`Indefinite`] where a block is not positive definite.
+    pub fn hold(&mut self, matrix: &BlockMatrix<D>, free: &[bool], projectors: &[Block<D>]) -> Result<(), Indefinite> {
+        self.stiffness = 0.0;
+        for (seat, node) in self.node.iter().map(|node| *node as usize).enumerate() {
+            let own = matrix.diagonal_block(node);
+            for d in 0..D {
+                self.stiffness += own[d][d].abs() / D as f64;
+            }
+            let projector = &projectors[node];
+            let inverse = if free[node] {
+                inverse_of_positive(own).ok_or(Indefinite)?
+            } else {
+                let inverse = inverse_of_positive(&held(own, projector)).ok_or(Indefinite)?;
+                product(projector, &product(&inverse, projector))
+            };
+            let (pack, lane) = (seat / WIDTH, seat % WIDTH);
+            let piece = &mut self.pieces[pack / PACKS];
+            let to = &mut piece.inverse[(pack % PACKS) * D * D * WIDTH..];
+            for i in 0..D {
+                for j in 0..D {
+                    to[(i * D + j) * WIDTH + lane] = inverse[i][j];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The sum over the nodes of the mean diagonal of their blocks, held directions included.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// y = A x, with nothing taken out.
+    pub fn multiply(&mut self, simd: Simd, threads: usize, x: &[f64], y: &mut [f64]) {
+        self.load(x, |piece| &mut piece.direction);
+        self.spread(threads);
+        self.multiply_direction(simd, threads);
+        self.unload(y, |piece| &piece.product);
+    }
+
+    /// A vector of the nodes into packs.
+    fn load(&mut self, from: &[f64], to: impl Fn(&mut Piece<D>) -> &mut Column) {
+        for (node, seat) in self.seat.iter().enumerate() {
+            let (pack, lane) = (*seat as usize / WIDTH, *seat as usize % WIDTH);
+            let column = to(&mut self.pieces[pack / PACKS]);
+            for d in 0..D {
+                column[((pack % PACKS) * D + d) * WIDTH + lane] = from[node * D + d];
+            }
+        }
+    }
+    /// Packs into a vector of the nodes.
+    fn unload(&self, to: &mut [f64], from: impl Fn(&Piece<D>) -> &Column) {
+        for (node, seat) in self.seat.iter().enumerate() {
+            let (pack, lane) = (*seat as usize / WIDTH, *seat as usize % WIDTH);
+            let column = from(&self.pieces[pack / PACKS]);
+            for d in 0..D {
+                to[node * D + d] = column[((pack % PACKS) * D + d) * WIDTH + lane];
+            }
+        }
+    }
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let of_piece = |p: &Piece<D>| {
+            let vectors = [&p.residual, &p.improved, &p.direction, &p.product, &p.solution, &p.inverse, &p.values];
+            4 * (p.column.capacity() + p.source.capacity() + p.start.capacity())
+                + vectors.into_iter().map(Column::heap_bytes).sum::<usize>()
+        };
+        self.pieces.iter().map(of_piece).sum::<usize>() + self.rows.heap_bytes() + 8 * self.seat.capacity()
+    }
+}

@@ -1,0 +1,177 @@
+//! Implicit steps from shapes that no body has: every one comes back to its volume, or is refused with a reason.
+
+use opruga_core::spec::{Value, Values};
+use opruga_math::matrix::determinant;
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, Registry, World};
+use std::sync::Arc;
+
+const MATERIALS: [&str; 2] = ["stable_neo_hookean", "fixed_corotated"];
+
+/// A free cube of 1 m without weight, and a step.
+fn body(mesh: Mesh<3>, material: &str, frame: f64, pins: Vec<PinBlueprint<3>>) -> Blueprint<3> {
+    let registry = Registry::<3>::default();
+    let text = |text: &str| Value::Text(text.into());
+    let spec = registry.model("fem").expect("a model").spec();
+    let mut model = Values::defaults(spec, 3);
+    for (name, value) in [
+        ("material", text(material)),
+        ("youngs_modulus", Value::Number(1e5)),
+        ("poissons_ratio", Value::Number(0.4)),
+        ("damping", Value::Number(0.05)),
+    ] {
+        model.set(spec, name, value, 3).expect("a field of the test's own");
+    }
+    let spec = registry.integrator("backward_euler").expect("an integrator").spec();
+    let mut integrator = Values::defaults(spec, 3);
+    integrator.set(spec, "when_not_converged", text("halve"), 3).expect("a field of the test's own");
+    Blueprint {
+        name: "test".into(),
+        title: String::new(),
+        length_unit: "m".into(),
+        seed: 0,
+        time: Time { seconds: 1e3, frame, substeps: 1 },
+        surroundings: Surroundings {
+            gravity: [0.0; 3],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
+        integrator,
+        bodies: vec![BodyBlueprint {
+            name: "body".into(),
+            mesh: Arc::new(mesh),
+            translation: [0.0; 3],
+            velocity: [0.0; 3],
+            angular_velocity: Vec::new(),
+            mass: Mass::Density(1000.0),
+            thickness: 1.0,
+            integrator: None,
+            models: vec![model],
+            pins,
+        }],
+        colliders: Vec::new(),
+        loads: Vec::new(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+    }
+}
+
+fn cube(n: u32) -> Mesh<3> {
+    Mesh::grid([0.0; 3], [1.0; 3], [n; 3]).unwrap().into_simplices().unwrap()
+}
+
+/// The volume ratio of the body, and the least one of its tetrahedra.
+fn volumes(world: &World<3>, mesh: &Mesh<3>) -> (f64, f64) {
+    let (mut whole, mut at_rest, mut least) = (0.0, 0.0, f64::INFINITY);
+    for cell in &mesh.cells.tetrahedra {
+        let sides = |at: &dyn Fn(u32) -> [f64; 3]| {
+            let first = at(cell[0]);
+            determinant(&[1, 2, 3].map(|k| core::array::from_fn(|d| at(cell[k])[d] - first[d])))
+        };
+        let now = sides(&|node| world.position(0, node));
+        let rest = sides(&|node| mesh.positions[node as usize]);
+        (whole, at_rest, least) = (whole + now, at_rest + rest, f64::min(least, now / rest));
+    }
+    (whole / at_rest, least)
+}
+
+/// A body that starts in another shape ends at its volume, with no tetrahedron turned inside out, or a step says why not.
+fn comes_back(material: &str, name: &str, shape: &dyn Fn([f64; 3], usize) -> [f64; 3]) {
+    let mesh = cube(3);
+    let mut world = World::new(body(mesh.clone(), material, 1.0 / 30.0, Vec::new()), Options::default()).unwrap();
+    for (node, at) in mesh.positions.iter().enumerate() {
+        world.place_node(0, node as u32, shape(*at, node), [0.0; 3]).unwrap();
+    }
+    for frame in 0..300 {
+        if let Err(error) = world.frame() {
+            let reason = error.to_string();
+            assert!(reason.contains("did not converge") && reason.contains("hint"), "{material}, {name}: {reason}");
+            println!("{material}, {name}: frame {frame} is refused");
+            return;
+        }
+        let (whole, least) = volumes(&world, &mesh);
+        if frame > 10 && (whole - 1.0).abs() < 1e-3 && least > 0.9 {
+            println!("{material}, {name}: back after {frame} frames");
+            return;
+        }
+    }
+    panic!("{material}, {name}: volume ratio and least of a tetrahedron {:?} after 10 s", volumes(&world, &mesh));
+}
+
+/// A number from −1 to 1 that belongs to a node and an axis.
+fn random(node: usize, axis: usize) -> f64 {
+    let mut state = (node * 3 + axis) as u64 + 1;
+    for _ in 0..3 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    }
+    (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+#[test]
+fn collapsed_mirrored_and_scattered_bodies_come_back_or_are_refused_with_a_reason() {
+    for material in MATERIALS {
+        comes_back(material, "plane", &|x, _| [x[0], 0.0, x[2]]);
+        // Exactly on a line or in a point all forces across balance, and a body stays; the least disturbance ends that.
+        let small = |node: usize, d: usize| 1e-9 * random(node, d);
+        comes_back(material, "line", &|x, n| [x[0], small(n, 1), small(n, 2)]);
+        comes_back(material, "point", &|_, n| core::array::from_fn(|d| small(n, d)));
+        comes_back(material, "mirrored", &|x, _| [-x[0], x[1], x[2]]);
+        comes_back(material, "scattered", &|_, node| core::array::from_fn(|d| random(node, d)));
+        comes_back(material, "stretched tenfold", &|x, _| [10.0 * x[0], x[1], x[2]]);
+        comes_back(material, "twisted three times", &|x, _| {
+            let angle = 6.0 * core::f64::consts::PI * x[0];
+            let (c, s) = (libm::cos(angle), libm::sin(angle));
+            let (y, z) = (x[1] - 0.5, x[2] - 0.5);
+            [x[0], c * y - s * z, s * y + c * z]
+        });
+    }
+}
+
+/// A bent body comes to rest in steps of any length.
+#[test]
+fn steps_from_ten_microseconds_to_two_seconds_are_made() {
+    let mesh = cube(3);
+    let clamp = || vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }];
+    for material in MATERIALS {
+        for h in [1e-5, 1e-3, 0.1, 2.0] {
+            let mut world = World::new(body(mesh.clone(), material, h, clamp()), Options::default()).unwrap();
+            for (node, x) in mesh.positions.iter().enumerate() {
+                world.place_node(0, node as u32, [x[0], x[1] + 0.3 * x[0] * x[0], x[2]], [0.0; 3]).unwrap();
+            }
+            for _ in 0..40 {
+                world.frame().unwrap_or_else(|error| panic!("{material}, h = {h}: {error}"));
+            }
+            let (whole, least) = volumes(&world, &mesh);
+            assert!(least > 0.2 && (whole - 1.0).abs() < 0.2, "{material}, h = {h}: {whole} {least}");
+            if h > 0.05 {
+                assert!((whole - 1.0).abs() < 1e-3, "{material}, h = {h}: {whole}");
+            }
+        }
+    }
+}
+
+/// Slivers of aspect ratio 1000, and a body far from the origin, fall back as the body does where it was built.
+#[test]
+fn slivers_and_distance_leave_the_answer() {
+    let run = |scale: f64, far: f64| {
+        let mut mesh = Mesh::grid([0.0; 3], [1.0, scale, 1.0], [3, 3, 3]).unwrap().into_simplices().unwrap();
+        mesh.translate([far, far, far]);
+        let mut world =
+            World::new(body(mesh.clone(), "stable_neo_hookean", 1.0 / 30.0, Vec::new()), Options::default()).unwrap();
+        for (node, x) in mesh.positions.iter().enumerate() {
+            let at = [far + 1.2 * (x[0] - far), x[1], far + 0.9 * (x[2] - far)];
+            world.place_node(0, node as u32, at, [0.0; 3]).unwrap();
+        }
+        for _ in 0..60 {
+            world.frame().unwrap_or_else(|error| panic!("{scale}, {far}: {error}"));
+        }
+        volumes(&world, &mesh).0
+    };
+    for (scale, far, tolerance) in [(1.0, 0.0, 1e-4), (1e-3, 0.0, 1e-3), (1.0, 1e6, 1e-4)] {
+        let whole = run(scale, far);
+        assert!((whole - 1.0).abs() < tolerance, "{scale}, {far}: {whole}");
+    }
+}
