@@ -36,6 +36,19 @@ fn cloth() -> Mesh<3> {
 fn block() -> Mesh<3> {
     Mesh::grid([0.0; 3], [1.0, 0.8, 0.6], [3, 2, 2]).unwrap()
 }
+/// Three by three cells without the one in the middle.
+fn frame() -> Mesh<2> {
+    let mut mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.9], [3, 3]).unwrap();
+    mesh.cells.quadrilaterals.remove(4);
+    mesh.facets = mesh.facets_from_cells().unwrap();
+    mesh
+}
+fn hollow() -> Mesh<3> {
+    let mut mesh = Mesh::<3>::grid([0.0; 3], [1.0, 0.9, 0.8], [3, 3, 3]).unwrap();
+    mesh.cells.hexahedra.remove(13);
+    mesh.facets = mesh.facets_from_cells().unwrap();
+    mesh
+}
 /// One state of a mesh that needs several tiles; small, since there are as many differences as coordinates.
 fn once() -> Options {
     Options { states: 1, ..Options::default() }
@@ -83,6 +96,8 @@ fn pressure_in_the_plane() {
     conformance("nearly empty", &Pressure, &adiabatic, &ring(36), &shrunk()).assert();
     let capped = values!(pressure, nRT: 70.0, largest_pressure: 20.0, ambient: 7.0);
     conformance("capped", &Pressure, &[capped], &ring(36), &Options::default()).assert();
+    let inside = [values!(pressure, nRT: 7.0, ambient: 20.0, inside: "cavities")];
+    conformance("frame", &Pressure, &inside, &frame(), &Options::default()).assert();
 }
 
 #[test]
@@ -96,6 +111,8 @@ fn pressure_in_space() {
     conformance("nearly empty", &Pressure, &adiabatic, &sphere(), &shrunk()).assert();
     let capped = values!(pressure, nRT: 70.0, process: "adiabatic", largest_pressure: 20.0, ambient: 7.0);
     conformance("capped", &Pressure, &[capped], &sphere(), &Options::default()).assert();
+    let inside = [values!(pressure, nRT: 7.0, ambient: 20.0, inside: "cavities")];
+    conformance("hollow", &Pressure, &inside, &hollow(), &Options::default()).assert();
 }
 
 #[test]

@@ -340,7 +340,6 @@ impl<const D: usize> Builder<'_, D> {
         for load in self.blueprint.loads.iter().filter(|l| l.body == number) {
             let nodes = load.select.resolve(&body.mesh, &body.translation);
             let depth = if D == 2 { body.thickness } else { 1.0 };
-            let whole = |facet: &&[u32; D]| facet.iter().all(|n| nodes.contains(n));
             let mut entries: BTreeMap<usize, [f64; D]> = BTreeMap::new();
             match load.kind {
                 LoadKind::Force(force) => {
@@ -355,22 +354,13 @@ impl<const D: usize> Builder<'_, D> {
                     }
                 }
                 LoadKind::Pressure(pressure) => {
-                    let facets: Vec<[usize; D]> = body
-                        .mesh
-                        .facets
-                        .iter()
-                        .filter(whole)
-                        .map(|f| core::array::from_fn(|k| layout.place(f[k] as usize, lane)))
-                        .collect();
-                    if facets.is_empty() {
+                    let places = |side: Vec<u32>| side.iter().map(|&n| layout.place(n as usize, lane)).collect();
+                    let sides: Vec<Vec<usize>> = body.mesh.boundary_sides(&nodes).into_iter().map(places).collect();
+                    if sides.is_empty() {
                         return Err(no_facets(body));
                     }
-                    system.add(Box::new(FollowerPressure {
-                        facets,
-                        pressure: pressure * depth,
-                        curve: load.curve.clone(),
-                        stride: layout.stride(),
-                    }));
+                    let load = FollowerPressure::new(pressure * depth, &load.curve, layout.stride(), sides);
+                    system.add(Box::new(load));
                     continue;
                 }
             }

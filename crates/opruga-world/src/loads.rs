@@ -6,6 +6,7 @@ use opruga_core::state::{Layout, View};
 use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
+use opruga_mesh::{MOST_SIDE_NODES, SidePoint, side_points, side_tangents, side_vector};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -62,15 +63,29 @@ impl<const D: usize> Potential<D> for NodeForces<D> {
     }
 }
 
-/// A pressure on facets along their present inner normal, with a factor over time.
+/// A pressure on sides of cells along their present inner normal, with a factor over time: F_a = −p ∫ Nₐ dA, integrated
+/// without error by the shape functions Nₐ of the sides.
 #[derive(Debug)]
 pub(crate) struct FollowerPressure<const D: usize> {
-    /// Places of the corners of every facet.
-    pub(crate) facets: Vec<[usize; D]>,
     /// Pressure [Pa], times thickness in 2D.
-    pub(crate) pressure: f64,
-    pub(crate) curve: Vec<Vec<f64>>,
-    pub(crate) stride: usize,
+    pressure: f64,
+    curve: Vec<Vec<f64>>,
+    stride: usize,
+    /// Places of the nodes of every side.
+    sides: Vec<Vec<usize>>,
+    /// For each number of nodes, the points of such sides.
+    points: Vec<Vec<SidePoint>>,
+}
+
+impl<const D: usize> FollowerPressure<D> {
+    pub(crate) fn new(pressure: f64, curve: &[Vec<f64>], stride: usize, sides: Vec<Vec<usize>>) -> FollowerPressure<D> {
+        let points = (0..=MOST_SIDE_NODES).map(|n| if n < D { Vec::new() } else { side_points(D, n) }).collect();
+        FollowerPressure { pressure, curve: curve.to_vec(), stride, sides, points }
+    }
+    /// Where the nodes of a side are.
+    fn corners(view: &View<D>, side: &[usize]) -> [[f64; D]; MOST_SIDE_NODES] {
+        core::array::from_fn(|n| side.get(n).map_or([0.0; D], |&place| view.position(place)))
+    }
 }
 
 impl<const D: usize> Potential<D> for FollowerPressure<D> {
@@ -84,38 +99,25 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
         Account::User
     }
     fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
-        for facet in &self.facets {
-            let (mut low, mut high) = (facet[0], facet[0]);
-            for &place in facet {
-                low = low.min(place);
-                high = high.max(place);
+        for side in &self.sides {
+            if let (Some(low), Some(high)) = (side.iter().min(), side.iter().max()) {
+                visit((low / self.stride) as u32, (high / self.stride) as u32);
             }
-            visit((low / self.stride) as u32, (high / self.stride) as u32);
         }
     }
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
-        let strength = -self.pressure * factor(&self.curve, view.time) / D as f64;
-        for facet in &self.facets {
-            if facet.iter().all(|p| !tile.range.contains(p)) {
+        let strength = -self.pressure * factor(&self.curve, view.time);
+        for side in &self.sides {
+            if side.iter().all(|p| !tile.range.contains(p)) {
                 continue;
             }
-            let corner = |n: usize| view.position(facet[n]);
-            // Outward area vector: right of an edge, ½ (b − a) × (c − a) of a triangle.
-            let mut area = [0.0; D];
-            let (a, b) = (corner(0), corner(1));
-            if D == 2 {
-                area[0] = b[1] - a[1];
-                area[1] = a[0] - b[0];
-            } else {
-                let c = corner(D - 1);
-                for d in 0..3 {
-                    let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-                    area[d] = 0.5 * ((b[e] - a[e]) * (c[f] - a[f]) - (b[f] - a[f]) * (c[e] - a[e]));
-                }
-            }
-            for &place in facet {
-                if tile.range.contains(&place) {
-                    push(tile, view, place, area.map(|c| c * strength));
+            let x = FollowerPressure::corners(view, side);
+            for point in &self.points[side.len()] {
+                let area = side_vector(point, &x);
+                for (&place, shape) in side.iter().zip(point.shape) {
+                    if tile.range.contains(&place) {
+                        push(tile, view, place, area.map(|a| a * (strength * point.weight * shape)));
+                    }
                 }
             }
         }
@@ -127,29 +129,31 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
     }
 }
 
-/// The symmetric part of −∂F/∂x of a pressure on facets: exact for a closed surface, whose pressure has a potential.
+/// The symmetric part of −∂F/∂x of a pressure on sides: exact for a closed surface, whose pressure has a potential.
 impl<const D: usize> FollowerPressure<D> {
     fn add_hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
-        let strength = self.pressure * factor(&self.curve, view.time) / D as f64;
-        for facet in &self.facets {
-            // ∂A/∂x of every corner, A the area vector: F = −strength·A on every corner.
-            for (n, &moved) in facet.iter().enumerate() {
-                let mut slope = [[0.0; D]; D];
-                if D == 2 {
-                    let sign = if n == 0 { -1.0 } else { 1.0 };
-                    (slope[0][1], slope[1][0]) = (sign, -sign);
-                } else {
-                    let (p, q) = (view.position(facet[(n + 1) % D]), view.position(facet[(n + 2) % D]));
-                    for d in 0..3 {
-                        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-                        // A = ½ x × (p − q) + …
-                        slope[d][e] = 0.5 * (p[f] - q[f]);
-                        slope[d][f] = -0.5 * (p[e] - q[e]);
+        let strength = 0.5 * self.pressure * factor(&self.curve, view.time);
+        for side in &self.sides {
+            let x = FollowerPressure::corners(view, side);
+            for (m, &moved) in side.iter().enumerate() {
+                for (n, &pushed) in side.iter().enumerate() {
+                    let mut block = [[0.0; D]; D];
+                    for point in &self.points[side.len()] {
+                        let weight = strength * point.weight * point.shape[n];
+                        let by = point.slope[m];
+                        if D == 2 {
+                            block[0][1] += weight * by[0];
+                            block[1][0] -= weight * by[0];
+                        } else {
+                            // ∂(t₀ × t₁)/∂x_m v = (∂N/∂ξ) v × t₁ + (∂N/∂η) t₀ × v.
+                            let t = side_tangents(point, &x);
+                            for d in 0..3 {
+                                let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                                block[d][e] += weight * (by[0] * t[1][f] - by[1] * t[0][f]);
+                                block[d][f] += weight * (by[1] * t[0][e] - by[0] * t[1][e]);
+                            }
+                        }
                     }
-                }
-                for &pushed in facet {
-                    let block: [[f64; D]; D] =
-                        core::array::from_fn(|i| core::array::from_fn(|j| 0.5 * strength * slope[i][j]));
                     sink.block(pushed, moved, block);
                     sink.block(moved, pushed, core::array::from_fn(|i| core::array::from_fn(|j| block[j][i])));
                 }

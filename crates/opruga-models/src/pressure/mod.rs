@@ -22,11 +22,11 @@ pub use spec::SPEC;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::pair::PairTable;
 use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Sink, Views};
-use opruga_core::spec::Spec;
+use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
-use opruga_mesh::Mesh;
+use opruga_mesh::{Mesh, MeshError};
 
 /// The kind `pressure`.
 #[derive(Debug)]
@@ -80,14 +80,13 @@ impl<const D: usize> Model<D> for PressureModel {
             let message = "the body has no closed boundary to hold a gas";
             return Err(BuildError::new("pressure", "model.open_surface", message));
         }
-        let parts = mesh.chambers().map_err(|e| BuildError::new("pressure", "model.open_surface", e.to_string()))?;
+        let parts = chambers(mesh, ingredients.values)?;
         let depth = if D == 2 { ingredients.thickness } else { 1.0 };
         let nodes = mesh.positions.len();
         let mut scratch = 0;
         let mut chambers = Vec::new();
-        for (number, part) in parts.iter().enumerate() {
-            let facets: Vec<[u32; D]> = part.iter().map(|&f| mesh.facets[f as usize]).collect();
-            let rest_volume = opruga_mesh::signed_volume(&facets, &mesh.positions) * depth;
+        for (number, facets) in parts.iter().enumerate() {
+            let rest_volume = opruga_mesh::signed_volume(facets, &mesh.positions) * depth;
             if rest_volume.is_nan() || rest_volume <= 0.0 {
                 let message = format!("chamber {number} encloses {rest_volume} m³; allowed: > 0 (is it inside out?)");
                 return Err(BuildError::new("pressure", "model.volume", message));
@@ -115,6 +114,28 @@ impl<const D: usize> Model<D> for PressureModel {
         let changes = chambers.iter().any(|c: &Chamber| c.gases.iter().any(|g| g.changes));
         Ok(Box::new(Pressure { layout: ingredients.layout, depth, chambers, scratch_len: scratch, changes }))
     }
+}
+
+/// The facets around each chamber, facing outwards.
+fn chambers<const D: usize>(mesh: &Mesh<D>, values: &[&Values]) -> Result<Vec<Vec<[u32; D]>>, BuildError> {
+    let open = |e: MeshError| BuildError::new("pressure", "model.open_surface", e.to_string());
+    let facets = |numbers: &[u32]| -> Vec<[u32; D]> { numbers.iter().map(|&f| mesh.facets[f as usize]).collect() };
+    // Bodies that are stepped together differ in numbers only.
+    if values.first().and_then(|v| v.text("inside")) != Some("cavities") {
+        return Ok(mesh.chambers().map_err(open)?.iter().map(|part| facets(part)).collect());
+    }
+    // A hole of the boundary faces the other way when it is looked at from within.
+    let holes = mesh.components().map_err(open)?.into_iter().filter(|component| component.signed_volume < 0.0);
+    let mut parts: Vec<Vec<[u32; D]>> = holes.map(|hole| facets(&hole.facets)).collect();
+    if parts.is_empty() {
+        let message =
+            "the boundary has no holes, so there is no cavity to hold a gas; `inside = \"boundary\"` fills the body";
+        return Err(BuildError::new("pressure", "model.no_cavity", message));
+    }
+    for facet in parts.iter_mut().flatten() {
+        facet.swap(0, 1);
+    }
+    Ok(parts)
 }
 
 impl Chamber {

@@ -9,9 +9,11 @@ pub const SPEC: Spec = Spec {
     documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, \
 U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − P_a) ∂V/∂x on every node, half of an edge's in 2D and a third of a triangle's in 3D. \
 V is the enclosed area times thickness in 2D, the enclosed volume in 3D, by the divergence theorem; holes count negative by their orientation, \
-and every closed boundary that lies in no other one is a chamber of its own with the same parameters. \
+and every closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs \
+into its cavities: `inside = \"cavities\"`, each a chamber of its own. \
 Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure stays P(V_s), through zero and for a body turned inside out: \
-U remains a function of V with continuous slope, so no energy is made. Without ambient pressure U has no minimum in V. \
+U remains a function of V with continuous slope, so no energy is made; the passage is as short as V_s is small, and a step that does \
+not resolve it misses some per cent of the energy, which the ledger shows. Without ambient pressure U has no minimum in V. \
 Source: Matyka and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
@@ -35,6 +37,14 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             "Pa",
             Default::Number(0.0),
             "Pressure P_a outside; equal to `pressure` it makes the rest shape an equilibrium.",
+        ),
+        Field::new(
+            "inside",
+            Allowed::Choice(&["boundary", "cavities"]),
+            "",
+            Default::Text("boundary"),
+            "Where the gas is: within the boundary, less its holes, as in a balloon; or within the holes of the boundary, as in the \
+             cavity of a solid.",
         ),
         Field::new(
             "process",
