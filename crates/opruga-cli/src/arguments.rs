@@ -326,6 +326,9 @@ pub(crate) struct Verify {
     /// Replace the report that is there
     #[arg(long, requires = "report")]
     pub(crate) force: bool,
+    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge, 0.5 to 2: which cases notice?
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, default_value_t = 1.0, conflicts_with = "list")]
+    pub(crate) stiffer: f64,
     /// Threads, 1 to 256; the results do not depend on them [default: one for each core]
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,

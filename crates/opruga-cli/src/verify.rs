@@ -15,11 +15,14 @@ use std::io::IsTerminal;
 /// Runs the cases; 1 where one fails.
 pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
+    if !(0.5..=2.0).contains(&call.stiffer) {
+        return Err(Failure::range("--stiffer", call.stiffer, "0.5 to 2"));
+    }
     if call.list {
         print_data(&if call.json { list_as_json(&cases) } else { list(&cases) })?;
         return Ok(0);
     }
-    let lab = Lab { simd: simd_from_environment()?, ..Lab::default() };
+    let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer };
     // Whether the report can be written is known before the work.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose()?;

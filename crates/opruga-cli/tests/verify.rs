@@ -56,3 +56,11 @@ fn a_word_that_names_no_case_is_refused_with_the_nearest() {
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(said(&output).contains("did you mean `statics`"), "{}", said(&output));
 }
+
+#[test]
+fn a_wrong_modulus_is_noticed_and_fails() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let call = |factor: &str| opruga(folder.path(), &["verify", "--filter", "simple-shear", "--stiffer", factor]);
+    assert_eq!((code(&call("1")), code(&call("1.01")), code(&call("3"))), (0, 1, 2), "{}", said(&call("1.01")));
+    assert!(printed(&call("1.01")).contains("0 of 1 pass") && said(&call("3")).contains("0.5 to 2"));
+}
