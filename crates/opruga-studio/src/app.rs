@@ -199,10 +199,10 @@ impl Studio {
         let mut wanted = Vec::new();
         self.properties.show(ui, &beside.right, words, &mut self.canvas.selected, &mut wanted);
         for ask in wanted {
-            match difference(ask, &beside.right) {
-                Ok(difference) => self.difference = Some(Request::Differ(difference)),
+            match difference(&ask, &beside.right) {
+                Some(difference) => self.difference = Some(Request::Differ(difference)),
                 // Where bodies are and how many there are is common to both sides.
-                Err(ask) => asks.push(ask),
+                None => asks.push(ask),
             }
         }
         if !ui.input(|i| i.pointer.any_down()) {
@@ -466,21 +466,15 @@ impl Studio {
     }
 }
 
-/// What is asked of both sides, as a difference of the right one; or the same where it concerns both.
-fn difference(ask: Request, shown: &Shown) -> Result<Difference, Request> {
+/// What is asked of both sides, as a difference of the right one; none where it concerns both.
+fn difference(ask: &Request, shown: &Shown) -> Option<Difference> {
     let name = |number: usize| shown.bodies.iter().find(|body| body.number == number).map(|body| body.name.clone());
-    Ok(match ask {
-        Request::Set(path, value) => Difference::Set(path, value),
-        Request::Integrator(None, values) => Difference::Integrator(None, values),
-        Request::Integrator(Some(body), values) => match name(body) {
-            Some(name) => Difference::Integrator(Some(name), values),
-            None => return Err(Request::Integrator(Some(body), values)),
-        },
-        Request::Models(body, models) => match name(body) {
-            Some(name) => Difference::Models(name, models),
-            None => return Err(Request::Models(body, models)),
-        },
-        other => return Err(other),
+    Some(match ask {
+        Request::Set(path, value) => Difference::Set(path.clone(), value.clone()),
+        Request::Integrator(None, values) => Difference::Integrator(None, values.clone()),
+        Request::Integrator(Some(body), values) => Difference::Integrator(Some(name(*body)?), values.clone()),
+        Request::Models(body, models) => Difference::Models(name(*body)?, models.clone()),
+        _ => return None,
     })
 }
 

@@ -109,7 +109,7 @@ impl Canvas {
         }
         // Within sight, also where the body is not.
         let around = around.expand(MARGIN).intersect(rect.shrink(16.0));
-        (around.width() > 4.0 && around.height() > 4.0).then(|| Handles { name, around, space: shown.dimension == 3 })
+        (around.width() > 4.0 && around.height() > 4.0).then_some(Handles { name, around, space: shown.dimension == 3 })
     }
 }
 
