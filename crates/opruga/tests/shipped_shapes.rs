@@ -81,6 +81,47 @@ fn outlines_have_their_areas_pieces_and_holes() {
     }
 }
 
+/// Squares around every outline hold together, and carry it with the area that it was drawn with.
+#[test]
+fn lattices_of_squares_carry_the_outlines_as_they_were_drawn() {
+    let svg = |name: &str| format!("kind = \"svg\", file = \"shapes/{name}.svg\"");
+    let map = |name: &str| {
+        format!("kind = \"map\", file = \"shapes/countries-110m.json\", layer = \"countries\", feature = \"{name}\"")
+    };
+    let word = "kind = \"text\", file = \"shapes/inter-black-subset.otf\", text = \"OPRUGA\"";
+    let union = |shape: String| format!("{shape}, overlap = \"union\"");
+    for (shape, wanted) in [
+        svg("heart"),
+        svg("star"),
+        svg("drop"),
+        union(svg("apple")),
+        union(svg("fish")),
+        map("Italy"),
+        map("South Africa"),
+        word.to_string(),
+    ]
+    .into_iter()
+    .zip(AREAS)
+    {
+        let mesh = plane(&format!("{shape}, spacing = 0.04, size = 1.0, filling = \"lattice\""));
+        assert_eq!(mesh.check(), [], "{shape}");
+        let squares = mesh.cells.quadrilaterals.len() as f64 * 0.04 * 0.04;
+        assert!((mesh.measure().expect("an area").value() / squares - 1.0).abs() < 1e-9, "{shape}");
+        let skin = mesh.skin.as_ref().expect("the outline");
+        let points = skin.positions(&mesh.positions.iter().map(|p| [p[0], p[1], 0.0]).collect::<Vec<_>>());
+        let ring = |ring: &Vec<u32>| -> f64 {
+            let pairs = ring.iter().zip(ring.iter().cycle().skip(1));
+            pairs
+                .map(|(a, b)| (points[*a as usize], points[*b as usize]))
+                .map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0]))
+                .sum()
+        };
+        let drawn: f64 = skin.areas[0].rings.iter().map(ring).sum::<f64>().abs();
+        assert!((drawn / wanted - 1.0).abs() < 2e-3, "{shape}: {drawn}, not {wanted}");
+        assert!(squares > drawn, "{shape}");
+    }
+}
+
 #[test]
 fn surfaces_have_their_volumes_and_euler_characteristics() {
     // Nodes, triangles, V − E + F; the torus has the volume of its polygons, not 2π²Rr².
