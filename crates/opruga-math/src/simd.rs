@@ -158,6 +158,18 @@ mod tests {
                     columns[k].set_part(part, own[k]);
                 }
             }
+            // And back.
+            let mut back = [0.0; ROW * WIDTH];
+            for part in 0..P::PARTS {
+                let mut own = [<P::Part as Lane>::zero(); ROW];
+                for k in 0..ROW {
+                    own[k] = columns[k].part(part);
+                }
+                P::Part::store_rows(own, &mut back[part * P::Part::NUMBERS * ROW..]);
+            }
+            for (row, at) in back.chunks_exact(ROW).zip(order) {
+                assert_eq!(row, &rows[ROW * at as usize..][..ROW]);
+            }
             for (k, column) in columns.iter().enumerate() {
                 let numbers = column.to_array();
                 assert_eq!(numbers, order.map(|row| f64::from(row * 4 + k as u32)));

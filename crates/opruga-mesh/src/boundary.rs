@@ -2,8 +2,8 @@
 
 use crate::edges::ascending;
 use crate::geometry::{HEXAHEDRON_FACES, TETRAHEDRON_FACES};
-use crate::quality::HEXAHEDRON_EDGES;
 use crate::quadratic::{TRIANGLE_SIDES, tetrahedron_parts};
+use crate::quality::HEXAHEDRON_EDGES;
 use crate::{Element, Mesh, MeshError};
 
 /// Six tetrahedra around the diagonal 0–6 of a hexahedron, all of positive volume. On a grid neighbours cut their common face alike.
@@ -182,7 +182,9 @@ impl<const D: usize> Mesh<D> {
                             odd[*other as usize] = Some(!own);
                             open.push(*other);
                         }
-                        Some(parity) if parity == own => return Err(MeshError::OddLoop { edge: ascending(node, *other) }),
+                        Some(parity) if parity == own => {
+                            return Err(MeshError::OddLoop { edge: ascending(node, *other) });
+                        }
                         Some(_) => {}
                     }
                 }

@@ -54,8 +54,8 @@ mod surface;
 mod transform;
 
 pub use adjacency::{Adjacency, node_neighbours};
-pub use boundary::Cut;
 pub use bending::{bends, hinges};
+pub use boundary::Cut;
 pub use chambers::Component;
 pub use check::{Problem, SHORT_EDGE, THIN_ELEMENT};
 pub use crossings::Crossings;
