@@ -1,5 +1,7 @@
 //! `opruga sweep`: many runs of one scene at a time, a table that grows row by row, and what it shows.
 
+mod findings;
+
 use crate::arguments::Sweep as Call;
 use crate::bench::processor_time;
 use crate::failure::{Failure, print_data};
@@ -7,15 +9,14 @@ use crate::interrupt;
 use crate::outputs::counted;
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::{Source, argument};
-use opruga::draw::format_value;
+use findings::Found;
 use opruga::io::overrides;
 use opruga::io::problem::visible;
 use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
 use opruga::io::{Files, SceneError};
-use opruga::sweep::{Axis, Design, Metric, Row, Status, Sweep, head, line, plots, read_rows};
+use opruga::sweep::{Axis, Design, Metric, Row, Sweep, head, line, plots, read_rows};
 use opruga::{Simd, sweep::Point};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{IsTerminal as _, Write as _};
@@ -400,134 +401,4 @@ fn progress_bar(points: usize) -> indicatif::ProgressBar {
     let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} points, {eta} left");
     indicatif::ProgressBar::new(points as u64)
         .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
-}
-
-/// What the table shows.
-struct Found<'a> {
-    sweep: &'a Sweep,
-    rows: &'a [Row],
-    length_unit: &'a str,
-}
-
-/// The lowest and the highest number of a metric, and the rows that have them.
-struct Ends<'a> {
-    lowest: (f64, &'a Row),
-    highest: (f64, &'a Row),
-}
-
-impl Found<'_> {
-    /// The ends of a metric over some rows; none where no row has a number.
-    fn ends<'r>(&self, metric: usize, rows: impl Iterator<Item = &'r Row>) -> Option<Ends<'r>> {
-        rows.filter_map(|row| Some((row.numbers[metric]?, row))).fold(None, |ends, found| match ends {
-            None => Some(Ends { lowest: found, highest: found }),
-            Some(ends) => Some(Ends {
-                lowest: if found.0 < ends.lowest.0 { found } else { ends.lowest },
-                highest: if found.0 > ends.highest.0 { found } else { ends.highest },
-            }),
-        })
-    }
-
-    /// The rows in which a parameter varies; one after the other each has its own.
-    fn rows_of(&self, axis: usize) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(move |row| row.values[axis].is_some())
-    }
-
-    fn failed(&self) -> Vec<(&str, usize)> {
-        let mut counts: Vec<(&str, usize)> = Vec::new();
-        for row in self.rows.iter().filter(|row| row.status != Status::Done) {
-            match counts.iter_mut().find(|(code, _)| *code == row.status.word()) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((row.status.word(), 1)),
-            }
-        }
-        counts
-    }
-
-    fn to_json(&self) -> serde_json::Value {
-        let end = |(value, row): (f64, &Row)| {
-            let at = self.sweep.axes.iter().zip(&row.values);
-            let at: serde_json::Map<_, _> =
-                at.filter_map(|(axis, value)| Some((axis.path.clone(), value.clone()?.into()))).collect();
-            json!({"value": value, "point": row.number, "at": at})
-        };
-        let ends = |ends: Ends<'_>| json!({"lowest": end(ends.lowest), "highest": end(ends.highest)});
-        let metrics = self.sweep.metrics.iter().enumerate().map(|(place, metric)| {
-            let mut object = self.ends(place, self.rows.iter()).map_or_else(|| json!({}), ends);
-            object["name"] = metric.name.clone().into();
-            object["unit"] = metric.unit(self.length_unit).into();
-            object["numbers"] = self.rows.iter().filter(|row| row.numbers[place].is_some()).count().into();
-            if self.sweep.design == Design::Each {
-                let of = (0..self.sweep.axes.len()).map(|axis| {
-                    let mut object = self.ends(place, self.rows_of(axis)).map_or_else(|| json!({}), ends);
-                    object["parameter"] = self.sweep.axes[axis].path.clone().into();
-                    object
-                });
-                object["parameters"] = of.collect::<Vec<_>>().into();
-            }
-            object
-        });
-        let failed = self.failed();
-        json!({
-            "schema": 1,
-            "scene": self.sweep.name,
-            "parameters": self.sweep.axes.iter().map(|axis| &axis.path).collect::<Vec<_>>(),
-            "points": self.rows.len(),
-            "done": self.rows.iter().filter(|row| row.status == Status::Done).count(),
-            "failed": failed.iter().map(|(code, count)| json!({"code": code, "count": count})).collect::<Vec<_>>(),
-            "metrics": metrics.collect::<Vec<_>>(),
-        })
-    }
-
-    /// A line for a metric over some rows.
-    fn say(
-        &self,
-        f: &mut core::fmt::Formatter<'_>,
-        name: &str,
-        metric: usize,
-        axis: Option<usize>,
-    ) -> core::fmt::Result {
-        let unit = self.sweep.metrics[metric].unit(self.length_unit);
-        let ends = match axis {
-            Some(axis) => self.ends(metric, self.rows_of(axis)),
-            None => self.ends(metric, self.rows.iter()),
-        };
-        let Some(Ends { lowest, highest }) = ends else { return writeln!(f, "  {name:<30} no numbers") };
-        let at = |row: &Row| {
-            let named = self.sweep.axes.iter().zip(&row.values);
-            let values: Vec<String> = named
-                .filter_map(|(axis, value)| {
-                    let value = value.as_deref()?;
-                    let value = opruga::sweep::number(value).map_or_else(|| visible(value), format_value);
-                    let word = axis.path.rsplit('.').next().unwrap_or_default();
-                    Some(format!("{} = {value}", visible(word)))
-                })
-                .collect();
-            values.join(", ")
-        };
-        let (low, high) = (format_value(lowest.0), format_value(highest.0));
-        writeln!(f, "  {name:<30} {low:>8} to {high:>8} {unit:<4} (at {}; at {})", at(lowest.1), at(highest.1))
-    }
-}
-
-impl core::fmt::Display for Found<'_> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let done = self.rows.iter().filter(|row| row.status == Status::Done).count();
-        writeln!(f, "{}: {} of {} done", self.sweep.name, done, counted(self.rows.len() as u64, "point", "points"))?;
-        for (code, count) in self.failed() {
-            writeln!(f, "  {count} × {code}")?;
-        }
-        if self.sweep.design == Design::Each {
-            for (axis, about) in self.sweep.axes.iter().enumerate() {
-                writeln!(f, "{}", visible(&about.path))?;
-                for (place, metric) in self.sweep.metrics.iter().enumerate() {
-                    self.say(f, &metric.name, place, Some(axis))?;
-                }
-            }
-            return Ok(());
-        }
-        for (place, metric) in self.sweep.metrics.iter().enumerate() {
-            self.say(f, &metric.name, place, None)?;
-        }
-        Ok(())
-    }
 }

@@ -1,7 +1,8 @@
 //! The pass over a tile of nodes.
 
+use crate::bounds::Bounds;
 use crate::collider::{Collider, Law, Part};
-use crate::facets::Facets;
+use crate::facet_contacts::{Placed, hold_back_by_facets};
 use crate::motion::{Carry, Frame, Pose};
 use crate::picture::{Picture, picture};
 use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
@@ -148,7 +149,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
 const ROUNDS: usize = 4;
 
 /// Which nodes of a tile have been held back in this step: a bit each.
-struct Held([u8; TILE / WIDTH]);
+pub(crate) struct Held(pub(crate) [u8; TILE / WIDTH]);
 
 impl Held {
     /// The eight nodes from `k` on: 1 if held, else 0.
@@ -192,78 +193,6 @@ fn hold_back<const D: usize>(
         Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
         Part::Facets(facets) => {
             hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used)
-        }
-    }
-}
-
-/// The box around all nodes of a tile, before and after their free motion.
-struct Bounds<'a, 'm, const D: usize> {
-    moved: &'a Moved<'m, D>,
-    used: usize,
-}
-
-impl<const D: usize> Work for Bounds<'_, '_, D> {
-    type Output = [[f64; D]; 2];
-    #[inline(always)]
-    fn run<P: Pack>(self) -> [[f64; D]; 2] {
-        let length = self.moved.range.len();
-        let mut x = [&[] as &[f64]; D];
-        for d in 0..D {
-            x[d] = &self.moved.x.0[d];
-        }
-        let x = Strip::<D>::new(&x, self.moved.range.start, length);
-        let before = Strip::<D>::new(&self.moved.before, 0, length);
-        // Positions before and after, of even and of odd packs, do not wait for one another.
-        let mut ranges = [Range::<P, D>::empty(), Range::empty(), Range::empty(), Range::empty()];
-        let mut k = 0;
-        while k + 2 * WIDTH <= self.used {
-            ranges[0].include(&lanes!(P, d => x.load::<P>(d, k)));
-            ranges[1].include(&lanes!(P, d => before.load::<P>(d, k)));
-            ranges[2].include(&lanes!(P, d => x.load::<P>(d, k + WIDTH)));
-            ranges[3].include(&lanes!(P, d => before.load::<P>(d, k + WIDTH)));
-            k += 2 * WIDTH;
-        }
-        while k < self.used {
-            // Padding takes the place of the first node of the pack.
-            let nodes = P::first(self.used - k);
-            for (range, column) in [(0, &x), (1, &before)] {
-                ranges[range].include(&lanes!(P, d => {
-                    let pack = column.load::<P>(d, k);
-                    P::select(nodes, pack, P::splat(pack.to_array()[0]))
-                }));
-            }
-            k += WIDTH;
-        }
-        let mut out = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
-        for d in 0..D {
-            for range in &ranges {
-                let (low, high) = (range.low[d].to_array(), range.high[d].to_array());
-                for l in 0..WIDTH {
-                    out[0][d] = low[l].smaller(out[0][d]);
-                    out[1][d] = high[l].larger(out[1][d]);
-                }
-            }
-        }
-        out
-    }
-}
-
-/// The least and greatest coordinates.
-struct Range<P, const D: usize> {
-    low: [P; D],
-    high: [P; D],
-}
-
-impl<P: Pack, const D: usize> Range<P, D> {
-    #[inline(always)]
-    fn empty() -> Self {
-        Range { low: [P::splat(f64::INFINITY); D], high: [P::splat(f64::NEG_INFINITY); D] }
-    }
-    #[inline(always)]
-    fn include(&mut self, x: &[P; D]) {
-        for d in 0..D {
-            self.low[d] = x[d].smaller(self.low[d]);
-            self.high[d] = x[d].larger(self.high[d]);
         }
     }
 }
@@ -475,72 +404,4 @@ fn look_for_entries<T: Shape<D>, const D: usize>(
             }
         }
     }
-}
-
-/// Facets where they are at the end of the step.
-pub(crate) struct Placed<'a, const D: usize> {
-    pub(crate) facets: &'a Facets<D>,
-    pub(crate) pose: &'a Pose<D>,
-    pub(crate) margin: f64,
-}
-
-impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
-    fn find(&self, x: &[f64; D], before: &[f64; D], reach: f64) -> (f64, [f64; D]) {
-        let (x, before) = (self.pose.unplace(x), self.pose.unplace(before));
-        let (gap, normal) = self.facets.touch(&x, &before, self.margin, reach);
-        (gap, self.pose.direct(&normal))
-    }
-}
-
-/// Facets against the nodes of a tile, one node at a time.
-fn hold_back_by_facets<const D: usize>(
-    surface: &Placed<D>,
-    law: &Law,
-    carry: &Carry<D>,
-    moved: &mut Moved<D>,
-    held: &mut Held,
-    used: usize,
-) -> bool {
-    let mut touched = false;
-    for k in 0..used {
-        let place = moved.range.start + k;
-        let (x, v) = (moved.x.at(place), moved.v.at(place));
-        let before: [f64; D] = carry.along(&lanes!(f64, d => moved.before[d][k]));
-        let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
-        let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
-        if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
-            continue;
-        }
-        let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
-        if gap == f64::INFINITY {
-            continue;
-        }
-        let mass = moved.mass.at(place);
-        let obstacle = surface.pose.velocity_at(&x);
-        let bit = 1u8 << (k % WIDTH);
-        let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
-        let meeting =
-            Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
-        if !meets(law, &meeting) {
-            continue;
-        }
-        touched = true;
-        if let Some(bits) = held.0.get_mut(k / WIDTH) {
-            *bits |= bit;
-        }
-        let mut parting = respond(surface, law, true, &meeting);
-        // Pushed out of one facet and through another: the motion of this step is undone.
-        if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
-            parting.x = before;
-        }
-        let against = dot(&lanes!(f64, d => moved.force[d][k]), &subtract(&x, &parting.x));
-        moved.x.set(place, parting.x);
-        moved.v.set(place, parting.v);
-        let lane = place % WIDTH;
-        moved.loss_contact[lane] += parting.loss_contact;
-        moved.loss_friction[lane] += parting.loss_friction;
-        moved.work_colliders[lane] += parting.work;
-        moved.work_correction[lane] += against;
-    }
-    touched
 }

@@ -40,8 +40,10 @@
 // Units stand in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod bounds;
 mod collider;
 mod contacts;
+mod facet_contacts;
 mod facets;
 mod hull;
 mod motion;

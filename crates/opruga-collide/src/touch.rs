@@ -1,7 +1,7 @@
 //! One node and the surfaces that it has come to: what implicit integrators ask.
 
 use crate::collider::{Collider, Law, Part};
-use crate::contacts::Placed;
+use crate::facet_contacts::Placed;
 use crate::motion::{Carry, Frame};
 use crate::response::{Surface, rounding};
 use crate::shape::{Shape, entry};

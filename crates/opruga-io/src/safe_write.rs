@@ -109,22 +109,29 @@ impl Target for File {
 ///
 /// # Errors
 /// As [`safe_write`].
-pub fn safe_write_through<W: Target>(
+pub fn safe_write_through<'a, W: Target + 'a>(
     path: &Path,
     force: bool,
-    wrap: impl FnOnce(File) -> W,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    wrap: impl FnOnce(File) -> W + 'a,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a,
 ) -> Result<u64, WriteError> {
-    write_aside(path, force, wrap, fill, || Ok(()))
+    write_aside(path, force, Box::new(|file| Box::new(wrap(file))), Box::new(fill), Box::new(|| Ok(())))
 }
 
+/// Makes a file into what its bytes go through.
+type Wrap<'a> = Box<dyn FnOnce(File) -> Box<dyn Target + 'a> + 'a>;
+/// Writes what a file shall hold.
+type Fill<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+/// What is done before the renaming.
+type Last<'a> = Box<dyn FnOnce() -> Result<(), WriteError> + 'a>;
+
 /// Writes and syncs aside, then does what must come last, then renames.
-fn write_aside<W: Target>(
+fn write_aside<'a>(
     path: &Path,
     force: bool,
-    wrap: impl FnOnce(File) -> W,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    last: impl FnOnce() -> Result<(), WriteError>,
+    wrap: Wrap<'a>,
+    fill: Fill<'a>,
+    last: Last<'a>,
 ) -> Result<u64, WriteError> {
     if path.is_dir() {
         return Err(WriteError::new("write.failed", path, "this is a folder"));
@@ -170,11 +177,7 @@ fn write_aside<W: Target>(
 }
 
 /// Everything up to the renaming; an error comes with the number of bytes that reached the file.
-fn fill_and_sync<W: Target>(
-    file: &File,
-    wrap: impl FnOnce(File) -> W,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<u64, (u64, io::Error)> {
+fn fill_and_sync<'a>(file: &File, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<u64, (u64, io::Error)> {
     let inner = wrap(file.try_clone().map_err(|e| (0, e))?);
     let mut writer = BufWriter::with_capacity(1 << 16, Counted { inner, bytes: 0 });
     let filled = fill(&mut writer).and_then(|()| writer.flush());
@@ -414,7 +417,8 @@ impl OutputFolder {
         second: &str,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<u64, WriteError> {
-        write_aside(&self.path(name), true, |file| file, fill, || self.keep(name, second))
+        let last = Box::new(|| self.keep(name, second));
+        write_aside(&self.path(name), true, Box::new(|file| Box::new(file)), Box::new(fill), last)
     }
 
     /// Gives a file of the folder a second name; does nothing where there is no such file.

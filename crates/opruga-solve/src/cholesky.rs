@@ -39,6 +39,14 @@ impl Cholesky {
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         self.factor = None;
         let anew = self.scalars.take(matrix, true);
+        let factor = self.factored(anew)?;
+        self.parts.update(matrix, true, |x| solve(&factor, x))?;
+        self.factor = Some(factor);
+        Ok(())
+    }
+
+    /// The factor of the scalars, of no dimension of its own: compiled here, once.
+    fn factored(&mut self, anew: bool) -> Result<Llt<usize, f64>, Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
         let symbolic = match &self.symbolic {
@@ -47,11 +55,7 @@ impl Cholesky {
         };
         self.symbolic = Some(symbolic.clone());
         let values = SparseColMatRef::new(pattern, &self.scalars.values);
-        let factor = Llt::try_new_with_symbolic(symbolic, values, Side::Lower).map_err(|_| Indefinite)?;
-
-        self.parts.update(matrix, true, |x| solve(&factor, x))?;
-        self.factor = Some(factor);
-        Ok(())
+        Llt::try_new_with_symbolic(symbolic, values, Side::Lower).map_err(|_| Indefinite)
     }
 
     /// Solves A x = b in place.

@@ -37,6 +37,14 @@ impl Factors {
     pub fn update<const D: usize>(&mut self, matrix: &BlockMatrix<D>) -> Result<(), Indefinite> {
         self.factors = None;
         let anew = self.scalars.take(matrix, false);
+        let factors = self.factored(anew)?;
+        self.parts.update(matrix, false, |x| solve(&factors, x))?;
+        self.factors = Some(factors);
+        Ok(())
+    }
+
+    /// The factors of the scalars, of no dimension of their own: compiled here, once.
+    fn factored(&mut self, anew: bool) -> Result<Lu<usize, f64>, Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);
         let symbolic = match &self.symbolic {
@@ -45,10 +53,7 @@ impl Factors {
         };
         self.symbolic = Some(symbolic.clone());
         let values = SparseColMatRef::new(pattern, &self.scalars.values);
-        let factors = Lu::try_new_with_symbolic(symbolic, values).map_err(|_| Indefinite)?;
-        self.parts.update(matrix, false, |x| solve(&factors, x))?;
-        self.factors = Some(factors);
-        Ok(())
+        Lu::try_new_with_symbolic(symbolic, values).map_err(|_| Indefinite)
     }
 
     /// Solves A x = b in place; says whether every number that comes out is finite.

@@ -57,15 +57,7 @@ const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, in
                      world.largest_force, world.largest_velocity, world.largest_distance, time.substeps";
 
 impl<const D: usize> World<D> {
-    /// Changes a parameter: `body.NAME.models.KIND.FIELD`, `body.NAME.integrator.FIELD`, `integrator.FIELD`, `collider.NUMBER.FIELD`, `world.gravity`,
-    /// `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `time.substeps`.
-    ///
-    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be named by its number. The
-    /// stable step is estimated anew.
-    ///
-    /// # Errors
-    /// [`WorldError`] says what is wrong; the world stays as it was.
-    pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
+    pub(crate) fn set_here(&mut self, path: &str, value: Value) -> Result<(), WorldError> {
         self.set_now(path, value.clone())?;
         self.write_down(|| Input::Set { path: path.to_string(), value });
         Ok(())

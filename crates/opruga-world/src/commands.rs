@@ -63,11 +63,7 @@ impl<const D: usize> Action<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// Gives a command; it begins at its time, at the beginning of a frame.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if it names a body that is not there.
-    pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
+    pub(crate) fn command_here(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
             && !self.alive.get(body).copied().unwrap_or(false)
         {
@@ -78,13 +74,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Gives a command that begins now, as if the scene had held it from the start; returns its number.
-    ///
-    /// Commands of the scene that are due begin before it. The number stays the same until the world is built anew.
-    ///
-    /// # Errors
-    /// [`WorldError`] if its time is not that of the coming frame or if it is refused; then it was never given.
-    pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
+    pub(crate) fn act_here(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
         let (at, now) = (command.at, self.time());
         if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
             let message = format!("the command begins at {at} s, and the world is at {now} s");
@@ -103,13 +93,7 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    /// Leads the pointer of a drag: adds a row `[t, x, y(, z)]` to the end of its path.
-    ///
-    /// What was stepped before does not change if the row lies behind the frame that comes next.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if the command is no drag, the time does not rise, or a number is not finite.
-    pub fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
+    pub(crate) fn lead_here(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError> {
         let refuse = |message: &str| WorldError::Path { path: format!("command {number}"), message: message.into() };
         let running = self.running.get_mut(number).ok_or_else(|| refuse("there is no such command"))?;
         let Action::Drag { path, .. } = &mut running.command.action else {
@@ -124,11 +108,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Ends a command at a time [s] instead of its own.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if there is no such command, or it would not end after its beginning.
-    pub fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
+    pub(crate) fn finish_here(&mut self, number: usize, until: f64) -> Result<(), WorldError> {
         match self.running.get_mut(number) {
             Some(running) if until > running.command.at => {
                 running.command.until = until;
@@ -324,8 +304,7 @@ impl<const D: usize> World<D> {
         island.system.equip(&*island.integrator);
     }
 
-    /// Pulls that act at present: held point, pointer, force [N].
-    pub fn pulls(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
+    pub(crate) fn pulls_here(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
         let mut out = Vec::new();
         for running in &self.running {
             let Progress::Acting { held, .. } = &running.progress else { continue };

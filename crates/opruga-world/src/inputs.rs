@@ -65,11 +65,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Does again what a program did.
-    ///
-    /// # Errors
-    /// Those of the call that it stands for; the world stays as it was.
-    pub fn repeat(&mut self, input: &Input<D>) -> Result<(), WorldError> {
+    pub(crate) fn repeat_here(&mut self, input: &Input<D>) -> Result<(), WorldError> {
         match input {
             Input::Command(command) => self.command(command.clone()),
             Input::Set { path, value } => self.set(path, value.clone()),

@@ -5,6 +5,7 @@ mod build;
 mod bytes;
 mod changes;
 mod commands;
+mod compiled_once;
 pub mod error;
 mod inputs;
 mod island;

@@ -44,12 +44,7 @@ impl<const D: usize> Mode<D> {
 const FREE: f64 = 1e-9;
 
 impl<const D: usize> World<D> {
-    /// The lowest `count` natural modes of a body about its present state, rigid ones first.
-    ///
-    /// # Errors
-    /// [`WorldError`] if there is no such body, if a model lacks second derivatives or refuses the state, or if no
-    /// frequency can be found since a node without mass can move.
-    pub fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
+    pub(crate) fn modes_here(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
         if self.handle(body).is_none() {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }

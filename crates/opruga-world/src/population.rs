@@ -12,11 +12,7 @@ use opruga_math::Lane;
 use std::collections::BTreeMap;
 
 impl<const D: usize> World<D> {
-    /// Adds a body; returns its number.
-    ///
-    /// # Errors
-    /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
-    pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
+    pub(crate) fn add_body_here(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
         let kept = body.clone();
         let number = self.include(body, Source::Program(self.added.len()))?;
         self.write_down(|| Input::Add { name: kept.name.clone() });
@@ -46,11 +42,7 @@ impl<const D: usize> World<D> {
         Ok(number)
     }
 
-    /// Takes a body away.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if there is no body of that name.
-    pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> {
+    pub(crate) fn remove_body_here(&mut self, name: &str) -> Result<(), WorldError> {
         self.remove_now(name)?;
         self.write_down(|| Input::Remove { name: name.to_string() });
         Ok(())

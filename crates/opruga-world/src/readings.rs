@@ -91,10 +91,7 @@ impl<const D: usize> World<D> {
         let system = &self.islands[island].system;
         system.mass.at(system.layout.place(node as usize, lane))
     }
-    /// What models say of a body: `volume`, `pressure` and others.
-    ///
-    /// A body that is not there says nothing.
-    pub fn readings(&mut self, body: usize) -> Vec<(&'static str, f64)> {
+    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<(&'static str, f64)> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -102,10 +99,7 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].readings(lane, time)
     }
-    /// Stress and volume ratio of the cells of a body of finite elements, in the order of its cells.
-    ///
-    /// A body that is not there, or has none, says nothing.
-    pub fn cell_states(&self, body: usize) -> Vec<CellState> {
+    pub(crate) fn cell_states_here(&self, body: usize) -> Vec<CellState> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -121,8 +115,7 @@ impl<const D: usize> World<D> {
     pub fn rest_volume(&self, body: usize) -> f64 {
         rest_volume(&self.blueprint.bodies[body])
     }
-    /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there.
-    pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> {
+    pub(crate) fn probe_here(&mut self, number: usize) -> Vec<(String, f64)> {
         let probe = self.blueprint.probes[number].clone();
         let there = self.handle(probe.body).is_some();
         let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
@@ -151,10 +144,7 @@ impl<const D: usize> World<D> {
         }
         sum.map(|s| s / nodes.len().max(1) as f64)
     }
-    /// The forces of the models of one account on the nodes of a body [N]; none: of all models, gravity included.
-    ///
-    /// Empty where the body is not there or a model refuses the state.
-    pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
+    pub(crate) fn node_forces_here(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
@@ -167,8 +157,7 @@ impl<const D: usize> World<D> {
         let Ok(forces) = forces else { return Vec::new() };
         (0..system.nodes).map(|node| forces.at(system.layout.place(node, lane))).collect()
     }
-    /// The sum of the forces that pins exert on nodes [N].
-    pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
+    pub(crate) fn reaction_here(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
         let (island, lane) = self.place[body];
         let system = &mut self.islands[island].system;
         let mut sum = [0.0; D];
@@ -184,8 +173,7 @@ impl<const D: usize> World<D> {
         }
         sum
     }
-    /// Warnings so far, with counts.
-    pub fn warnings(&self) -> Vec<Warning> {
+    pub(crate) fn warnings_here(&self) -> Vec<Warning> {
         let mut out = self.warnings.clone();
         let mut count = |code: &str, message: &str, count: u64| {
             if count > 0 {
@@ -233,8 +221,7 @@ impl<const D: usize> World<D> {
         }
         out
     }
-    /// A 64-bit hash (FNV-1a) over the little-endian bits of all positions, then velocities, body by body in node order.
-    pub fn state_hash(&self) -> u64 {
+    pub(crate) fn state_hash_here(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut feed = |number: f64| {
             for byte in number.to_le_bytes() {
@@ -254,8 +241,7 @@ impl<const D: usize> World<D> {
         }
         hash
     }
-    /// Bytes on the heap for the state and the models of all bodies.
-    pub fn heap_bytes(&self) -> usize {
+    pub(crate) fn heap_bytes_here(&self) -> usize {
         let shared: usize = self.workspaces.iter().map(|workspace| lock(workspace).heap_bytes()).sum();
         shared + self.islands.iter().map(Island::heap_bytes).sum::<usize>()
     }

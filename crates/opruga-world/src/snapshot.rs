@@ -27,8 +27,7 @@ impl<const D: usize> World<D> {
         out
     }
 
-    /// Appends the bytes of [`World::snapshot`]: for those who take one every frame.
-    pub fn snapshot_into(&self, out: &mut Vec<u8>) {
+    pub(crate) fn snapshot_into_here(&self, out: &mut Vec<u8>) {
         let mut out = Writer(out);
         out.count(VERSION);
         out.count(D as u64);
@@ -109,12 +108,7 @@ impl<const D: usize> World<D> {
         out.number(s.residual);
     }
 
-    /// Goes to the state of a snapshot of a world with the same blueprint. Commands that a program has given since then are
-    /// forgotten.
-    ///
-    /// # Errors
-    /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let commands = self.running.iter().map(Running::anew).collect();
         self.restored(bytes, commands, false)
     }
@@ -125,16 +119,19 @@ impl<const D: usize> World<D> {
     /// # Errors
     /// As [`World::restore`].
     pub fn restore_with(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
-        let commands = self.blueprint.commands.iter().chain(given).cloned().map(Running::waiting).collect();
+        self.restore_given(bytes, given.to_vec())
+    }
+
+    pub(crate) fn restore_given_here(
+        &mut self,
+        bytes: &[u8],
+        given: Vec<CommandBlueprint<D>>,
+    ) -> Result<(), WorldError> {
+        let commands = self.blueprint.commands.iter().cloned().chain(given).map(Running::waiting).collect();
         self.restored(bytes, commands, false)
     }
 
-    /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
-    /// be others, and more or fewer.
-    ///
-    /// # Errors
-    /// As [`World::restore`].
-    pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+    pub(crate) fn rewind_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let commands = self.running.iter().map(Running::anew).collect();
         self.restored(bytes, commands, true)
     }

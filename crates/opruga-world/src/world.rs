@@ -115,19 +115,7 @@ impl<const D: usize> core::fmt::Debug for World<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// Builds a world from a blueprint with the models and integrators of this library.
-    ///
-    /// # Errors
-    /// [`WorldError`] where a model or obstacle refuses, or the step is unstable.
-    pub fn new(blueprint: Blueprint<D>, options: Options) -> Result<World<D>, WorldError> {
-        World::with_registry(blueprint, options, Arc::new(Registry::default()))
-    }
-
-    /// Builds a world with a registry that a user has extended.
-    ///
-    /// # Errors
-    /// As [`World::new`].
-    pub fn with_registry(
+    pub(crate) fn build(
         blueprint: Blueprint<D>,
         options: Options,
         registry: Arc<Registry<D>>,
@@ -191,11 +179,7 @@ impl<const D: usize> World<D> {
         (self.energy, self.momentum) = self.flows.ledger(self.islands.iter().map(|i| (&i.stock, &i.survey)));
     }
 
-    /// Steps through one frame.
-    ///
-    /// # Errors
-    /// [`WorldError`] names body, node and substep; the world is at its last good frame.
-    pub fn frame(&mut self) -> Result<(), WorldError> {
+    pub(crate) fn frame_here(&mut self) -> Result<(), WorldError> {
         self.run_commands()?;
         let plan = FramePlan {
             colliders: self.colliders.as_ref(),
@@ -279,11 +263,7 @@ impl<const D: usize> World<D> {
     pub fn threads(&self) -> usize {
         self.options.threads
     }
-    /// Moves a node and gives it a velocity, from outside of the physics.
-    ///
-    /// # Errors
-    /// [`WorldError::Path`] if there is no such node, or a number is not finite; the world stays as it was.
-    pub fn place_node(
+    pub(crate) fn place_node_here(
         &mut self,
         body: usize,
         node: u32,
@@ -312,22 +292,7 @@ impl<const D: usize> World<D> {
         self.write_down(|| Input::Place { body, node, position, velocity });
         Ok(())
     }
-    /// Adds a force on every node of a body by a user's law of (node, position, velocity, time).
-    ///
-    /// The law runs while the world is stepped, on any thread, so it cannot change the world; this does not compile:
-    ///
-    /// ```compile_fail,E0502
-    /// # use opruga_world::World; use std::sync::Arc;
-    /// fn removes<'w>(world: &'w mut World<2>) {
-    ///     let mut law = |_: u32, _: [f64; 2], _: [f64; 2], _: f64| { let _ = world.remove_body("ball"); [0.0; 2] };
-    ///     let _ = world.frame();
-    ///     law(0, [0.0; 2], [0.0; 2], 0.0);
-    /// }
-    /// ```
-    ///
-    /// # Errors
-    /// [`WorldError`] if there is no such body or its island cannot be built anew; the world stays as it was.
-    pub fn add_force(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
+    pub(crate) fn add_force_here(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
         if self.handle(body).is_none() {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }

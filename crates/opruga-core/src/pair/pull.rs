@@ -1,6 +1,7 @@
 //! Pairs outside of long runs, evaluated node by node.
 
-use super::{PairLaw, PairTable, law_parameters};
+use super::force::law_parameters;
+use super::{PairLaw, PairTable};
 use crate::state::{At, Layout, View, load};
 use crate::tile::Tile;
 use opruga_math::{Pack, WIDTH, Work, lanes};

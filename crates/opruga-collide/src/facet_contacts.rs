@@ -1,0 +1,78 @@
+//! Nodes against obstacles of many facets: one node after the other, by a tree.
+
+use crate::collider::Law;
+use crate::contacts::Held;
+use crate::facets::Facets;
+use crate::motion::{Carry, Pose};
+use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
+use crate::vector::{dot, subtract};
+use opruga_core::contacts::Moved;
+use opruga_math::{WIDTH, lanes};
+
+/// Facets where they are at the end of the step.
+pub(crate) struct Placed<'a, const D: usize> {
+    pub(crate) facets: &'a Facets<D>,
+    pub(crate) pose: &'a Pose<D>,
+    pub(crate) margin: f64,
+}
+
+impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
+    fn find(&self, x: &[f64; D], before: &[f64; D], reach: f64) -> (f64, [f64; D]) {
+        let (x, before) = (self.pose.unplace(x), self.pose.unplace(before));
+        let (gap, normal) = self.facets.touch(&x, &before, self.margin, reach);
+        (gap, self.pose.direct(&normal))
+    }
+}
+
+/// Facets against the nodes of a tile, one node at a time.
+pub(crate) fn hold_back_by_facets<const D: usize>(
+    surface: &Placed<D>,
+    law: &Law,
+    carry: &Carry<D>,
+    moved: &mut Moved<D>,
+    held: &mut Held,
+    used: usize,
+) -> bool {
+    let mut touched = false;
+    for k in 0..used {
+        let place = moved.range.start + k;
+        let (x, v) = (moved.x.at(place), moved.v.at(place));
+        let before: [f64; D] = carry.along(&lanes!(f64, d => moved.before[d][k]));
+        let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
+        let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
+        if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
+            continue;
+        }
+        let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
+        if gap == f64::INFINITY {
+            continue;
+        }
+        let mass = moved.mass.at(place);
+        let obstacle = surface.pose.velocity_at(&x);
+        let bit = 1u8 << (k % WIDTH);
+        let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+        let meeting =
+            Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
+        if !meets(law, &meeting) {
+            continue;
+        }
+        touched = true;
+        if let Some(bits) = held.0.get_mut(k / WIDTH) {
+            *bits |= bit;
+        }
+        let mut parting = respond(surface, law, true, &meeting);
+        // Pushed out of one facet and through another: the motion of this step is undone.
+        if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
+            parting.x = before;
+        }
+        let against = dot(&lanes!(f64, d => moved.force[d][k]), &subtract(&x, &parting.x));
+        moved.x.set(place, parting.x);
+        moved.v.set(place, parting.v);
+        let lane = place % WIDTH;
+        moved.loss_contact[lane] += parting.loss_contact;
+        moved.loss_friction[lane] += parting.loss_friction;
+        moved.work_colliders[lane] += parting.work;
+        moved.work_correction[lane] += against;
+    }
+    touched
+}

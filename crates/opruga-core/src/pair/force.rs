@@ -1,0 +1,391 @@
+//! Forces of pairs on the nodes of a tile, and sums over pairs.
+
+use super::chain::Chain;
+use super::pull::Gather;
+use super::{PairLaw, PairTable, PairTerm, slot_of, within};
+use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
+use crate::tile::{TILE, Tile};
+use core::ops::Range;
+use opruga_math::{Pack, Simd, Strip, StripMut, WIDTH, Work, lanes};
+
+impl PairTable {
+    /// Adds the forces of all pairs on the nodes of a tile.
+    pub fn add_force<L: PairLaw<D>, const D: usize>(&self, simd: Simd, law: L, view: &View<D>, tile: &mut Tile<D>) {
+        let stride = self.layout.stride();
+        let (start, end) = (tile.range.start, tile.range.end);
+        let mut power = [0.0; WIDTH];
+        // A tile of the plan knows its runs; any other range looks at all.
+        let numbered = start % TILE == 0 && end <= start + TILE;
+        let mine = if numbered {
+            &self.tile_runs[self.runs_from(start / TILE)..self.runs_from(start / TILE + 1)]
+        } else {
+            &[]
+        };
+        for k in 0..if numbered { mine.len() } else { self.runs.len() } {
+            let run = self.runs[if numbered { mine[k] as usize } else { k }];
+            let (a, b) = (run.a as usize * stride, run.b as usize * stride);
+            let (first, length) = (run.first as usize * stride, run.count as usize * stride);
+            // The places of the run whose first (second) node lies in the tile.
+            let own = within(a, length, start, end);
+            let other = within(b, length, start, end);
+            if own.is_empty() && other.is_empty() {
+                continue;
+            }
+            if run.b == run.a + 1 && length > WIDTH {
+                Chain { law, view, a, first, length, layout: self.layout }.add(simd, tile, &mut power);
+                continue;
+            }
+            tile.settle(simd);
+            if length == 1 {
+                simd.run(Alone { law, view, nodes: [a, b], number: first, tile, power: &mut power });
+                continue;
+            }
+            if length <= WIDTH {
+                let place = [a, b, first, length];
+                simd.run(Short { table: self, law, view, place, own, other, tile, power: &mut power });
+                continue;
+            }
+            let place = [a, b, first];
+            let parts = if other.start <= own.end && own.start <= other.end {
+                [(own.start.min(other.start)..own.end.max(other.end), own, other), (0..0, 0..0, 0..0)]
+            } else {
+                [(own.clone(), own, 0..0), (other.clone(), 0..0, other)]
+            };
+            for (all, own, other) in parts {
+                simd.run(Long { table: self, law, view, place, all, own, other, tile, power: &mut power });
+            }
+        }
+        tile.settle(simd);
+        if let Some(pull) = &self.pull {
+            simd.run(Gather { table: self, pull, law, view, tile, power: &mut power });
+        }
+        if L::DAMPED {
+            for l in 0..WIDTH {
+                tile.power[l] += power[l];
+            }
+        }
+    }
+
+    /// Evaluates a run of at most one pack.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
+    fn short<P: Pack, L: PairLaw<D>, const D: usize>(
+        &self,
+        law: L,
+        view: &View<D>,
+        [a, b, first, length]: [usize; 4],
+        own: Range<usize>,
+        other: Range<usize>,
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        let d = lanes!(P, i => P::load(&view.x[i][a..]) - P::load(&view.x[i][b..]));
+        let rate = if L::DAMPED {
+            lanes!(P, i => P::load(&view.v[i][a..]) - P::load(&view.v[i][b..]))
+        } else {
+            [P::zero(); D]
+        };
+        let (force, dissipated) = law.force(law_parameters(&law, At::Run(first)), d, rate, law.ahead(d));
+        let start = tile.range.start;
+        for i in 0..D {
+            let into = &mut *tile.force[i];
+            if own.len() == WIDTH && other.len() == WIDTH && self.layout == Layout::Batch {
+                (P::load(&into[a - start..]) + force[i]).store(&mut into[a - start..]);
+                let old = P::load(&into[b - start..]);
+                let new = if L::SECOND < 0.0 { old - force[i] } else { old + force[i] };
+                new.store(&mut into[b - start..]);
+                continue;
+            }
+            let each = force[i].to_array();
+            for k in own.clone() {
+                into[a + k - start] += each[k];
+            }
+            for k in other.clone() {
+                into[b + k - start] += L::SECOND * each[k];
+            }
+        }
+        if L::DAMPED {
+            let _ = length;
+            let until = P::select(P::first(own.end), dissipated, P::zero());
+            *power += P::select(P::first(own.start), P::zero(), until);
+        }
+    }
+
+    /// Evaluates the places `all` of a run once and adds them to the nodes of the tile.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // inner loop of `add_force`
+    fn run<P: Pack, L: PairLaw<D>, const D: usize>(
+        &self,
+        law: L,
+        view: &View<D>,
+        [a, b, first]: [usize; 3],
+        all: Range<usize>,
+        own: Range<usize>,
+        other: Range<usize>,
+        tile: &mut Tile<D>,
+        power: &mut P,
+    ) {
+        if all.is_empty() {
+            return;
+        }
+        let packed = all.len().next_multiple_of(WIDTH);
+        let room = packed + 2 * WIDTH;
+        tile.slots.grow(D * room);
+        // One strip from the lower end on serves both ends: few pointers stay in registers.
+        let base = a.min(b);
+        let (to_a, to_b) = (a - base, b - base);
+        let span = packed + to_a.max(to_b);
+        let x = Strip::<D>::new(&view.x, base + all.start, span);
+        let v = Strip::<D>::new(&view.v, base + all.start, span);
+        let [p0, p1, p2] = law.parameters();
+        let (p0, p1, p2) = (
+            p0.strip(first + all.start, packed),
+            p1.strip(first + all.start, packed),
+            p2.strip(first + all.start, packed),
+        );
+        // Slot columns begin with a spare pack, so that a shifted read stays inside.
+        let mut slots = StripMut::<1>::new([&mut **tile.slots], 0, D * room);
+        // Places of the run, counted from `all.start`, whose first node belongs to the tile.
+        let (low, high) = (own.start.saturating_sub(all.start), own.end.saturating_sub(all.start));
+        for k in (0..packed).step_by(WIDTH) {
+            let (at_a, at_b) = (k + to_a, k + to_b);
+            let d = lanes!(P, i => x.load::<P>(i, at_a) - x.load::<P>(i, at_b));
+            let rate =
+                if L::DAMPED { lanes!(P, i => v.load::<P>(i, at_a) - v.load::<P>(i, at_b)) } else { [P::zero(); D] };
+            let [second, third] = if L::UNIFORM { law.uniform() } else { [p1.load(k), p2.load(k)] };
+            let (force, dissipated) = law.force([p0.load(k), second, third], d, rate, law.ahead(d));
+            for i in 0..D {
+                slots.store(0, i * room + WIDTH + k, force[i]);
+            }
+            if L::DAMPED {
+                // The tile of the first node enters the power.
+                if k >= low && k + WIDTH <= high {
+                    *power += dissipated;
+                } else {
+                    let before = low.saturating_sub(k).min(WIDTH);
+                    let until = high.saturating_sub(k).min(WIDTH);
+                    let kept = P::select(P::first(until), dissipated, P::zero());
+                    *power += P::select(P::first(before), P::zero(), kept);
+                }
+            }
+        }
+        // Places that are a first node, and a second node; most are both.
+        let firsts = a + own.start..a + own.end;
+        let seconds = b + other.start..b + other.end;
+        let both = firsts.start.max(seconds.start)..firsts.end.min(seconds.end);
+        let start = tile.range.start;
+        for i in 0..D {
+            let column = &tile.slots[i * room..(i + 1) * room];
+            let into = &mut *tile.force[i];
+            // Stretches of first nodes alone, of second nodes alone, and of both.
+            let overlap = !(both.is_empty() || own.is_empty() || other.is_empty());
+            let alone = if overlap {
+                [
+                    (firsts.start..both.start, a, 1.0),
+                    (both.end..firsts.end, a, 1.0),
+                    (seconds.start..both.start, b, L::SECOND),
+                    (both.end..seconds.end, b, L::SECOND),
+                ]
+            } else {
+                [(firsts.clone(), a, 1.0), (0..0, a, 1.0), (seconds.clone(), b, L::SECOND), (0..0, b, 1.0)]
+            };
+            for (range, node, sign) in alone {
+                if !range.is_empty() {
+                    let slot = slot_of(range.start, node, all.start);
+                    add_slots::<P, false>(into, range.start - start, range.len(), column, slot, slot, sign);
+                }
+            }
+            if overlap {
+                let (slot_a, slot_b) = (slot_of(both.start, a, all.start), slot_of(both.start, b, all.start));
+                add_slots::<P, true>(into, both.start - start, both.len(), column, slot_a, slot_b, L::SECOND);
+            }
+        }
+    }
+
+    /// Adds up a function of both ends over all pairs, with bits that do not depend on the layout.
+    #[inline(always)]
+    pub fn sum<P: Pack, T: PairTerm<P, D>, const D: usize>(&self, view: &View<D>, term: T) -> P {
+        let stride = self.layout.stride();
+        let mut sum = OrderedSum::<P>::new(self.layout);
+        for run in &self.runs {
+            let (a, b) = (run.a as usize * stride, run.b as usize * stride);
+            let (first, length) = (run.first as usize * stride, run.count as usize * stride);
+            let packed = length.next_multiple_of(WIDTH);
+            let base = a.min(b);
+            let (to_a, to_b) = (a - base, b - base);
+            let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b));
+            let [p0, p1, p2] = term.parameters();
+            let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
+            for k in (0..packed).step_by(WIDTH) {
+                let (from, to) = (lanes!(P, i => x.load::<P>(i, k + to_a)), lanes!(P, i => x.load::<P>(i, k + to_b)));
+                sum.add(k, length, term.of([p0.load(k), p1.load(k), p2.load(k)], from, to));
+            }
+        }
+        if let Some(pull) = &self.pull {
+            match self.layout {
+                Layout::Single => {
+                    for k in (0..pull.loose.len()).step_by(WIDTH) {
+                        let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
+                        let xa = lanes!(P, i => P::gather(view.x[i], a));
+                        let xb = lanes!(P, i => P::gather(view.x[i], b));
+                        sum.add(
+                            k,
+                            pull.loose.len(),
+                            term.of(load_parameters(&term.parameters(), At::Each(&pull.loose[k..k + WIDTH])), xa, xb),
+                        );
+                    }
+                }
+                Layout::Batch => {
+                    for (k, &pair) in pull.loose.iter().enumerate() {
+                        let (a, b) = (pull.ends[0][k] as usize * WIDTH, pull.ends[1][k] as usize * WIDTH);
+                        let at = load_parameters(&term.parameters(), At::Run(pair as usize * WIDTH));
+                        sum.add(k * WIDTH, usize::MAX, term.of(at, load(&view.x, a), load(&view.x, b)));
+                    }
+                }
+            }
+        }
+        sum.total()
+    }
+}
+
+/// A pair by itself, of one body.
+struct Alone<'a, 'v, 't, L, const D: usize> {
+    law: L,
+    view: &'a View<'v, D>,
+    nodes: [usize; 2],
+    number: usize,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Alone<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let Alone { law, view, nodes: [a, b], number, tile, power } = self;
+        let mut d = [0.0; D];
+        let mut rate = [0.0; D];
+        for i in 0..D {
+            d[i] = view.x[i][a] - view.x[i][b];
+            if L::DAMPED {
+                rate[i] = view.v[i][a] - view.v[i][b];
+            }
+        }
+        let [p0, p1, p2] = law.parameters();
+        let parameters = if L::UNIFORM {
+            let [second, third] = law.uniform::<P>();
+            [0.0, second.to_array()[0], third.to_array()[0]]
+        } else {
+            [p0.at(number), p1.at(number), p2.at(number)]
+        };
+        let (force, dissipated) = law.force(parameters, d, rate, law.ahead(d));
+        let range = tile.range.clone();
+        for i in 0..D {
+            for (node, sign) in [(a, 1.0), (b, L::SECOND)] {
+                if range.contains(&node) {
+                    // Whole packs are written, since whole packs are read soon after.
+                    let (first, lane) = ((node - range.start) / WIDTH * WIDTH, node % WIDTH);
+                    let old = P::load(&tile.force[i][first..]);
+                    let new = P::select(P::first(lane + 1), old + P::splat(sign * force[i]), old);
+                    P::select(P::first(lane), old, new).store(&mut tile.force[i][first..]);
+                }
+            }
+        }
+        if L::DAMPED && range.contains(&a) {
+            power[0] += dissipated;
+        }
+    }
+}
+
+/// A run of at most one pack.
+struct Short<'a, 'v, 't, L, const D: usize> {
+    table: &'a PairTable,
+    law: L,
+    view: &'a View<'v, D>,
+    place: [usize; 4],
+    own: Range<usize>,
+    other: Range<usize>,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Short<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let mut power = P::load(self.power);
+        self.table.short::<P, L, D>(self.law, self.view, self.place, self.own, self.other, self.tile, &mut power);
+        power.store(self.power);
+    }
+}
+
+/// A run of more than one pack.
+struct Long<'a, 'v, 't, L, const D: usize> {
+    table: &'a PairTable,
+    law: L,
+    view: &'a View<'v, D>,
+    place: [usize; 3],
+    all: Range<usize>,
+    own: Range<usize>,
+    other: Range<usize>,
+    tile: &'a mut Tile<'t, D>,
+    power: &'a mut [f64; WIDTH],
+}
+impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let mut power = P::load(self.power);
+        let Long { law, view, place, all, own, other, tile, .. } = self;
+        self.table.run::<P, L, D>(law, view, place, all, own, other, tile, &mut power);
+        power.store(self.power);
+    }
+}
+
+/// The numbers that a law reads for eight pairs.
+#[inline(always)]
+pub(super) fn law_parameters<P: Pack, L: PairLaw<D>, const D: usize>(law: &L, at: At) -> [P; 3] {
+    if L::UNIFORM {
+        let [second, third] = law.uniform();
+        return [P::zero(), second, third];
+    }
+    load_parameters(&law.parameters(), at)
+}
+
+#[inline(always)]
+pub(super) fn load_parameters<P: Pack>(parameters: &[&Parameter; 3], at: At) -> [P; 3] {
+    [parameters[0].load_at(at), parameters[1].load_at(at), parameters[2].load_at(at)]
+}
+
+/// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then
+/// `sign` times that of the second. What lies behind stays as it is.
+#[inline(always)]
+fn add_slots<P: Pack, const BOTH: bool>(
+    into: &mut [f64],
+    at: usize,
+    count: usize,
+    slots: &[f64],
+    first: usize,
+    second: usize,
+    sign: f64,
+) {
+    let packed = count.next_multiple_of(WIDTH);
+    let first = Strip::<1>::new(&[slots], first, packed);
+    let second = Strip::<1>::new(&[slots], if BOTH { second } else { 0 }, packed);
+    let mut into = StripMut::<1>::new([into], at, packed);
+    for k in (0..packed).step_by(WIDTH) {
+        let old: P = into.load(0, k);
+        let slot: P = first.load(0, k);
+        let new = if BOTH {
+            let other: P = second.load(0, k);
+            if sign < 0.0 { (old + slot) - other } else { (old + slot) + other }
+        } else if sign < 0.0 {
+            old - slot
+        } else {
+            old + slot
+        };
+        if k + WIDTH <= count {
+            into.store(0, k, new);
+        } else {
+            into.store(0, k, P::select(P::first(count - k), new, old));
+        }
+    }
+}
