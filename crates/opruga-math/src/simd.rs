@@ -112,7 +112,7 @@ fn run_avx2<W: Work>(work: W) -> W::Output {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::{ROW, Register, WIDTH};
+    use crate::lane::{Lane, ROW, Register, WIDTH};
 
     /// Every operation on awkward numbers, written one after the other.
     struct Everything;
@@ -161,7 +161,7 @@ mod tests {
             // And back.
             let mut back = [0.0; ROW * WIDTH];
             for part in 0..P::PARTS {
-                let mut own = [<P::Part as Lane>::zero(); ROW];
+                let mut own = [P::Part::zero(); ROW];
                 for k in 0..ROW {
                     own[k] = columns[k].part(part);
                 }

@@ -94,3 +94,34 @@ impl<S: Lane> Lane for Twin<S> {
         Twin(self.0.larger(other.0), self.1.larger(other.1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Twin;
+    use crate::lane::Lane;
+    use crate::singular::singular;
+
+    #[test]
+    fn each_of_the_two_has_the_bits_that_it_has_alone() {
+        let one = [[1.0, 0.2, -0.3], [0.1, 0.9, 0.4], [-0.2, 0.3, 1.1]];
+        // Orthogonal already: done before the other.
+        let other = [[0.0, -2.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 0.5]];
+        let mut both = [[Twin::<f64>::zero(); 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                both[i][j] = Twin(one[i][j], other[i][j]);
+            }
+        }
+        let (first, second, together) = (singular(&one), singular(&other), singular(&both));
+        for i in 0..3 {
+            assert_eq!((together.sigma[i].0, together.sigma[i].1), (first.sigma[i], second.sigma[i]));
+            for j in 0..3 {
+                assert_eq!((together.u[i][j].0, together.u[i][j].1), (first.u[i][j], second.u[i][j]));
+                assert_eq!((together.v[i][j].0, together.v[i][j].1), (first.v[i][j], second.v[i][j]));
+            }
+        }
+        let (logarithm, root) = (Twin(2.0, 0.5).ln(), Twin(2.0, 0.5).sqrt());
+        assert_eq!((logarithm.0, logarithm.1), (Lane::ln(2.0), Lane::ln(0.5)));
+        assert_eq!((root.0, root.1), (Lane::sqrt(2.0), Lane::sqrt(0.5)));
+    }
+}
