@@ -72,6 +72,44 @@ pub(crate) enum Command {
 pub(crate) enum Bench {
     /// Rings of 8 to 1,048,576 vertices, and many of them: figure 4 of the thesis
     Vertices(BenchVertices),
+    /// A scene without pictures and files: milliseconds of its frames, and what they are spent on
+    Scene(BenchScene),
+    /// Forces and Hessians of finite elements, nanoseconds per element
+    Elements(BenchElements),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BenchScene {
+    /// A scene file, or the name of a scene that comes with the program
+    pub(crate) scene: String,
+    /// Override a parameter, such as time.substeps=64; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// How many frames are timed
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) frames: u32,
+    /// Frames before them
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub(crate) after: u32,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BenchElements {
+    /// One of the materials of `fem` alone
+    #[arg(long)]
+    pub(crate) material: Option<String>,
+    /// Hexahedra along a side of the cube, each cut into six tetrahedra
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=100))]
+    pub(crate) cells: u32,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -470,6 +508,8 @@ impl Command {
             Command::Verify(verify) => verify.json,
             Command::List { json } => *json,
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
+            Command::Bench { what: Bench::Scene(bench) } => bench.json,
+            Command::Bench { what: Bench::Elements(bench) } => bench.json,
             Command::New { json, .. } => *json,
             Command::Reference { .. } | Command::Studio { .. } => false,
         }

@@ -1,6 +1,6 @@
 //! Plots of a run and of a benchmark.
 
-use crate::bench::Row;
+use crate::bench::vertices::Row;
 use crate::recorder::Columns;
 use opruga::blueprint::Recorded;
 use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, OKABE_ITO, Panel, format_value};

@@ -1,7 +1,7 @@
 //! The commands that tell: check, list, new, reference, bench; and the plots of a run.
 
-use crate::arguments::{Bench, Check};
-use crate::bench;
+use crate::arguments::{Bench, BenchVertices, Check};
+use crate::bench::vertices as bench;
 use crate::failure::{Failure, print_data};
 use crate::outputs::counted;
 use crate::run::simd_from_environment;
@@ -212,7 +212,14 @@ pub(crate) fn reference(schema: bool) -> Result<u8, Failure> {
 
 /// Runs a benchmark.
 pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
-    let Bench::Vertices(call) = what;
+    match what {
+        Bench::Vertices(call) => bench_vertices(call),
+        Bench::Scene(call) => crate::bench::scene::bench(call),
+        Bench::Elements(call) => crate::bench::elements::bench(call),
+    }
+}
+
+fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
     if !(call.seconds > 0.0 && call.seconds <= 600.0) {
         return Err(Failure::range("--seconds", call.seconds, "numbers above 0 up to 600"));
     }

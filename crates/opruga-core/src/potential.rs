@@ -57,12 +57,57 @@ pub struct Count {
     pub count: u64,
 }
 
+/// Symmetric matrices of up to eight stencils of the same number of nodes, side by side in the lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct StencilPack<'a> {
+    /// Nodes of a stencil.
+    pub nodes: usize,
+    /// How many stencils there are; lanes from there on mean nothing.
+    pub count: usize,
+    /// Places of the nodes, `[node][lane]`.
+    pub places: &'a [u32],
+    /// Blocks K_ab row by row, `[a][b][row][column][lane]`; those with a > b are not looked at.
+    pub blocks: &'a [f64],
+}
+
+impl StencilPack<'_> {
+    /// The place of a node of a stencil.
+    #[inline(always)]
+    pub fn place(&self, node: usize, lane: usize) -> usize {
+        self.places[node * WIDTH + lane] as usize
+    }
+    /// The block K_ab of a stencil.
+    #[inline(always)]
+    pub fn block<const D: usize>(&self, a: usize, b: usize, lane: usize) -> [[f64; D]; D] {
+        let (low, high) = if a <= b { (a, b) } else { (b, a) };
+        let stored = &self.blocks[(low * self.nodes + high) * D * D * WIDTH..][..D * D * WIDTH];
+        let mut out = [[0.0; D]; D];
+        for i in 0..D {
+            for j in 0..D {
+                let (row, column) = if a <= b { (i, j) } else { (j, i) };
+                out[i][j] = stored[(row * D + column) * WIDTH + lane];
+            }
+        }
+        out
+    }
+}
+
 /// Where a model delivers its Hessian.
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]);
     /// Adds c·u uᵀ, where u is given by its entries at some places: never written out as a dense matrix.
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
+    /// Adds the matrices of some stencils: stencil by stencil, all blocks row by row.
+    fn stencils(&mut self, pack: &StencilPack<'_>) {
+        for lane in 0..pack.count {
+            for a in 0..pack.nodes {
+                for b in 0..pack.nodes {
+                    self.block(pack.place(a, lane), pack.place(b, lane), pack.block(a, b, lane));
+                }
+            }
+        }
+    }
 }
 
 /// A model of one body, or of eight alike bodies side by side: the energy U(x) and what derives from it.

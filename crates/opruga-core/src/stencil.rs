@@ -23,7 +23,7 @@ use crate::state::{At, Layout, OrderedSum, Parameter, View};
 use crate::tile::{TILE, Tile};
 use core::fmt::Debug;
 use core::marker::PhantomData;
-use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
 /// The blocks ∂²U/∂xₐ∂x_b of a stencil, `[a][b]` with rows i and columns j of the coordinates.
 pub type Blocks<const D: usize, const N: usize> = [[[[f64; D]; D]; N]; N];
@@ -403,21 +403,29 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Potenti
         simd.run(Energy { stencils: self, view })
     }
     fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
-        for (number, nodes) in self.elements.iter().enumerate() {
-            for body in 0..self.layout.stride() {
-                let item = self.layout.place(number, body);
+        let bodies = self.layout.stride();
+        let places =
+            |item: usize| self.elements[item / bodies].map(|node| self.layout.place(node as usize, item % bodies));
+        let (mut first, all) = (0, self.elements.len() * bodies);
+        let mut matrices = Vec::with_capacity(WIDTH);
+        while first < all {
+            matrices.clear();
+            for item in first..(first + WIDTH).min(all) {
                 let parameters = self.parameters.each_ref().map(|p| p.at(item));
-                let places = nodes.map(|n| self.layout.place(n as usize, body));
-                let mut blocks = L::hessian(&parameters, &places.map(|p| view.position(p)));
-                if keep == Definiteness::Clamped {
-                    clamp(&mut blocks);
-                }
+                matrices.push(L::hessian(&parameters, &places(item).map(|p| view.position(p))));
+            }
+            if keep == Definiteness::Clamped {
+                clamp(&mut matrices);
+            }
+            for (k, blocks) in matrices.iter().enumerate() {
+                let places = places(first + k);
                 for a in 0..N {
                     for b in 0..N {
                         sink.block(places[a], places[b], blocks[a][b]);
                     }
                 }
             }
+            first += WIDTH;
         }
     }
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
@@ -486,75 +494,55 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work fo
 }
 
 /// The most rows of a stencil's Hessian.
-const MOST_ROWS: usize = 24;
+const MOST_ROWS: usize = 12;
 
-/// Removes the negative eigenvalues of a symmetric block matrix (cyclic Jacobi rotations).
-pub fn clamp<const D: usize, const N: usize>(blocks: &mut Blocks<D, N>) {
+/// Removes the negative eigenvalues of symmetric block matrices, eight side by side.
+pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
     const { assert!(N * D <= MOST_ROWS, "room for the rows of a stencil") }
-    let rows = N * D;
-    let mut a = [[0.0; MOST_ROWS]; MOST_ROWS];
-    let mut vectors = [[0.0; MOST_ROWS]; MOST_ROWS];
-    for p in 0..rows {
-        for q in 0..rows {
-            a[p][q] = 0.5 * (blocks[p / D][q / D][p % D][q % D] + blocks[q / D][p / D][q % D][p % D]);
-        }
-        vectors[p][p] = 1.0;
-    }
-    for _ in 0..30 {
-        let (mut off, mut all) = (0.0, 0.0);
-        for p in 0..rows {
-            for q in 0..rows {
-                all += a[p][q] * a[p][q];
-                off += if p == q { 0.0 } else { a[p][q] * a[p][q] };
+    let mut square = [[[0.0; WIDTH]; MOST_ROWS]; MOST_ROWS];
+    for some in matrices.chunks_mut(WIDTH) {
+        for p in 0..N * D {
+            for q in 0..N * D {
+                for (l, blocks) in some.iter().enumerate() {
+                    let (one, other) = (blocks[p / D][q / D][p % D][q % D], blocks[q / D][p / D][q % D][p % D]);
+                    square[p][q][l] = 0.5 * (one + other);
+                }
             }
         }
-        if off <= 1e-30 * all {
-            break;
-        }
-        for p in 0..rows {
-            for q in p + 1..rows {
-                rotate(&mut a, &mut vectors, rows, p, q);
-            }
-        }
-    }
-    // Sum of λ v vᵀ over the positive eigenvalues.
-    let mut out = [[0.0; MOST_ROWS]; MOST_ROWS];
-    for k in 0..rows {
-        if a[k][k] > 0.0 {
-            for p in 0..rows {
-                for q in 0..rows {
-                    out[p][q] += a[k][k] * vectors[p][k] * vectors[q][k];
+        Simd::best().run(PositivePart { square: &mut square });
+        for p in 0..N * D {
+            for q in 0..N * D {
+                for (l, blocks) in some.iter_mut().enumerate() {
+                    blocks[p / D][q / D][p % D][q % D] = square[p][q][l];
                 }
             }
         }
     }
-    for p in 0..rows {
-        for q in 0..rows {
-            blocks[p / D][q / D][p % D][q % D] = out[p][q];
-        }
-    }
 }
 
-type Square = [[f64; MOST_ROWS]; MOST_ROWS];
-
-/// One Jacobi rotation, which makes the entry (p, q) zero.
-fn rotate(a: &mut Square, vectors: &mut Square, rows: usize, p: usize, q: usize) {
-    if a[p][q] == 0.0 {
-        return;
-    }
-    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = if theta < 0.0 { -1.0 } else { 1.0 } / (theta.abs() + (theta * theta + 1.0).sqrt());
-    let c = 1.0 / (t * t + 1.0).sqrt();
-    let s = t * c;
-    for k in 0..rows {
-        let (x, y) = (a[k][p], a[k][q]);
-        (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
-    }
-    for k in 0..rows {
-        let (x, y) = (a[p][k], a[q][k]);
-        (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
-        let (x, y) = (vectors[k][p], vectors[k][q]);
-        (vectors[k][p], vectors[k][q]) = (c * x - s * y, s * x + c * y);
+/// The positive parts of eight matrices; rows that are not in use are zero and stay so.
+struct PositivePart<'a> {
+    square: &'a mut [[[f64; WIDTH]; MOST_ROWS]; MOST_ROWS],
+}
+impl Work for PositivePart<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for part in 0..P::PARTS {
+            let offset = part * P::Part::NUMBERS;
+            let mut matrix = [[P::Part::zero(); MOST_ROWS]; MOST_ROWS];
+            for p in 0..MOST_ROWS {
+                for q in 0..MOST_ROWS {
+                    matrix[p][q] = P::Part::load(&self.square[p][q][offset..]);
+                }
+            }
+            let kept = symmetric::positive_part(&matrix);
+            for p in 0..MOST_ROWS {
+                for q in 0..MOST_ROWS {
+                    kept[p][q].store(&mut self.square[p][q][offset..]);
+                }
+            }
+        }
     }
 }
 
@@ -570,7 +558,7 @@ mod tests {
         let m = [-s, c];
         let entry = |i: usize, j: usize| 2.0 * n[i] * n[j] - 3.0 * m[i] * m[j];
         let mut blocks: Blocks<2, 1> = [[[[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]]];
-        clamp(&mut blocks);
+        clamp(core::slice::from_mut(&mut blocks));
         for i in 0..2 {
             for j in 0..2 {
                 assert!((blocks[0][0][i][j] - 2.0 * n[i] * n[j]).abs() < 1e-14);

@@ -160,6 +160,8 @@ pub trait Register: Lane {
     ///
     /// Four times faster than gathering column by column, where positions are copied to rows first.
     fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW];
+    /// Writes rows of [`ROW`] numbers one after the other; the first register has the first numbers of all rows.
+    fn store_rows(columns: [Self; ROW], to: &mut [f64]);
     /// The numbers moved up by one place, the last number of the register before them first.
     fn after(self, before: Self) -> Self;
     /// Where the place in the register is less than `count`.

@@ -10,6 +10,7 @@ pub mod simd;
 pub mod singular;
 pub mod strip;
 pub mod symmetric;
+mod twin;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
@@ -17,3 +18,4 @@ pub use column::Column;
 pub use lane::{Lane, Pack, ROW, Register, WIDTH, sum_in_fixed_order};
 pub use simd::{Simd, Work};
 pub use strip::{RepeatStrip, Strip, StripMut};
+pub use twin::Twin;

@@ -28,6 +28,10 @@ impl Register for f64 {
         [row[0], row[1], row[2], row[3]]
     }
     #[inline(always)]
+    fn store_rows(columns: [f64; ROW], to: &mut [f64]) {
+        to[..ROW].copy_from_slice(&columns);
+    }
+    #[inline(always)]
     fn after(self, before: f64) -> f64 {
         before
     }

@@ -112,7 +112,7 @@ fn run_avx2<W: Work>(work: W) -> W::Output {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::{ROW, Register, WIDTH};
+    use crate::lane::{Lane, ROW, Register, WIDTH};
 
     /// Every operation on awkward numbers, written one after the other.
     struct Everything;
@@ -157,6 +157,18 @@ mod tests {
                 for k in 0..ROW {
                     columns[k].set_part(part, own[k]);
                 }
+            }
+            // And back.
+            let mut back = [0.0; ROW * WIDTH];
+            for part in 0..P::PARTS {
+                let mut own = [P::Part::zero(); ROW];
+                for k in 0..ROW {
+                    own[k] = columns[k].part(part);
+                }
+                P::Part::store_rows(own, &mut back[part * P::Part::NUMBERS * ROW..]);
+            }
+            for (row, at) in back.chunks_exact(ROW).zip(order) {
+                assert_eq!(row, &rows[ROW * at as usize..][..ROW]);
             }
             for (k, column) in columns.iter().enumerate() {
                 let numbers = column.to_array();

@@ -34,9 +34,27 @@ pub fn eigen<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> ([S; N], [[S; N];
     (values, vectors)
 }
 
-/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ.
+/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ; the matrix itself where it has none.
 #[inline(always)]
 pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; N] {
+    // It is positive definite where Gauss's elimination meets positive pivots alone.
+    let mut left = *matrix;
+    let mut open = S::zero();
+    for k in 0..N {
+        let positive = S::zero().less(left[k][k]);
+        open = S::select(positive, open, S::one());
+        let inverse = S::one() / S::select(positive, left[k][k], S::one());
+        for i in k + 1..N {
+            let factor = left[i][k] * inverse;
+            for j in k + 1..N {
+                left[i][j] -= factor * left[k][j];
+            }
+        }
+    }
+    let open = S::zero().less(open);
+    if !S::any(open) {
+        return *matrix;
+    }
     let (values, vectors) = eigen(matrix);
     let mut out = [[S::zero(); N]; N];
     for k in 0..N {
@@ -45,6 +63,11 @@ pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; 
             for j in 0..N {
                 out[i][j] += value * vectors[i][k] * vectors[j][k];
             }
+        }
+    }
+    for i in 0..N {
+        for j in 0..N {
+            out[i][j] = S::select(open, out[i][j], matrix[i][j]);
         }
     }
     out

@@ -17,7 +17,7 @@ macro_rules! register {
     ($(#[$note:meta])* $type:ident($register:ty), $count:literal numbers, masks $mask:ty,
      $add:ident $sub:ident $mul:ident $div:ident $set:ident $sqrt:ident $load:ident $store:ident $min:ident $max:ident,
      abs $abs:expr, less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, both $both:expr, any $any:expr,
-     after $after:expr, first $first:expr, gather $gather:expr, split $split:expr, rows $rows:expr) => {
+     after $after:expr, first $first:expr, gather $gather:expr, split $split:expr, rows $rows:expr, to_rows $to_rows:expr) => {
         $(#[$note])*
         #[derive(Clone, Copy)]
         #[repr(transparent)]
@@ -132,6 +132,11 @@ macro_rules! register {
                 let [a, b, c, d] = unsafe { $rows(starts) };
                 [$type(a), $type(b), $type(c), $type(d)]
             }
+            #[inline(always)]
+            fn store_rows(columns: [Self; ROW], to: &mut [f64]) {
+                let [a, b, c, d] = columns;
+                unsafe { $to_rows(a.0, b.0, c.0, d.0, to[..ROW * $count].as_mut_ptr()) }
+            }
         }
     };
 }
@@ -175,6 +180,12 @@ register! {
         let (a, b) = (_mm_loadu_pd(at[0]), _mm_loadu_pd(at[1]));
         let (c, d) = (_mm_loadu_pd(at[0].add(2)), _mm_loadu_pd(at[1].add(2)));
         [_mm_unpacklo_pd(a, b), _mm_unpackhi_pd(a, b), _mm_unpacklo_pd(c, d), _mm_unpackhi_pd(c, d)]
+    },
+    to_rows |a, b, c, d, to: *mut f64| {
+        _mm_storeu_pd(to, _mm_unpacklo_pd(a, b));
+        _mm_storeu_pd(to.add(2), _mm_unpacklo_pd(c, d));
+        _mm_storeu_pd(to.add(4), _mm_unpackhi_pd(a, b));
+        _mm_storeu_pd(to.add(6), _mm_unpackhi_pd(c, d));
     }
 }
 register! {
@@ -191,7 +202,7 @@ register! {
     gather |from: &[f64], at: &[u32]| {
         _mm256_setr_pd(from[at[0] as usize], from[at[1] as usize], from[at[2] as usize], from[at[3] as usize])
     },
-    split |x| split_avx2(x), rows |at| rows_avx2(at)
+    split |x| split_avx2(x), rows |at| rows_avx2(at), to_rows |a, b, c, d, to| to_rows_avx2(a, b, c, d, to)
 }
 register! {
     /// Eight numbers in a register of AVX-512.
@@ -207,7 +218,7 @@ register! {
     },
     first |count| if count >= 8 { 0xff } else { ((1u32 << count) - 1) as u8 },
     gather |from: &[f64], at: &[u32]| gather_avx512(from, at),
-    split |x| split_avx512(x), rows |at| rows_avx512(at)
+    split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
 }
 
 /// Mantissas from √½ to √2 and exponents of positive, normal numbers.
@@ -286,6 +297,53 @@ unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
         _mm512_permutex2var_pd(even, high, more_even),
         _mm512_permutex2var_pd(odd, high, more_odd),
     ]
+}
+
+/// Four registers as four rows of four numbers.
+///
+/// # Safety
+/// The processor must have AVX2, and there must be room for sixteen numbers.
+#[inline]
+#[target_feature(enable = "avx,avx2")]
+unsafe fn to_rows_avx2(a: __m256d, b: __m256d, c: __m256d, d: __m256d, to: *mut f64) {
+    // First and second half of rows 0 and 2, and of rows 1 and 3.
+    let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    let (even_end, odd_end) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+    // SAFETY: the caller promises room for sixteen numbers.
+    unsafe {
+        _mm256_storeu_pd(to, _mm256_permute2f128_pd::<0x20>(even, even_end));
+        _mm256_storeu_pd(to.add(4), _mm256_permute2f128_pd::<0x20>(odd, odd_end));
+        _mm256_storeu_pd(to.add(8), _mm256_permute2f128_pd::<0x31>(even, even_end));
+        _mm256_storeu_pd(to.add(12), _mm256_permute2f128_pd::<0x31>(odd, odd_end));
+    }
+}
+
+/// Four registers as eight rows of four numbers.
+///
+/// # Safety
+/// The processor must have AVX-512, and there must be room for 32 numbers.
+#[inline]
+#[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
+unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mut f64) {
+    // First and second half of rows 0 2 4 6, and of rows 1 3 5 7.
+    let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+    let (even_end, odd_end) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+    // Rows 0 1, 2 3, …: two rows of a pair of halves after the other.
+    let low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+    let high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    let (rows_02, rows_46) =
+        (_mm512_permutex2var_pd(even, low, even_end), _mm512_permutex2var_pd(even, high, even_end));
+    let (rows_13, rows_57) = (_mm512_permutex2var_pd(odd, low, odd_end), _mm512_permutex2var_pd(odd, high, odd_end));
+    // SAFETY: the caller promises room for 32 numbers.
+    unsafe {
+        for (k, (even, odd)) in [(rows_02, rows_13), (rows_46, rows_57)].into_iter().enumerate() {
+            let to = to.add(16 * k);
+            _mm256_storeu_pd(to, _mm512_castpd512_pd256(even));
+            _mm256_storeu_pd(to.add(4), _mm512_castpd512_pd256(odd));
+            _mm256_storeu_pd(to.add(8), _mm512_extractf64x4_pd::<1>(even));
+            _mm256_storeu_pd(to.add(12), _mm512_extractf64x4_pd::<1>(odd));
+        }
+    }
 }
 
 /// Eight numbers from eight places of a slice.

@@ -2,7 +2,8 @@
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
-use opruga_core::potential::Sink;
+use opruga_core::potential::{Sink, StencilPack};
+use opruga_math::WIDTH;
 
 /// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
 ///
@@ -22,6 +23,7 @@ pub struct BlockMatrix<const D: usize> {
     scripts: [Script; SCRIPTS],
     script: usize,
     cursor: usize,
+    packs: Cursor,
     recording: bool,
     missing: Vec<(u32, u32)>,
     factor: f64,
@@ -37,6 +39,32 @@ const SCRIPTS: usize = 2;
 struct Script {
     calls: Vec<(u32, u32)>,
     slots: Vec<u32>,
+    /// Nodes of packs of stencils as they were delivered, and where their blocks land.
+    pack_places: Vec<u32>,
+    pack_slots: Vec<u32>,
+}
+
+/// How far packs of stencils have come in their script.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cursor {
+    places: usize,
+    slots: usize,
+}
+
+impl Script {
+    fn heap_bytes(&self) -> usize {
+        let numbers = self.slots.capacity() + self.pack_places.capacity() + self.pack_slots.capacity();
+        self.calls.capacity() * 8 + numbers * 4
+    }
+    fn is_empty(&self) -> bool {
+        self.calls.is_empty() && self.pack_places.is_empty()
+    }
+    fn clear(&mut self) {
+        self.calls.clear();
+        self.slots.clear();
+        self.pack_places.clear();
+        self.pack_slots.clear();
+    }
 }
 
 /// c·u uᵀ.
@@ -44,6 +72,11 @@ struct Script {
 pub(crate) struct RankOne<const D: usize> {
     pub(crate) factor: f64,
     pub(crate) entries: Vec<(u32, [f64; D])>,
+}
+
+/// Whether packs of stencils of so many nodes are remembered as a whole.
+fn is_replayed(nodes: usize) -> bool {
+    matches!(nodes, 3 | 4 | 6 | 8 | 10)
 }
 
 /// How far ahead a call is looked for that comes out of turn.
@@ -60,7 +93,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let scripts: usize = self.scripts.iter().map(|s| s.calls.capacity() * 8 + s.slots.capacity() * 4).sum();
+        let scripts: usize = self.scripts.iter().map(Script::heap_bytes).sum();
         self.values.capacity() * size_of::<Block<D>>() + (self.column.capacity() + self.start.capacity()) * 4 + scripts
     }
 
@@ -75,13 +108,12 @@ impl<const D: usize> BlockMatrix<D> {
             self.values = vec![[[0.0; D]; D]; nodes];
         }
         self.script = script.min(SCRIPTS - 1);
-        self.recording = self.scripts[self.script].calls.is_empty();
+        self.recording = self.scripts[self.script].is_empty();
         loop {
             self.values.fill([[0.0; D]; D]);
-            (self.cursor, self.ranks, self.factor) = (0, 0, 1.0);
+            (self.cursor, self.packs, self.ranks, self.factor) = (0, Cursor::default(), 0, 1.0);
             if self.recording {
-                self.scripts[self.script].calls.clear();
-                self.scripts[self.script].slots.clear();
+                self.scripts[self.script].clear();
             }
             deliver(self);
             if self.missing.is_empty() {
@@ -144,13 +176,78 @@ impl<const D: usize> BlockMatrix<D> {
                 return Some(script.slots[self.cursor - 1] as usize);
             }
         }
-        let row = self.row(key.0 as usize);
-        let at = self.column[row.clone()].binary_search(&key.1).ok().map(|at| row.start + at)?;
+        let at = self.look_up(key)?;
         if self.recording {
             self.scripts[self.script].calls.push(key);
             self.scripts[self.script].slots.push(at as u32);
         }
         Some(at)
+    }
+
+    /// The place of a block, by search.
+    fn look_up(&self, key: (u32, u32)) -> Option<usize> {
+        let row = self.row(key.0 as usize);
+        self.column[row.clone()].binary_search(&key.1).ok().map(|at| row.start + at)
+    }
+
+    fn block_by_block(&mut self, pack: &StencilPack<'_>) {
+        for lane in 0..pack.count {
+            for a in 0..pack.nodes {
+                for b in 0..pack.nodes {
+                    self.block(pack.place(a, lane), pack.place(b, lane), pack.block(a, b, lane));
+                }
+            }
+        }
+    }
+
+    /// Notes where the blocks of a pack of stencils land.
+    fn record(&mut self, pack: &StencilPack<'_>) {
+        self.scripts[self.script].pack_places.extend_from_slice(pack.places);
+        for lane in 0..pack.count {
+            for a in 0..pack.nodes {
+                for b in 0..pack.nodes {
+                    let key = (pack.place(a, lane) as u32, pack.place(b, lane) as u32);
+                    match self.look_up(key) {
+                        Some(at) => self.scripts[self.script].pack_slots.push(at as u32),
+                        None => self.missing.push(key),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds blocks of packs of stencils of N nodes where they landed before.
+    #[inline(always)]
+    fn replay<const N: usize>(&mut self, pack: &StencilPack<'_>) {
+        let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..pack.count * N * N];
+        let blocks = &pack.blocks[..N * N * D * D * WIDTH];
+        for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
+            for a in 0..N {
+                for b in a..N {
+                    let stored = &blocks[(a * N + b) * D * D * WIDTH..][..D * D * WIDTH];
+                    let mut block = [[0.0; D]; D];
+                    for i in 0..D {
+                        for j in 0..D {
+                            block[i][j] = self.factor * stored[(i * D + j) * WIDTH + lane % WIDTH];
+                        }
+                    }
+                    let upper = &mut self.values[slots[a][b] as usize];
+                    for i in 0..D {
+                        for j in 0..D {
+                            upper[i][j] += block[i][j];
+                        }
+                    }
+                    if a != b {
+                        let lower = &mut self.values[slots[b][a] as usize];
+                        for i in 0..D {
+                            for j in 0..D {
+                                lower[i][j] += block[j][i];
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// y = A x, over all rows in the order of columns: the same bits everywhere.
@@ -292,6 +389,36 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
         part.entries.clear();
         part.entries.extend(u.iter().map(|(place, entry)| (*place as u32, *entry)));
         self.ranks += 1;
+    }
+    fn stencils(&mut self, pack: &StencilPack<'_>) {
+        let (places, slots) = (pack.places.len(), pack.count * pack.nodes * pack.nodes);
+        if !is_replayed(pack.nodes) {
+            return self.block_by_block(pack);
+        }
+        if self.recording {
+            let known = self.missing.len();
+            self.record(pack);
+            if self.missing.len() > known {
+                return;
+            }
+        } else {
+            let script = &self.scripts[self.script];
+            let expected = script.pack_places.get(self.packs.places..self.packs.places + places);
+            if expected != Some(pack.places) || script.pack_slots.len() < self.packs.slots + slots {
+                // Out of turn.
+                return self.block_by_block(pack);
+            }
+        }
+        match pack.nodes {
+            3 => self.replay::<3>(pack),
+            4 => self.replay::<4>(pack),
+            6 => self.replay::<6>(pack),
+            8 => self.replay::<8>(pack),
+            10 => self.replay::<10>(pack),
+            _ => unreachable!("`is_replayed` has told"),
+        }
+        self.packs.places += places;
+        self.packs.slots += slots;
     }
 }
 

@@ -7,7 +7,7 @@ use super::material::{Material, Parameters, Tangent};
 use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
 use opruga_math::matrix::Matrix;
-use opruga_math::{Pack, Register, Simd, WIDTH, Work};
+use opruga_math::{Lane, Pack, Register, Simd, Twin, WIDTH, Work};
 
 /// Numbers of [`Parameters`] at a point.
 pub(super) const PARAMETERS: usize = 3;
@@ -29,7 +29,14 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]);
     /// Tangents (D⁴ packs per pack of points).
     fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]);
+    /// Tangents without negative eigenvalues in the frame of the singular vectors ([`PRINCIPAL`] · D² packs per pack of points);
+    /// whether the law has them.
+    fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool;
 }
+
+/// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
+/// axes what the tangent makes of u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
+pub(super) const PRINCIPAL: usize = 4;
 
 /// A material as a law.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +51,10 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
             Definiteness::Exact => simd.run(Tangents::<M, D, false> { points, tangent, material: self.0 }),
             Definiteness::Clamped => simd.run(Tangents::<M, D, true> { points, tangent, material: self.0 }),
         }
+    }
+    fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool {
+        simd.run(Principals::<M, D> { points, out, material: self.0 });
+        true
     }
 }
 
@@ -112,17 +123,69 @@ impl<M: Material<D>, const D: usize, const CLAMPED: bool> Work for Tangents<'_, 
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let keep = if CLAMPED { Definiteness::Clamped } else { Definiteness::Exact };
         for pack in 0..self.points.count {
             let out = &mut self.tangent[pack * D * D * D * D * WIDTH..(pack + 1) * D * D * D * D * WIDTH];
             for part in 0..P::PARTS {
                 let (p, f) = read::<P::Part, D>(&self.points, pack, part);
-                let tangent: Tangent<P::Part, D> = M::tangent_of(&p, &f, keep);
+                let tangent: Tangent<P::Part, D> = if CLAMPED {
+                    let (singular, principal) = M::principal(&p, &f);
+                    principal.clamped().tangent(&singular)
+                } else {
+                    M::tangent(&p, &f)
+                };
                 for i in 0..D {
                     for j in 0..D {
                         write_matrix(&mut out[(i * D + j) * D * D * WIDTH..], part, &tangent[i][j]);
                     }
                 }
+            }
+        }
+    }
+}
+
+struct Principals<'a, M, const D: usize> {
+    points: Points<'a>,
+    out: &'a mut [f64],
+    #[allow(dead_code)] // says which material
+    material: M,
+}
+impl<M: Material<D>, const D: usize> Work for Principals<'_, M, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        // Singular vectors wait for roots and divisions: two registers at a time, the last of an odd number twice.
+        let parts = self.points.count * P::PARTS;
+        for first in (0..parts).step_by(2) {
+            let second = (first + 1).min(parts - 1);
+            let (p, f) = read::<P::Part, D>(&self.points, first / P::PARTS, first % P::PARTS);
+            let (q, g) = read::<P::Part, D>(&self.points, second / P::PARTS, second % P::PARTS);
+            let parameters =
+                Parameters { mu: Twin(p.mu, q.mu), lambda: Twin(p.lambda, q.lambda), own: Twin(p.own, q.own) };
+            let mut both = [[Twin(f[0][0], g[0][0]); D]; D];
+            for i in 0..D {
+                for j in 0..D {
+                    both[i][j] = Twin(f[i][j], g[i][j]);
+                }
+            }
+            let (singular, principal) = M::principal(&parameters, &both);
+            let principal = principal.clamped();
+            let mut pairs = [[Twin::<P::Part>::zero(); D]; D];
+            for a in 0..D {
+                for b in a + 1..D {
+                    (pairs[a][b], pairs[b][a]) = principal.pair(a, b);
+                }
+            }
+            for (k, matrix) in [&singular.u, &singular.v, &principal.second, &pairs].into_iter().enumerate() {
+                let mut one = [[P::Part::zero(); D]; D];
+                let mut other = one;
+                for i in 0..D {
+                    for j in 0..D {
+                        (one[i][j], other[i][j]) = (matrix[i][j].0, matrix[i][j].1);
+                    }
+                }
+                let size = D * D * WIDTH;
+                write_matrix(&mut self.out[(first / P::PARTS * PRINCIPAL + k) * size..], first % P::PARTS, &one);
+                write_matrix(&mut self.out[(second / P::PARTS * PRINCIPAL + k) * size..], second % P::PARTS, &other);
             }
         }
     }

@@ -1,7 +1,6 @@
 //! What a material is: energy density, stress and tangent as functions of the deformation gradient.
 
 use core::fmt::Debug;
-use opruga_core::potential::Definiteness;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::Singular;
 use opruga_math::{Lane, symmetric};
@@ -30,17 +29,13 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     const NAME: &'static str;
     /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
-    /// The tangent ∂P/∂F [Pa].
-    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D>;
-    /// The tangent without the negative eigenvalues of its D² × D² matrix.
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D>;
-    /// Either of the two.
+    /// The singular vectors of F, and the second derivatives by principal stretches: ∂P/∂F in their frame [Pa].
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>);
+    /// The tangent ∂P/∂F [Pa]; worth a formula of its own where it needs no singular vectors.
     #[inline(always)]
-    fn tangent_of<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, keep: Definiteness) -> Tangent<S, D> {
-        match keep {
-            Definiteness::Exact => Self::tangent(p, f),
-            Definiteness::Clamped => Self::clamped_tangent(p, f),
-        }
+    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        let (singular, principal) = Self::principal(p, f);
+        principal.tangent(&singular)
     }
 }
 
@@ -104,20 +99,30 @@ impl<S: Lane, const D: usize> Principal<S, D> {
         }
     }
 
-    /// The tangent, with the negative eigenvalues or without them.
+    /// The same without negative eigenvalues.
     #[inline(always)]
-    pub fn tangent(&self, singular: &Singular<S, D>, keep: Definiteness) -> Tangent<S, D> {
+    pub fn clamped(&self) -> Self {
         let mut own = *self;
-        if keep == Definiteness::Clamped {
-            own.second = symmetric::positive_part(&self.second);
-            for i in 0..D {
-                for j in i + 1..D {
-                    own.difference[i][j] = self.difference[i][j].larger(S::zero());
-                    own.sum[i][j] = self.sum[i][j].larger(S::zero());
-                }
+        own.second = symmetric::positive_part(&self.second);
+        for i in 0..D {
+            for j in i + 1..D {
+                own.difference[i][j] = self.difference[i][j].larger(S::zero());
+                own.sum[i][j] = self.sum[i][j].larger(S::zero());
             }
         }
+        own
+    }
+
+    /// What the tangent makes of u_a v_bᵀ, a < b: its parts along u_a v_bᵀ and along u_b v_aᵀ.
+    #[inline(always)]
+    pub fn pair(&self, a: usize, b: usize) -> (S, S) {
         let half = S::splat(0.5);
+        (half * (self.difference[a][b] + self.sum[a][b]), half * (self.difference[a][b] - self.sum[a][b]))
+    }
+
+    /// The tangent.
+    #[inline(always)]
+    pub fn tangent(&self, singular: &Singular<S, D>) -> Tangent<S, D> {
         let (u, v) = (&singular.u, &singular.v);
         let mut out = [[[[S::zero(); D]; D]; D]; D];
         for a in 0..D {
@@ -126,13 +131,12 @@ impl<S: Lane, const D: usize> Principal<S, D> {
                 let mut image = matrix::zeros::<S, D>();
                 if a == b {
                     for c in 0..D {
-                        add_outer(&mut image, own.second[a][c], u, c, v, c);
+                        add_outer(&mut image, self.second[a][c], u, c, v, c);
                     }
                 } else {
-                    let (low, high) = if a < b { (a, b) } else { (b, a) };
-                    let (difference, sum) = (own.difference[low][high], own.sum[low][high]);
-                    add_outer(&mut image, half * (difference + sum), u, a, v, b);
-                    add_outer(&mut image, half * (difference - sum), u, b, v, a);
+                    let (own, other) = if a < b { self.pair(a, b) } else { self.pair(b, a) };
+                    add_outer(&mut image, own, u, a, v, b);
+                    add_outer(&mut image, other, u, b, v, a);
                 }
                 for i in 0..D {
                     for j in 0..D {

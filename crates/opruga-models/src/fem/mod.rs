@@ -27,10 +27,12 @@
 //! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod contraction;
 mod elements;
 mod law;
 pub mod material;
 pub mod materials;
+mod pass;
 mod plane_stress;
 mod section;
 mod spec;

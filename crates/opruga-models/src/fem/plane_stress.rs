@@ -93,6 +93,10 @@ impl Law<2> for PlaneStress {
         self.0.tangent(simd, now, Definiteness::Exact, &mut space.tangent.0);
         simd.run(Condense { count: points.count, keep, space: &space.tangent.0, tangent });
     }
+    /// The condensed tangent has other eigenvectors.
+    fn principal(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
+        false
+    }
 }
 
 /// One Newton iteration for the thickness; whether all are found. At the `last` call what is not found is not a number.

@@ -9,8 +9,9 @@
 //! neither on tiles nor on the layout. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
 
 use super::elements::Shape;
-use super::law::{Law, PARAMETERS, Points};
-use super::work::{Contract, Forces, Gradients, Nodes, ViscousStress, ViscousTangents};
+use super::law::Law;
+use super::pass::Pass;
+use super::work::Nodes;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;
@@ -41,26 +42,26 @@ pub(super) struct Cell<const N: usize> {
 #[derive(Debug)]
 pub(super) struct Section<E, const D: usize, const N: usize> {
     shape: PhantomData<E>,
-    layout: Layout,
-    law: Box<dyn Law<D>>,
+    pub(super) layout: Layout,
+    pub(super) law: Box<dyn Law<D>>,
     /// The law in space, for stresses across the plane; none in plane stress.
-    law_in_space: Option<Box<dyn Law<3>>>,
+    pub(super) law_in_space: Option<Box<dyn Law<3>>>,
     /// Elements by lowest node.
-    cells: Vec<Cell<N>>,
+    pub(super) cells: Vec<Cell<N>>,
     /// Points of an element, and one more for its mean deformation where the part with λ sees that.
-    points: usize,
+    pub(super) points: usize,
     /// Whether the part of the law with λ sees the mean deformation.
-    selective: bool,
+    pub(super) selective: bool,
     /// Places of the nodes: N packs for every pack of elements of one body, N places for every element of eight.
     places: Vec<u32>,
     /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. The mean deformation has the shares
     /// of the points and the measure of the whole.
-    geometry: Column,
+    pub(super) geometry: Column,
     /// [`NUMBERS`] packs for every pack of elements, or for all.
     parameters: Column,
     /// Whether the parameters of the first pack hold for all.
-    uniform: bool,
-    damped: bool,
+    pub(super) uniform: bool,
+    pub(super) damped: bool,
 }
 
 /// Sums over elements whose bits do not depend on the layout.
@@ -107,9 +108,6 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
-
-/// Writes tangents of some points with these retardation times.
-type Tangents<'a> = dyn Fn(Simd, Points<'_>, &[f64], &mut [f64]) + 'a;
 
 /// What every step of the work on some packs of elements needs to know.
 #[derive(Clone, Copy, Debug)]
@@ -257,14 +255,14 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    fn packs(&self) -> usize {
+    pub(super) fn packs(&self) -> usize {
         match self.layout {
             Layout::Single => self.cells.len().div_ceil(WIDTH),
             Layout::Batch => self.cells.len(),
         }
     }
 
-    fn group(&self, first: usize, packs: usize) -> Group<'_> {
+    pub(super) fn group(&self, first: usize, packs: usize) -> Group<'_> {
         Group {
             layout: self.layout,
             first,
@@ -279,8 +277,34 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
+    /// All packs, as many together as have so many packs of points, or one by one.
+    pub(super) fn groups(&self, points: usize) -> impl Iterator<Item = Group<'_>> {
+        let together = (points / self.points).max(1);
+        (0..self.packs()).step_by(together).map(move |first| self.group(first, together.min(self.packs() - first)))
+    }
+
+    /// The places of the nodes of a pack, by node and lane.
+    pub(super) fn places(&self, pack: usize) -> [[u32; WIDTH]; N] {
+        let mut out = [[0; WIDTH]; N];
+        for a in 0..N {
+            for l in 0..WIDTH {
+                out[a][l] = match self.layout {
+                    Layout::Single => self.places[(pack * N + a) * WIDTH + l],
+                    Layout::Batch => self.places[pack * N + a] + l as u32,
+                };
+            }
+        }
+        out
+    }
+
+    /// The measure of a point of an element [m³].
+    pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
+        let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
+        self.geometry[((pack * self.points + point) * (D * D + 1) + D * D) * lanes + lane]
+    }
+
     /// The element and body of a lane of a pack.
-    fn item(&self, pack: usize, lane: usize) -> (usize, usize) {
+    pub(super) fn item(&self, pack: usize, lane: usize) -> (usize, usize) {
         match self.layout {
             Layout::Single => (pack * WIDTH + lane, 0),
             Layout::Batch => (pack, lane),
@@ -288,7 +312,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     }
 
     /// The refusal of the first element of a pack whose nodes are somewhere but whose energy is not a number.
-    fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
+    pub(super) fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
         // Laws of space and of plane strain have an energy everywhere; what overflows there has diverged, and is found so.
         if self.law_in_space.is_some() || D == 3 {
             return None;
@@ -307,47 +331,6 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             })
         })
     }
-
-    /// Delivers blocks K_ab of every element, made from tangents at its points.
-    fn assemble(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>, tangents: &Tangents<'_>) {
-        let simd = Simd::best();
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
-        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
-        let mut blocks = vec![0.0; N * N * D * D * WIDTH];
-        for pack in 0..self.packs() {
-            let group = self.group(pack, 1);
-            simd.run(Gradients::<E, D, N> {
-                shape: PhantomData,
-                group,
-                nodes: positions,
-                gradient: &mut gradient.0,
-                parameters: Some((&mut numbers.0, &mut times.0)),
-            });
-            let points = Points { count: self.points, gradient: &gradient.0, parameters: &numbers.0 };
-            tangents(simd, points, &times.0, &mut tangent.0);
-            simd.run(Contract::<E, D, N> { shape: PhantomData, group, tangent: &tangent.0, blocks: &mut blocks });
-            for l in 0..group.present(pack) {
-                let (element, body) = self.item(pack, l);
-                let places = self.cells[element].nodes.map(|n| self.layout.place(n as usize, body));
-                for a in 0..N {
-                    for b in 0..N {
-                        // The upper half is stored.
-                        let (low, high) = if a <= b { (a, b) } else { (b, a) };
-                        let stored = &blocks[(low * N + high) * D * D * WIDTH..(low * N + high + 1) * D * D * WIDTH];
-                        let mut block = [[0.0; D]; D];
-                        for (entry, pack) in stored.chunks_exact(WIDTH).enumerate() {
-                            let (i, j) = (entry / D, entry % D);
-                            let (i, j) = if a <= b { (i, j) } else { (j, i) };
-                            block[i][j] = pack[l % WIDTH];
-                        }
-                        sink.block(places[a], places[b], block);
-                    }
-                }
-            }
-        }
-    }
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
@@ -355,159 +338,23 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
         &self,
         simd: Simd,
         view: &View<D>,
-        [positions, velocities]: [Nodes<'_, D>; 2],
+        nodes: [Nodes<'_, D>; 2],
         totals: &mut Totals,
         force: &mut [f64],
     ) -> Result<(), StepError> {
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
-        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut power = Room([0.0; MOST_PACKS * WIDTH]);
-        let together = (MOST_PACKS / self.points).max(1);
-        for first in (0..self.packs()).step_by(together) {
-            let group = self.group(first, together.min(self.packs() - first));
-            let count = group.packs * self.points;
-            simd.run(Gradients::<E, D, N> {
-                shape: PhantomData,
-                group,
-                nodes: positions,
-                gradient: &mut gradient.0,
-                parameters: Some((&mut numbers.0, &mut times.0)),
-            });
-            let points = Points { count, gradient: &gradient.0, parameters: &numbers.0 };
-            self.law.stress(simd, points, &mut density.0, &mut stress.0);
-            if self.damped {
-                simd.run(Gradients::<E, D, N> {
-                    shape: PhantomData,
-                    group,
-                    nodes: velocities,
-                    gradient: &mut rate.0,
-                    parameters: None,
-                });
-                simd.run(ViscousStress::<D> {
-                    points,
-                    rate: &rate.0,
-                    times: &times.0,
-                    stress: &mut stress.0,
-                    power: &mut power.0,
-                });
-            }
-            simd.run(Forces::<E, D, N> {
-                shape: PhantomData,
-                group,
-                stress: &stress.0,
-                density: &mut density.0,
-                power: self.damped.then_some(&mut power.0),
-                force,
-            });
-            for k in 0..group.packs {
-                let row = match self.layout {
-                    Layout::Single => 0,
-                    Layout::Batch => (first + k) % WIDTH,
-                };
-                let energy = &density.0[k * WIDTH..(k + 1) * WIDTH];
-                for l in 0..WIDTH {
-                    totals.energy[row][l] += energy[l];
-                    totals.power[row][l] += power.0[k * WIDTH + l];
-                }
-                if energy.iter().any(|e| e.is_nan())
-                    && let Some(refusal) = self.refusal(view, first + k, energy)
-                {
-                    return Err(refusal);
-                }
-            }
-        }
-        Ok(())
+        Pass::new(self, simd).forces(view, nodes, totals, force)
     }
-
     fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
-        self.assemble(positions, sink, &|simd, points, _, out| self.law.tangent(simd, points, keep, out));
+        Pass::new(self, Simd::best()).hessian(positions, keep, sink);
     }
-
     fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
         if self.damped {
-            self.assemble(positions, sink, &|simd, points, times, tangent| {
-                simd.run(ViscousTangents::<D> { points, times, tangent });
-            });
+            Pass::new(self, Simd::best()).damping_matrix(positions, sink);
         }
     }
-
     fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
-        let simd = Simd::best();
-        let mut gradient = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut numbers = Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]);
-        let mut times = Room([0.0; MOST_PACKS * WIDTH]);
-        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        for pack in 0..self.packs() {
-            let group = self.group(pack, 1);
-            simd.run(Gradients::<E, D, N> {
-                shape: PhantomData,
-                group,
-                nodes: positions,
-                gradient: &mut gradient.0,
-                parameters: Some((&mut numbers.0, &mut times.0)),
-            });
-            let points = Points { count: self.points, gradient: &gradient.0, parameters: &numbers.0 };
-            // Rows of stresses as they are stored: of three axes where the law in space is asked.
-            let axes = if let Some(law) = &self.law_in_space {
-                in_space.0.fill(0.0);
-                for q in 0..self.points {
-                    for l in 0..WIDTH {
-                        let mut put = |i: usize, j: usize, value: f64| {
-                            in_space.0[(q * 9 + i * 3 + j) * WIDTH + l] = value;
-                        };
-                        put(2, 2, 1.0);
-                        for i in 0..D {
-                            for j in 0..D {
-                                put(i, j, gradient.0[(q * D * D + i * D + j) * WIDTH + l]);
-                            }
-                        }
-                    }
-                }
-                law.stress(simd, Points { gradient: &in_space.0, ..points }, &mut density.0, &mut stress.0);
-                3
-            } else {
-                self.law.stress(simd, points, &mut density.0, &mut stress.0);
-                D
-            };
-            for l in 0..WIDTH {
-                let (element, of) = self.item(pack, l);
-                let Some(cell) = self.cells.get(element).filter(|_| of == body) else { continue };
-                let lane = if self.layout == Layout::Single { l } else { 0 };
-                let lanes = if self.layout == Layout::Single { WIDTH } else { 1 };
-                let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
-                for q in 0..self.points {
-                    let weight = self.geometry[((pack * self.points + q) * (D * D + 1) + D * D) * lanes + lane];
-                    let f = |i: usize, j: usize| match (i < D, j < D) {
-                        (true, true) => gradient.0[(q * D * D + i * D + j) * WIDTH + l],
-                        _ => f64::from(i32::from(i == j)),
-                    };
-                    let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
-                    let ratio = opruga_math::matrix::determinant(&matrix);
-                    if q < E::POINTS {
-                        measure += weight;
-                        now += weight * ratio;
-                    }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; the mean stress meets the mean deformation.
-                    for i in 0..axes {
-                        for j in 0..3 {
-                            for k in 0..axes {
-                                sum[i][j] += weight * stress.0[(q * axes * axes + i * axes + k) * WIDTH + l] * f(j, k);
-                            }
-                        }
-                    }
-                }
-                let stress = sum.map(|row| row.map(|s| s / now));
-                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure });
-            }
-        }
+        Pass::new(self, Simd::best()).cell_states(positions, body, out);
     }
-
     fn heap_bytes(&self) -> usize {
         let places = 4 * self.places.capacity() + size_of::<Cell<N>>() * self.cells.capacity();
         places + self.geometry.heap_bytes() + self.parameters.heap_bytes()

@@ -13,7 +13,12 @@ use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
 
 /// (∂X/∂ξ)⁻¹ and the measure of a point.
 #[inline(always)]
-fn geometry<R: Register, const D: usize>(group: &Group<'_>, pack: usize, q: usize, part: usize) -> (Matrix<R, D>, R) {
+pub(super) fn geometry<R: Register, const D: usize>(
+    group: &Group<'_>,
+    pack: usize,
+    q: usize,
+    part: usize,
+) -> (Matrix<R, D>, R) {
     let stored = D * D + 1;
     let mut out = [[R::zero(); D]; D];
     match group.layout {
@@ -56,18 +61,15 @@ pub(super) struct Gradients<'a, E, const D: usize, const N: usize> {
     /// Positions or velocities: in rows for one body, in columns for eight.
     pub(super) nodes: Nodes<'a, D>,
     pub(super) gradient: &'a mut [f64],
-    /// Room for the parameters of the points and their retardation times.
-    pub(super) parameters: Option<(&'a mut [f64], &'a mut [f64])>,
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D, N> {
     type Output = ();
     #[inline(always)]
-    fn run<P: Pack>(mut self) {
+    fn run<P: Pack>(self) {
         let points = self.group.points;
         for k in 0..self.group.packs {
             let pack = self.group.first + k;
-            let numbers = &self.group.parameters[pack * self.group.step..][..NUMBERS * WIDTH];
             for part in 0..P::PARTS {
                 let offset = part * P::Part::NUMBERS;
                 let mut x = [[P::Part::zero(); D]; N];
@@ -120,22 +122,27 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                 if E::SELECTIVE && self.group.selective {
                     write_matrix(&mut self.gradient[(k * points + E::POINTS) * D * D * WIDTH..], part, &mean);
                 }
-                if let Some((parameters, times)) = &mut self.parameters {
-                    for q in 0..points {
-                        // The part with λ of the mean deformation alone, the part with μ of all points.
-                        let at_mean = self.group.selective && q == E::POINTS;
-                        let read = |k: usize| P::Part::load(&numbers[k * WIDTH + offset..]);
-                        let mu = if at_mean { P::Part::zero() } else { read(0) };
-                        let lambda = if self.group.selective && !at_mean { P::Part::zero() } else { read(1) };
-                        let point = k * points + q;
-                        let to = &mut parameters[point * PARAMETERS * WIDTH..(point + 1) * PARAMETERS * WIDTH];
-                        mu.store(&mut to[offset..]);
-                        lambda.store(&mut to[WIDTH + offset..]);
-                        read(2).store(&mut to[2 * WIDTH + offset..]);
-                        read(3).store(&mut times[point * WIDTH + offset..]);
-                    }
-                }
             }
+        }
+    }
+}
+
+/// The parameters of the points of a group, and their retardation times.
+pub(super) fn parameters_of_points(group: &Group<'_>, simple: usize, parameters: &mut [f64], times: &mut [f64]) {
+    for k in 0..group.packs {
+        let numbers = &group.parameters[(group.first + k) * group.step..][..NUMBERS * WIDTH];
+        for q in 0..group.points {
+            // The part with λ of the mean deformation alone, the part with μ of all points.
+            let at_mean = group.selective && q == simple;
+            let point = k * group.points + q;
+            let to = &mut parameters[point * PARAMETERS * WIDTH..(point + 1) * PARAMETERS * WIDTH];
+            to.copy_from_slice(&numbers[..PARAMETERS * WIDTH]);
+            if at_mean {
+                to[..WIDTH].fill(0.0);
+            } else if group.selective {
+                to[WIDTH..2 * WIDTH].fill(0.0);
+            }
+            times[point * WIDTH..(point + 1) * WIDTH].copy_from_slice(&numbers[PARAMETERS * WIDTH..]);
         }
     }
 }
@@ -214,23 +221,23 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
             match self.group.layout {
                 Layout::Single => {
                     let places = &self.group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
-                    let mut numbers = [[[0.0; WIDTH]; D]; N];
+                    // Whole rows: one addition of four numbers.
+                    let mut rows = [[[0.0; ROW]; WIDTH]; N];
                     for a in 0..N {
-                        for i in 0..D {
-                            numbers[a][i] = slots[a][i].to_array();
+                        for part in 0..P::PARTS {
+                            let mut columns = [P::Part::zero(); ROW];
+                            for i in 0..D {
+                                columns[i] = slots[a][i].part(part);
+                            }
+                            P::Part::store_rows(columns, rows[a][part * P::Part::NUMBERS..].as_flattened_mut());
                         }
                     }
                     for l in 0..self.group.present(pack) {
                         for a in 0..N {
-                            // Whole rows: one addition of four numbers.
-                            let mut row = [0.0; ROW];
-                            for i in 0..D {
-                                row[i] = numbers[a][i][l];
-                            }
                             let start = places[a * WIDTH + l] as usize * ROW;
                             let node = &mut self.force[start..start + ROW];
                             for i in 0..ROW {
-                                node[i] += row[i];
+                                node[i] += rows[a][l][i];
                             }
                         }
                     }
@@ -318,104 +325,6 @@ impl<const D: usize> Work for ViscousTangents<'_, D> {
                         let at = ((point * D + i) * D + j) * D * D * WIDTH;
                         write_matrix(&mut self.tangent[at..], part, &tangent[i][j]);
                     }
-                }
-            }
-        }
-    }
-}
-
-/// Tangents at the points of one pack of elements to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
-pub(super) struct Contract<'a, E, const D: usize, const N: usize> {
-    pub(super) shape: PhantomData<E>,
-    pub(super) group: Group<'a>,
-    pub(super) tangent: &'a [f64],
-    pub(super) blocks: &'a mut [f64],
-}
-
-impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D, N> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        // The first node of a simplex has what the others leave: sums over b of K_ab are zero.
-        let start = usize::from(E::SIMPLEX);
-        for part in 0..P::PARTS {
-            let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
-            let mut mean = [[P::Part::zero(); D]; N];
-            let (shares, whole) = geometry::<P::Part, D>(&self.group, self.group.first, self.group.points - 1, part);
-            for q in 0..self.group.points {
-                let (inverse, mut measure) = geometry::<P::Part, D>(&self.group, self.group.first, q, part);
-                let mut slopes = [[P::Part::zero(); D]; N];
-                if E::SELECTIVE && q == E::POINTS {
-                    (slopes, measure) = (mean, whole);
-                } else {
-                    for a in start..N {
-                        for m in 0..D {
-                            slopes[a][m] = if E::SIMPLEX {
-                                inverse[a - 1][m]
-                            } else {
-                                let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
-                                for j in 1..D {
-                                    sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
-                                }
-                                sum
-                            };
-                            if E::SELECTIVE && self.group.selective {
-                                mean[a][m] += shares[q / D][q % D] * slopes[a][m];
-                            }
-                        }
-                    }
-                }
-                for i in 0..D {
-                    // Row i of the tangent: ∂Pᵢⱼ/∂Fₖₗ.
-                    let mut row = [[[P::Part::zero(); D]; D]; D];
-                    for j in 0..D {
-                        row[j] = read_matrix(&self.tangent[((q * D + i) * D + j) * D * D * WIDTH..], part);
-                    }
-                    for a in start..N {
-                        let mut pulled = matrix::zeros::<P::Part, D>();
-                        for j in 0..D {
-                            let weight = measure * slopes[a][j];
-                            for k in 0..D {
-                                for l in 0..D {
-                                    pulled[k][l] += weight * row[j][k][l];
-                                }
-                            }
-                        }
-                        for b in a..N {
-                            for k in 0..D {
-                                for l in 0..D {
-                                    blocks[a][b][i][k] += pulled[k][l] * slopes[b][l];
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-            if E::SIMPLEX {
-                for b in 1..N {
-                    for i in 0..D {
-                        for k in 0..D {
-                            let mut sum = P::Part::zero();
-                            for a in 1..N {
-                                sum += if a <= b { blocks[a][b][i][k] } else { blocks[b][a][k][i] };
-                            }
-                            blocks[0][b][i][k] = -sum;
-                        }
-                    }
-                }
-                for i in 0..D {
-                    for k in 0..D {
-                        let mut sum = P::Part::zero();
-                        for b in 1..N {
-                            sum += blocks[0][b][i][k];
-                        }
-                        blocks[0][0][i][k] = -sum;
-                    }
-                }
-            }
-            for a in 0..N {
-                for b in a..N {
-                    write_matrix(&mut self.blocks[(a * N + b) * D * D * WIDTH..], part, &blocks[a][b]);
                 }
             }
         }

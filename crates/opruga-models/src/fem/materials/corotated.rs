@@ -1,10 +1,9 @@
 //! Corotated linear elasticity: Hooke's law beside the nearest rotation.
 
-use crate::fem::material::{Material, Parameters, Principal, Tangent};
-use opruga_core::potential::Definiteness;
+use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{nearest_rotation, singular};
+use opruga_math::singular::{Singular, nearest_rotation, singular};
 
 /// ψ = μ |F − R|² + λ/2 tr²(RᵀF − 1) with the rotation R nearest to F; P = 2μ(F − R) + λ tr(RᵀF − 1) R.
 ///
@@ -35,26 +34,6 @@ pub(super) fn distance_from_rotation<S: Lane, const D: usize>(mu: S, sigma: &[S;
     out
 }
 
-#[inline(always)]
-fn tangent<S: Lane, const D: usize>(p: &Parameters<S>, f: &Matrix<S, D>, keep: Definiteness) -> Tangent<S, D> {
-    let s = singular(f);
-    let mut principal = distance_from_rotation(p.mu, &s.sigma);
-    let mut strain = S::zero();
-    for i in 0..D {
-        strain += s.sigma[i] - S::one();
-    }
-    for i in 0..D {
-        for j in 0..D {
-            principal.second[i][j] += p.lambda;
-            if i < j {
-                let sum = (s.sigma[i] + s.sigma[j]).larger(S::splat(LEAST_SUM));
-                principal.sum[i][j] += S::splat(2.0) * p.lambda * strain / sum;
-            }
-        }
-    }
-    principal.tangent(&s, keep)
-}
-
 impl<const D: usize> Material<D> for Corotated {
     const NAME: &'static str = "corotated";
     #[inline(always)]
@@ -66,11 +45,22 @@ impl<const D: usize> Material<D> for Corotated {
         (energy, matrix::plus(&matrix::scaled(&difference, p.mu + p.mu), p.lambda * trace, &r))
     }
     #[inline(always)]
-    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        tangent(p, f, Definiteness::Exact)
-    }
-    #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        tangent(p, f, Definiteness::Clamped)
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+        let s = singular(f);
+        let mut principal = distance_from_rotation(p.mu, &s.sigma);
+        let mut strain = S::zero();
+        for i in 0..D {
+            strain += s.sigma[i] - S::one();
+        }
+        for i in 0..D {
+            for j in 0..D {
+                principal.second[i][j] += p.lambda;
+                if i < j {
+                    let sum = (s.sigma[i] + s.sigma[j]).larger(S::splat(LEAST_SUM));
+                    principal.sum[i][j] += S::splat(2.0) * p.lambda * strain / sum;
+                }
+            }
+        }
+        (s, principal)
     }
 }

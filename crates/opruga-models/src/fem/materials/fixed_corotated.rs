@@ -1,11 +1,10 @@
 //! Fixed corotated elasticity: distance from the nearest rotation, and change of volume.
 
 use super::corotated::distance_from_rotation;
-use crate::fem::material::{Material, Parameters, Tangent};
-use opruga_core::potential::Definiteness;
+use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{nearest_rotation, singular};
+use opruga_math::singular::{Singular, nearest_rotation, singular};
 
 /// ψ = μ |F − R|² + λ/2 (J − 1)² with the rotation R nearest to F and J = det F; P = 2μ(F − R) + λ(J − 1) cof F.
 ///
@@ -15,14 +14,6 @@ use opruga_math::singular::{nearest_rotation, singular};
 /// Stomakhin, Howes, Schroeder, Teran, "Energetically consistent invertible elasticity" (2012).
 #[derive(Clone, Copy, Debug)]
 pub struct FixedCorotated;
-
-#[inline(always)]
-fn tangent<S: Lane, const D: usize>(p: &Parameters<S>, f: &Matrix<S, D>, keep: Definiteness) -> Tangent<S, D> {
-    let s = singular(f);
-    let mut principal = distance_from_rotation(p.mu, &s.sigma);
-    principal.add_volumetric(&s.sigma, p.lambda * (matrix::determinant(f) - S::one()), p.lambda);
-    principal.tangent(&s, keep)
-}
 
 impl<const D: usize> Material<D> for FixedCorotated {
     const NAME: &'static str = "fixed_corotated";
@@ -35,11 +26,10 @@ impl<const D: usize> Material<D> for FixedCorotated {
         (energy, matrix::plus(&matrix::scaled(&difference, p.mu + p.mu), p.lambda * change, &cofactors))
     }
     #[inline(always)]
-    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        tangent(p, f, Definiteness::Exact)
-    }
-    #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        tangent(p, f, Definiteness::Clamped)
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+        let s = singular(f);
+        let mut principal = distance_from_rotation(p.mu, &s.sigma);
+        principal.add_volumetric(&s.sigma, p.lambda * (matrix::determinant(f) - S::one()), p.lambda);
+        (s, principal)
     }
 }

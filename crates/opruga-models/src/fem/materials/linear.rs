@@ -1,8 +1,9 @@
 //! Linear elasticity: small strain, small rotation.
 
-use crate::fem::material::{Material, Parameters, Tangent, add_identity, no_tangent};
+use crate::fem::material::{Material, Parameters, Principal, Tangent, add_identity, no_tangent};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
+use opruga_math::singular::Singular;
 
 /// Hooke's law of the small strain ε = ½(F + Fᵀ) − 1: ψ = μ ε:ε + λ/2 tr² ε, P = 2με + λ tr ε 1.
 ///
@@ -39,9 +40,17 @@ impl<const D: usize> Material<D> for Linear {
         }
         out
     }
-    /// It has no negative eigenvalue.
+    /// It is the same for every F: the unit vectors serve as well as the singular ones.
     #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        Self::tangent(p, f)
+    fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+        let mut principal = Principal::zeros();
+        for i in 0..D {
+            for j in 0..D {
+                principal.second[i][j] = p.lambda;
+                principal.difference[i][j] = p.mu + p.mu;
+            }
+            principal.second[i][i] += p.mu + p.mu;
+        }
+        (Singular { u: matrix::identity(), sigma: [S::one(); D], v: matrix::identity() }, principal)
     }
 }

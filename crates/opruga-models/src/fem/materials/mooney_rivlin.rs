@@ -4,10 +4,9 @@ use crate::fem::material::{
     Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, logarithm_of_volume,
     no_tangent,
 };
-use opruga_core::potential::Definiteness;
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::singular;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = C₁ (I₁ − 3) + C₂ (I₂ − 3) + a (J² − 1) − b ln J with C₁ + C₂ = μ/2, a = λ/4 − C₂, b = 2(C₁ + C₂) + λ/2; I₁ = tr C,
 /// I₂ = ½(I₁² − tr C²), C = FᵀF (in plane strain with the stretch 1 along z), J = det F.
@@ -91,7 +90,7 @@ impl<const D: usize> Material<D> for MooneyRivlin {
         out
     }
     #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
         let [c1, c2, a, b] = constants::<S, D>(p);
         let s = singular(f);
         let two = S::splat(2.0);
@@ -111,6 +110,6 @@ impl<const D: usize> Material<D> for MooneyRivlin {
         }
         let (first, second) = volumetric(a, b, matrix::determinant(f));
         principal.add_volumetric(&s.sigma, first, second);
-        principal.tangent(&s, Definiteness::Clamped)
+        (s, principal)
     }
 }

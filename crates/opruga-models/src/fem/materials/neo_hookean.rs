@@ -4,10 +4,9 @@ use crate::fem::material::{
     Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, logarithm_of_volume,
     no_tangent,
 };
-use opruga_core::potential::Definiteness;
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::singular;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ/2 (I₁ − D) − μ ln J + λ/2 ln² J with I₁ = tr FᵀF and J = det F; P = μF + (λ ln J − μ) J⁻¹ cof F.
 ///
@@ -50,12 +49,12 @@ impl<const D: usize> Material<D> for NeoHookean {
         out
     }
     #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
         let s = singular(f);
         let (first, second) = volumetric(p, matrix::determinant(f));
         let mut principal = Principal::zeros();
         principal.add_stretch(&s.sigma, S::splat(0.5) * p.mu, S::zero());
         principal.add_volumetric(&s.sigma, first, second);
-        principal.tangent(&s, Definiteness::Clamped)
+        (s, principal)
     }
 }

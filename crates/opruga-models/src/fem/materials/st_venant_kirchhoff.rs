@@ -1,10 +1,9 @@
 //! St. Venant–Kirchhoff: Hooke's law of Green's strain.
 
 use crate::fem::material::{Material, Parameters, Principal, Tangent, add_strain_tangent, no_tangent};
-use opruga_core::potential::Definiteness;
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::singular;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ E:E + λ/2 tr² E with E = ½(FᵀF − 1); P = F S, S = 2μE + λ tr E 1.
 ///
@@ -47,7 +46,7 @@ impl<const D: usize> Material<D> for StVenantKirchhoff {
         out
     }
     #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
         let s = singular(f);
         let mut squares = S::zero();
         for i in 0..D {
@@ -68,6 +67,6 @@ impl<const D: usize> Material<D> for StVenantKirchhoff {
                 principal.sum[i][j] = common + p.mu * (ends - a * b);
             }
         }
-        principal.tangent(&s, Definiteness::Clamped)
+        (s, principal)
     }
 }

@@ -3,10 +3,9 @@
 use crate::fem::material::{
     Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, no_tangent,
 };
-use opruga_core::potential::Definiteness;
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::singular;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = m/2 (I − 3) − 3m/4 (J − 1) + l/2 (J − 1)² − m/2 ln((I + 1)/4) with m = 4/3 μ, l = λ + 5/6 μ, I = tr FᵀF in space and
 /// tr FᵀF + 1 in plane strain, J = det F; P = m (1 − 1/(I + 1)) F + (l (J − 1) − 3m/4) cof F.
@@ -60,7 +59,7 @@ impl<const D: usize> Material<D> for StableNeoHookean {
         out
     }
     #[inline(always)]
-    fn clamped_tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
         let (m, l) = moduli(p);
         let s = singular(f);
         let half = S::splat(0.5);
@@ -69,6 +68,6 @@ impl<const D: usize> Material<D> for StableNeoHookean {
         principal.add_stretch(&s.sigma, half * (m - m * inverse), half * m * inverse * inverse);
         let first = l * (matrix::determinant(f) - S::one()) - S::splat(0.75) * m;
         principal.add_volumetric(&s.sigma, first, l);
-        principal.tangent(&s, Definiteness::Clamped)
+        (s, principal)
     }
 }

@@ -1,5 +1,6 @@
 //! `opruga bench vertices`: figure 4 of the thesis, the speed against the number of vertices.
 
+use super::processor_time;
 use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
 use opruga::core::spec::{Value, Values};
 use opruga::{Options, Simd, World, mesh};
@@ -167,21 +168,6 @@ pub(crate) fn time(
         frames_per_second: 1.0 / (16.0 * step + drawn),
         calibration_nanoseconds: calibration(world.simd()),
     })
-}
-
-/// Processor time of this thread [s]; wall time where the system has no such clock.
-pub(crate) fn processor_time() -> f64 {
-    #[cfg(unix)]
-    {
-        let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-        now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
-    }
-    #[cfg(not(unix))]
-    {
-        use std::sync::OnceLock;
-        static START: OnceLock<Instant> = OnceLock::new();
-        START.get_or_init(Instant::now).elapsed().as_secs_f64()
-    }
 }
 
 /// Time of a pack of square roots and divisions [ns].

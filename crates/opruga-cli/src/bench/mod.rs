@@ -1,0 +1,110 @@
+//! `opruga bench`: speed by the processor time of one thread, with what the machine can do in the same run.
+
+pub(crate) mod elements;
+pub(crate) mod scene;
+mod timed;
+pub(crate) mod vertices;
+
+use opruga::Simd;
+use opruga::math::{Pack, WIDTH, Work};
+
+/// Processor time of this thread [s]; wall time where the system has no such clock.
+pub(crate) fn processor_time() -> f64 {
+    #[cfg(unix)]
+    {
+        let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
+    }
+    #[cfg(not(unix))]
+    {
+        use std::sync::OnceLock;
+        use std::time::Instant;
+        static START: OnceLock<Instant> = OnceLock::new();
+        START.get_or_init(Instant::now).elapsed().as_secs_f64()
+    }
+}
+
+/// The middle one of some numbers.
+pub(crate) fn median(numbers: &[f64]) -> f64 {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// The processor time of a piece of work, the best of some repetitions of at least 5 ms [s].
+pub(crate) fn best(repetitions: usize, mut work: impl FnMut()) -> f64 {
+    let mut best = f64::INFINITY;
+    let mut together = 1;
+    let mut done = 0;
+    while done < repetitions {
+        let start = processor_time();
+        for _ in 0..together {
+            work();
+        }
+        let spent = processor_time() - start;
+        if spent < 5e-3 && together < 1 << 30 {
+            together *= 2;
+            continue;
+        }
+        best = best.min(spent / together as f64);
+        done += 1;
+    }
+    best
+}
+
+/// What the machine can do, measured in the run that it is printed with.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub(crate) struct Machine {
+    simd: &'static str,
+    /// Products and sums in registers, not fused [10⁹/s].
+    operations: f64,
+    /// a = b + s c over arrays of 32 MB each, three numbers counted [10⁹ bytes/s].
+    memory: f64,
+}
+
+impl Machine {
+    pub(crate) fn measure(simd: Simd) -> Machine {
+        const ROUNDS: usize = 4096;
+        const CHAINS: usize = 12;
+        struct Chains<'a>(&'a mut [f64]);
+        impl Work for Chains<'_> {
+            type Output = ();
+            #[inline(always)]
+            fn run<P: Pack>(self) {
+                let (factor, term) = (P::splat(0.999_999), P::splat(1e-6));
+                let mut chains = [P::one(); CHAINS];
+                for _ in 0..ROUNDS {
+                    for k in 0..CHAINS {
+                        chains[k] = chains[k] * factor + term;
+                    }
+                }
+                let mut sum = P::zero();
+                for k in 0..CHAINS {
+                    sum += chains[k];
+                }
+                sum.store(self.0);
+            }
+        }
+        struct Triad<'a>(&'a mut [f64], &'a [f64], &'a [f64]);
+        impl Work for Triad<'_> {
+            type Output = ();
+            #[inline(always)]
+            fn run<P: Pack>(self) {
+                for k in (0..self.0.len()).step_by(WIDTH) {
+                    (P::load(&self.1[k..]) + P::splat(0.5) * P::load(&self.2[k..])).store(&mut self.0[k..]);
+                }
+            }
+        }
+        let mut out = [0.0; WIDTH];
+        let seconds = best(5, || simd.run(Chains(std::hint::black_box(&mut out))));
+        let operations = (2 * ROUNDS * CHAINS * WIDTH) as f64 / seconds * 1e-9;
+        let (mut a, b, c) = (vec![0.0; 1 << 22], vec![1.0; 1 << 22], vec![2.0; 1 << 22]);
+        let seconds = best(3, || simd.run(Triad(std::hint::black_box(&mut a), &b, &c)));
+        let memory = (24 * a.len()) as f64 / seconds * 1e-9;
+        Machine { simd: simd.name(), operations, memory }
+    }
+    pub(crate) fn sentence(&self) -> String {
+        let Machine { simd, operations, memory } = self;
+        format!("this machine now: {simd}, {operations:.0}·10⁹ products and sums a second, {memory:.0} GB/s of memory")
+    }
+}

@@ -1,0 +1,113 @@
+//! `opruga bench scene`: the time of the frames of a scene, and what implicit bodies spend it on.
+
+use super::timed::{Spent, registry};
+use super::{Machine, median, processor_time};
+use crate::arguments::BenchScene;
+use crate::failure::{Failure, print_data};
+use crate::run::simd_from_environment;
+use crate::source::{Source, Whole, overrides};
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::core::spec::Values;
+use opruga::io::scene;
+use opruga::{Options, Registry, World};
+use serde_json::json;
+use std::sync::Arc;
+
+/// Runs a scene without writing anything and prints how long its frames take.
+pub(crate) fn bench(call: &BenchScene) -> Result<u8, Failure> {
+    let source = Source::find(&call.scene)?;
+    let reading = scene::Options {
+        overrides: overrides(&call.set)?,
+        files: source.files.clone().allow_outside(call.allow_outside),
+        ..scene::Options::default()
+    };
+    let options = Options { simd: simd_from_environment()?, ..Options::default() };
+    let Whole { blueprint, notices, .. } = source.read(&reading, &options)?;
+    if !call.json {
+        notices.iter().for_each(|notice| eprintln!("{notice}"));
+    }
+    match blueprint {
+        AnyBlueprint::Plane(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
+        AnyBlueprint::Space(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
+    }
+}
+
+fn of_scene<const D: usize>(
+    call: &BenchScene,
+    source: &Source,
+    blueprint: Blueprint<D>,
+    reading: &scene::Options,
+    options: &Options,
+) -> Result<u8, Failure> {
+    // What is wrong with it is told as `run` tells it.
+    let first = source.build(blueprint.clone(), reading, options)?;
+    // Explicit rules call models tile by tile: the clock would be most of what it measures.
+    let library = Registry::<D>::default();
+    let is_implicit = |kind: &str| {
+        let rule = library.integrator(kind).and_then(|rule| rule.build(&Values::defaults(rule.spec(), D)).ok());
+        rule.is_some_and(|rule| rule.needs().hessian)
+    };
+    let implicit = first.integrators().into_iter().all(is_implicit);
+    drop(first);
+    let spent = Arc::new(Spent::default());
+    let models = if implicit { registry(&spent) } else { library };
+    let failed = |error: opruga::WorldError| source.run_error(&error, 0.0);
+    let mut world = World::with_registry(blueprint, options.clone(), Arc::new(models)).map_err(failed)?;
+    let nodes: usize = world.bodies().map(|body| world.node_count(body)).sum();
+    let machine = Machine::measure(world.simd());
+
+    let frame = |world: &mut World<D>| world.frame().map_err(|error| source.run_error(&error, world.time()));
+    for _ in 0..call.after {
+        frame(&mut world)?;
+    }
+    let (before, work) = (spent.milliseconds(), world.solver_work());
+    let mut times = Vec::with_capacity(call.frames as usize);
+    for _ in 0..call.frames {
+        let start = processor_time();
+        frame(&mut world)?;
+        times.push((processor_time() - start) * 1e3);
+    }
+    let frames = f64::from(call.frames);
+    let mean = times.iter().sum::<f64>() / frames;
+    let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+    let after = spent.milliseconds();
+    let [forces, matrices] = [0, 1].map(|k| (after[k] - before[k]) / frames);
+    let now = world.solver_work();
+    let per_frame = |now: u64, before: u64| (now - before) as f64 / frames;
+    let iterations = per_frame(now.iterations, work.iterations);
+    let products = per_frame(now.linear_iterations, work.linear_iterations);
+    let phases = implicit.then(|| {
+        json!({
+            "forces": forces, "matrices": matrices, "solving_and_contact": mean - forces - matrices,
+            "iterations": iterations, "products": products,
+        })
+    });
+    let row = json!({
+        "scene": source.name, "nodes": nodes, "frames": call.frames, "substeps": world.blueprint().time.substeps,
+        "integrators": world.integrators(), "simd": world.simd().name(), "threads": 1,
+        "milliseconds_per_frame": median(&times), "least_milliseconds": least, "mean_milliseconds": mean,
+        "phases": phases, "calibration": machine,
+    });
+    if call.json {
+        print_data(&format!("{}\n", json!({ "rows": [row] })))?;
+        return Ok(0);
+    }
+    let mut text = format!(
+        "{}: {nodes} nodes, {} frames of {} substeps by {}\n  {:.3} ms per frame (median), {least:.3} at least, {mean:.3} on average\n",
+        source.name,
+        call.frames,
+        world.blueprint().time.substeps,
+        world.integrators().join(", "),
+        median(&times),
+    );
+    if implicit {
+        text += &format!(
+            "  of that on average {forces:.3} ms forces, {matrices:.3} ms matrices, {:.3} ms solving and contact\n  \
+             {iterations:.2} iterations and {products:.1} products with the matrix a frame\n",
+            mean - forces - matrices,
+        );
+    }
+    text += &format!("  {}\n", machine.sentence());
+    print_data(&text)?;
+    Ok(0)
+}

@@ -1,0 +1,130 @@
+//! Models that count the time that integrators spend in them: each stands in the registry before the one that it wraps.
+
+use super::processor_time;
+use opruga::Registry;
+use opruga::core::error::{BuildError, StepError};
+use opruga::core::potential::{Account, CellState, Count, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga::core::spec::Spec;
+use opruga::core::state::View;
+use opruga::core::tile::Tile;
+use opruga::math::{Simd, WIDTH};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Time spent in models [ns].
+#[derive(Debug, Default)]
+pub(crate) struct Spent {
+    /// Forces and energies.
+    pub(crate) forces: AtomicU64,
+    /// Second derivatives, and adding them to the matrix.
+    pub(crate) matrices: AtomicU64,
+}
+
+impl Spent {
+    /// Both, in milliseconds.
+    pub(crate) fn milliseconds(&self) -> [f64; 2] {
+        [&self.forces, &self.matrices].map(|time| time.load(Ordering::Relaxed) as f64 * 1e-6)
+    }
+}
+
+fn count<T>(to: &AtomicU64, work: impl FnOnce() -> T) -> T {
+    let start = processor_time();
+    let out = work();
+    to.fetch_add(((processor_time() - start) * 1e9) as u64, Ordering::Relaxed);
+    out
+}
+
+/// The models of the library, timed.
+pub(crate) fn registry<const D: usize>(spent: &Arc<Spent>) -> Registry<D> {
+    let library = Arc::new(Registry::<D>::default());
+    let mut out = Registry::default();
+    for spec in library.models() {
+        out.add_model(Box::new(TimedModel { library: Arc::clone(&library), spec, spent: Arc::clone(spent) }));
+    }
+    out
+}
+
+struct TimedModel<const D: usize> {
+    library: Arc<Registry<D>>,
+    spec: &'static Spec,
+    spent: Arc<Spent>,
+}
+
+impl<const D: usize> Model<D> for TimedModel<D> {
+    fn spec(&self) -> &'static Spec {
+        self.spec
+    }
+    fn views(&self) -> Views {
+        self.library.model(self.spec.kind).map_or(Views::default(), |model| model.views())
+    }
+    fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
+        let Some(model) = self.library.model(self.spec.kind) else {
+            return Err(BuildError::new(self.spec.kind, "scene.unknown_name", "the library lacks it"));
+        };
+        let inner = model.build(ingredients)?;
+        Ok(Box::new(Timed { inner, spent: Arc::clone(&self.spent) }))
+    }
+}
+
+#[derive(Debug)]
+struct Timed<const D: usize> {
+    inner: Box<dyn Potential<D>>,
+    spent: Arc<Spent>,
+}
+
+impl<const D: usize> Potential<D> for Timed<D> {
+    fn name(&self) -> &'static str {
+        self.inner.name()
+    }
+    fn views(&self) -> Views {
+        self.inner.views()
+    }
+    fn account(&self) -> Account {
+        self.inner.account()
+    }
+    fn spans(&self, visit: &mut dyn FnMut(u32, u32)) {
+        self.inner.spans(visit);
+    }
+    fn bonds(&self) -> &[[u32; 2]] {
+        self.inner.bonds()
+    }
+    fn initial_memory(&self) -> Vec<f64> {
+        self.inner.initial_memory()
+    }
+    fn scratch_len(&self) -> usize {
+        self.inner.scratch_len()
+    }
+    fn prepare(&self, simd: Simd, view: &View<D>, memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
+        count(&self.spent.forces, || self.inner.prepare(simd, view, memory, scratch))
+    }
+    fn begins_tiles(&self) -> bool {
+        self.inner.begins_tiles()
+    }
+    fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
+        count(&self.spent.forces, || self.inner.add_force(simd, view, scratch, tile));
+    }
+    fn remember(&self, simd: Simd, view: &View<D>, h: f64, scratch: &mut [f64], memory: &mut [f64]) -> [f64; WIDTH] {
+        self.inner.remember(simd, view, h, scratch, memory)
+    }
+    fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
+        count(&self.spent.forces, || self.inner.energy(simd, view, scratch))
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        count(&self.spent.matrices, || self.inner.hessian(view, scratch, keep, sink));
+    }
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
+        count(&self.spent.matrices, || self.inner.damping_matrix(view, scratch, sink));
+    }
+    fn readings(&self, view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<(&'static str, f64)> {
+        self.inner.readings(view, scratch, memory, body)
+    }
+    fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
+        self.inner.cell_states(view, body)
+    }
+    fn counts(&self, memory: &[f64]) -> Vec<Count> {
+        self.inner.counts(memory)
+    }
+    fn heap_bytes(&self) -> usize {
+        self.inner.heap_bytes()
+    }
+}

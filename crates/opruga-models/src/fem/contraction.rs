@@ -1,0 +1,192 @@
+//! Tangents at the points of elements to the blocks of their matrices, for every set of vector instructions.
+
+use super::elements::Shape;
+use super::law::{PRINCIPAL, read_matrix, write_matrix};
+use super::section::Group;
+use super::work::geometry;
+use core::marker::PhantomData;
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::{Lane, Pack, Register, WIDTH, Work};
+
+/// Tangents at the points of one pack of elements to blocks K_ab, a ≤ b, `[(a N + b)][i][k]` packs.
+pub(super) struct Contract<'a, E, const D: usize, const N: usize> {
+    pub(super) shape: PhantomData<E>,
+    pub(super) group: Group<'a>,
+    /// Which pack of the group.
+    pub(super) pack: usize,
+    /// D⁴ packs for every pack of points.
+    pub(super) tangent: &'a [f64],
+    pub(super) blocks: &'a mut [f64],
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        // The first node of a simplex has what the others leave.
+        let start = usize::from(E::SIMPLEX);
+        let pack = self.group.first + self.pack;
+        let tangents = &self.tangent[self.pack * self.group.points * D * D * D * D * WIDTH..];
+        for part in 0..P::PARTS {
+            let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
+            let mut mean = [[P::Part::zero(); D]; N];
+            let (shares, whole) = geometry::<P::Part, D>(&self.group, pack, self.group.points - 1, part);
+            for q in 0..self.group.points {
+                let (inverse, mut measure) = geometry::<P::Part, D>(&self.group, pack, q, part);
+                let mut slopes = [[P::Part::zero(); D]; N];
+                if E::SELECTIVE && q == E::POINTS {
+                    (slopes, measure) = (mean, whole);
+                } else {
+                    for a in start..N {
+                        for m in 0..D {
+                            slopes[a][m] = if E::SIMPLEX {
+                                inverse[a - 1][m]
+                            } else {
+                                let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
+                                for j in 1..D {
+                                    sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
+                                }
+                                sum
+                            };
+                            if E::SELECTIVE && self.group.selective {
+                                mean[a][m] += shares[q / D][q % D] * slopes[a][m];
+                            }
+                        }
+                    }
+                }
+                for i in 0..D {
+                    // Row i of the tangent: ∂Pᵢⱼ/∂Fₖₗ.
+                    let mut row = [[[P::Part::zero(); D]; D]; D];
+                    for j in 0..D {
+                        row[j] = read_matrix(&tangents[((q * D + i) * D + j) * D * D * WIDTH..], part);
+                    }
+                    for a in start..N {
+                        let mut pulled = matrix::zeros::<P::Part, D>();
+                        for j in 0..D {
+                            let weight = measure * slopes[a][j];
+                            for k in 0..D {
+                                for l in 0..D {
+                                    pulled[k][l] += weight * row[j][k][l];
+                                }
+                            }
+                        }
+                        for b in a..N {
+                            for k in 0..D {
+                                for l in 0..D {
+                                    blocks[a][b][i][k] += pulled[k][l] * slopes[b][l];
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            if E::SIMPLEX {
+                complete(&mut blocks);
+            }
+            for a in 0..N {
+                for b in a..N {
+                    write_matrix(&mut self.blocks[(a * N + b) * D * D * WIDTH..], part, &blocks[a][b]);
+                }
+            }
+        }
+    }
+}
+
+/// The blocks of the first node of a simplex: sums over b of K_ab are zero.
+#[inline(always)]
+fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R, D>; N]; N]) {
+    for b in 1..N {
+        for i in 0..D {
+            for k in 0..D {
+                let mut sum = R::zero();
+                for a in 1..N {
+                    sum += if a <= b { blocks[a][b][i][k] } else { blocks[b][a][k][i] };
+                }
+                blocks[0][b][i][k] = -sum;
+            }
+        }
+    }
+    for i in 0..D {
+        for k in 0..D {
+            let mut sum = R::zero();
+            for b in 1..N {
+                sum += blocks[0][b][i][k];
+            }
+            blocks[0][0][i][k] = -sum;
+        }
+    }
+}
+
+/// The same for simplices from tangents in the frame of the singular vectors, F = U diag(σ) Vᵀ.
+///
+/// With ĝ = Vᵀ ∂N/∂X the block K_ab is U K̂ Uᵀ, where K̂ᵢₖ = Hᵢₖ ĝᵃᵢ ĝᵇₖ + Tᵢₖ ĝᵃₖ ĝᵇᵢ off the diagonal and
+/// K̂ᵢᵢ = Hᵢᵢ ĝᵃᵢ ĝᵇᵢ + Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it: D⁴ numbers are never written out.
+pub(super) struct ContractPrincipal<'a, E, const D: usize, const N: usize> {
+    pub(super) shape: PhantomData<E>,
+    pub(super) group: Group<'a>,
+    /// Which pack of the group.
+    pub(super) pack: usize,
+    /// As [`super::law::Law::principal`] writes them.
+    pub(super) principal: &'a [f64],
+    pub(super) blocks: &'a mut [f64],
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<'_, E, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let size = D * D * WIDTH;
+        let from = &self.principal[self.pack * PRINCIPAL * size..(self.pack + 1) * PRINCIPAL * size];
+        for part in 0..P::PARTS {
+            let (inverse, measure) = geometry::<P::Part, D>(&self.group, self.group.first + self.pack, 0, part);
+            // Rows are nodes: ĝ of the node a + 1.
+            let slopes = matrix::product(&inverse, &read_matrix::<P::Part, D>(&from[size..], part));
+            let u = read_matrix::<P::Part, D>(from, part);
+            let second = read_matrix::<P::Part, D>(&from[2 * size..], part);
+            let pairs = read_matrix::<P::Part, D>(&from[3 * size..], part);
+            let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
+            for a in 0..D {
+                let mut left = slopes[a];
+                for i in 0..D {
+                    left[i] = measure * left[i];
+                }
+                // What of K̂ does not depend on b.
+                let mut own = second;
+                let mut other = pairs;
+                let mut along = pairs;
+                for i in 0..D {
+                    for k in 0..D {
+                        let (low, high) = if i < k { (i, k) } else { (k, i) };
+                        own[i][k] = second[i][k] * left[i];
+                        other[i][k] = pairs[high][low] * left[k];
+                        along[i][k] = pairs[low][high] * left[k];
+                    }
+                }
+                for b in a..D {
+                    let right = &slopes[b];
+                    let mut inner = [[P::Part::zero(); D]; D];
+                    for i in 0..D {
+                        for k in 0..D {
+                            inner[i][k] = own[i][k] * right[k];
+                            if i != k {
+                                inner[i][k] += other[i][k] * right[i];
+                            }
+                        }
+                        for j in 0..D {
+                            if i != j {
+                                inner[i][i] += along[i][j] * right[j];
+                            }
+                        }
+                    }
+                    blocks[a + 1][b + 1] = matrix::product_transposed(&matrix::product(&u, &inner), &u);
+                }
+            }
+            complete(&mut blocks);
+            for a in 0..N {
+                for b in a..N {
+                    write_matrix(&mut self.blocks[(a * N + b) * size..], part, &blocks[a][b]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Passes over the elements of a section: forces, matrices, stresses.
+//!
+//! All of them look at a few packs of elements at a time: deformation gradients into a buffer, a law over the buffer, and
+//! what they are after out of it.
+
+use super::contraction::{Contract, ContractPrincipal};
+use super::elements::Shape;
+use super::law::{PARAMETERS, PRINCIPAL, Points};
+use super::section::{Group, MOST_PACKS, Room, Section, Totals};
+use super::work::{Forces, Gradients, Nodes, ViscousStress, ViscousTangents, parameters_of_points};
+use core::marker::PhantomData;
+use opruga_core::error::StepError;
+use opruga_core::potential::{CellState, Definiteness, Sink, StencilPack};
+use opruga_core::state::{Layout, View};
+use opruga_math::{Simd, WIDTH};
+
+/// Packs of points whose tangents are held at a time where elements have one point: what fits the first-level cache.
+const TANGENTS: usize = 4;
+
+/// A pass, with the buffers that it needs.
+pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
+    section: &'a Section<E, D, N>,
+    simd: Simd,
+    gradient: Room<{ MOST_PACKS * 9 * WIDTH }>,
+    numbers: Room<{ MOST_PACKS * PARAMETERS * WIDTH }>,
+    times: Room<{ MOST_PACKS * WIDTH }>,
+}
+
+/// What a matrix is made of: tangents at the points, or what damping adds.
+#[derive(Clone, Copy)]
+enum Matrix {
+    Hessian(Definiteness),
+    Damping,
+}
+
+impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
+    pub(super) fn new(section: &'a Section<E, D, N>, simd: Simd) -> Self {
+        let mut pass = Pass {
+            section,
+            simd,
+            gradient: Room([0.0; MOST_PACKS * 9 * WIDTH]),
+            numbers: Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
+            times: Room([0.0; MOST_PACKS * WIDTH]),
+        };
+        // What holds for all elements is written once.
+        if section.uniform && section.packs() > 0 {
+            let together = (MOST_PACKS / section.points).max(1);
+            pass.read_parameters(&section.group(0, together));
+        }
+        pass
+    }
+
+    fn read_parameters(&mut self, group: &Group<'_>) {
+        parameters_of_points(group, E::POINTS, &mut self.numbers.0, &mut self.times.0);
+    }
+
+    /// Deformation gradients and parameters at the points of some packs of elements.
+    fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>) {
+        let gradient = &mut self.gradient.0;
+        self.simd.run(Gradients::<E, D, N> { shape: PhantomData, group: *group, nodes, gradient });
+        if !self.section.uniform {
+            self.read_parameters(group);
+        }
+    }
+
+    fn points(&self, group: &Group<'_>) -> Points<'_> {
+        Points { count: group.packs * group.points, gradient: &self.gradient.0, parameters: &self.numbers.0 }
+    }
+
+    /// Adds forces and totals.
+    pub(super) fn forces(
+        mut self,
+        view: &View<D>,
+        [positions, velocities]: [Nodes<'_, D>; 2],
+        totals: &mut Totals,
+        force: &mut [f64],
+    ) -> Result<(), StepError> {
+        let (section, simd) = (self.section, self.simd);
+        let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut power = Room([0.0; MOST_PACKS * WIDTH]);
+        for group in section.groups(MOST_PACKS) {
+            self.deform(&group, positions);
+            let points = self.points(&group);
+            section.law.stress(simd, points, &mut density.0, &mut stress.0);
+            if section.damped {
+                let (gradient, times) = (&mut rate.0, &self.times.0);
+                simd.run(Gradients::<E, D, N> { shape: PhantomData, group, nodes: velocities, gradient });
+                let (stress, power) = (&mut stress.0, &mut power.0);
+                simd.run(ViscousStress::<D> { points, rate: &rate.0, times, stress, power });
+            }
+            simd.run(Forces::<E, D, N> {
+                shape: PhantomData,
+                group,
+                stress: &stress.0,
+                density: &mut density.0,
+                power: section.damped.then_some(&mut power.0),
+                force,
+            });
+            for k in 0..group.packs {
+                let row = match section.layout {
+                    Layout::Single => 0,
+                    Layout::Batch => (group.first + k) % WIDTH,
+                };
+                let energy = &density.0[k * WIDTH..(k + 1) * WIDTH];
+                let mut sum = 0.0;
+                for l in 0..WIDTH {
+                    totals.energy[row][l] += energy[l];
+                    totals.power[row][l] += power.0[k * WIDTH + l];
+                    sum += energy[l];
+                }
+                if sum.is_nan()
+                    && let Some(refusal) = section.refusal(view, group.first + k, energy)
+                {
+                    return Err(refusal);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Delivers ∂²U/∂x∂x.
+    pub(super) fn hessian(self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
+        self.assemble(positions, Matrix::Hessian(keep), sink);
+    }
+
+    /// Delivers −∂F/∂v.
+    pub(super) fn damping_matrix(self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
+        self.assemble(positions, Matrix::Damping, sink);
+    }
+
+    fn assemble(mut self, positions: Nodes<'_, D>, matrix: Matrix, sink: &mut dyn Sink<D>) {
+        let (section, simd) = (self.section, self.simd);
+        let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
+        let tangent = &mut tangent.0;
+        let mut blocks = vec![0.0; N * N * D * D * WIDTH];
+        for group in section.groups(TANGENTS) {
+            self.deform(&group, positions);
+            let points = self.points(&group);
+            let principal = match matrix {
+                Matrix::Hessian(keep) => {
+                    let principal = E::SIMPLEX && keep == Definiteness::Clamped;
+                    let principal = principal && section.law.principal(simd, points, tangent);
+                    if !principal {
+                        section.law.tangent(simd, points, keep, tangent);
+                    }
+                    principal
+                }
+                Matrix::Damping => {
+                    simd.run(ViscousTangents::<D> { points, times: &self.times.0, tangent });
+                    false
+                }
+            };
+            for pack in 0..group.packs {
+                let (shape, blocks) = (PhantomData, &mut blocks);
+                if principal {
+                    let principal = &tangent[..points.count * PRINCIPAL * D * D * WIDTH];
+                    simd.run(ContractPrincipal::<E, D, N> { shape, group, pack, principal, blocks });
+                } else {
+                    simd.run(Contract::<E, D, N> { shape, group, pack, tangent, blocks });
+                }
+                let places = section.places(group.first + pack);
+                let count = group.present(group.first + pack);
+                sink.stencils(&StencilPack { nodes: N, count, places: places.as_flattened(), blocks });
+            }
+        }
+    }
+
+    /// Stress and volume ratio of the cells of a body.
+    pub(super) fn cell_states(mut self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
+        let (section, simd) = (self.section, self.simd);
+        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        for group in section.groups(1) {
+            self.deform(&group, positions);
+            let points = self.points(&group);
+            // Rows of stresses as they are stored: of three axes where the law in space is asked.
+            let axes = if let Some(law) = &section.law_in_space {
+                raise::<D>(&self.gradient.0, section.points, &mut in_space.0);
+                law.stress(simd, Points { gradient: &in_space.0, ..points }, &mut density.0, &mut stress.0);
+                3
+            } else {
+                section.law.stress(simd, points, &mut density.0, &mut stress.0);
+                D
+            };
+            for l in 0..WIDTH {
+                let (element, of) = section.item(group.first, l);
+                let Some(cell) = section.cells.get(element).filter(|_| of == body) else { continue };
+                let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
+                for q in 0..section.points {
+                    let weight = section.measure(group.first, q, l);
+                    let f = |i: usize, j: usize| match (i < D, j < D) {
+                        (true, true) => self.gradient.0[(q * D * D + i * D + j) * WIDTH + l],
+                        _ => f64::from(i32::from(i == j)),
+                    };
+                    let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
+                    let ratio = opruga_math::matrix::determinant(&matrix);
+                    if q < E::POINTS {
+                        measure += weight;
+                        now += weight * ratio;
+                    }
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; the mean stress meets the mean deformation.
+                    for i in 0..axes {
+                        for j in 0..3 {
+                            for k in 0..axes {
+                                sum[i][j] += weight * stress.0[(q * axes * axes + i * axes + k) * WIDTH + l] * f(j, k);
+                            }
+                        }
+                    }
+                }
+                let stress = sum.map(|row| row.map(|s| s / now));
+                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure });
+            }
+        }
+    }
+}
+
+/// Deformation gradients of space in which nothing moves across the plane.
+fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
+    space.fill(0.0);
+    for q in 0..points {
+        for l in 0..WIDTH {
+            let mut put = |i: usize, j: usize, value: f64| space[(q * 9 + i * 3 + j) * WIDTH + l] = value;
+            put(2, 2, 1.0);
+            for i in 0..D {
+                for j in 0..D {
+                    put(i, j, plane[(q * D * D + i * D + j) * WIDTH + l]);
+                }
+            }
+        }
+    }
+}
