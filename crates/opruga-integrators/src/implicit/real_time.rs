@@ -25,8 +25,8 @@ const ENOUGH: f64 = 0.2;
 /// The part with which the matrix is made anew in the next step.
 const WORN: f64 = 0.2;
 
-/// The part that the linear solver leaves while obstacles are near.
-const IN_CONTACT: f64 = 1e-3;
+/// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
+const LOOSE: f64 = 1e-3;
 
 /// What is out of balance counts as nothing where it moves nodes by less than this part of the extent.
 const NOTHING: f64 = 1e-9;
@@ -53,10 +53,16 @@ fn raised(kind: f64) -> f64 {
     part
 }
 
+/// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, a matrix of
+/// another shape is one that is turned, and the acceleration of an impact leads nowhere: nothing is kept from step to step.
+fn is_loose<const D: usize>(system: &System<D>) -> bool {
+    system.contacts.is_some() || system.pins.is_empty()
+}
+
 /// Where the body would come to under the acceleration of the last step, less x₀: in `room.u`.
 pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
     let last = system.history.numbers[room.own.numbers + 1];
-    if last <= 0.0 {
+    if last <= 0.0 || is_loose(system) {
         return;
     }
     let before = &system.history.columns[room.own.columns + 1];
@@ -130,7 +136,7 @@ impl Task<'_> {
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
     fn recall<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>) -> Result<bool, StepError> {
         let kind = system.history.numbers[room.own.numbers];
-        if kind <= 0.0 || !system.hessian_is_of_positions() {
+        if kind <= 0.0 || is_loose(system) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
         let mixture = self.mixture(system, &room.mass);
@@ -242,9 +248,7 @@ pub(crate) fn solve<const D: usize>(
         }
         let floor = NOTHING * room.extent * room.kept.stiffness().sqrt();
         let settled = !undecided && !moves;
-        // Where obstacles are near, nothing is left for the steps that follow an impact.
-        let near = system.contacts.is_some();
-        let (enough, linear) = if near { (IN_CONTACT * IN_CONTACT, IN_CONTACT) } else { (ENOUGH, LINEAR) };
+        let (enough, linear) = if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (ENOUGH, LINEAR) };
         let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
             if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
@@ -252,7 +256,7 @@ pub(crate) fn solve<const D: usize>(
             }
             return Ok(solved);
         }
-        if solved.iterations > 0 && size > WORN * first {
+        if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
             // The matrix of another shape does not lead there.
             task.make_here(system, room, CLAMPED);
             size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
