@@ -4,7 +4,6 @@
 //! reference is part of the state: a run that is taken up again makes the same matrix from it.
 
 use super::linear::{Filter, Linear, Mixture};
-use opruga_core::potential::Definiteness;
 use opruga_core::state::Columns;
 use opruga_core::system::System;
 use opruga_solve::blocks::Block;
@@ -17,8 +16,8 @@ pub(crate) struct Kept<const D: usize> {
     there: bool,
     sigma: f64,
     beta: f64,
-    /// How much the diagonal is raised; none where the derivatives are the exact ones.
-    raised: Option<f64>,
+    /// By how much the diagonal is raised.
+    raised: f64,
     reference: Columns<D>,
     /// The directions that were free when it was made ready to be solved with.
     ready: bool,
@@ -34,7 +33,7 @@ impl<const D: usize> Default for Kept<D> {
             there: false,
             sigma: 0.0,
             beta: 0.0,
-            raised: None,
+            raised: 0.0,
             reference: Columns::zeros(0),
             ready: false,
             free: Vec::new(),
@@ -47,7 +46,7 @@ impl<const D: usize> Default for Kept<D> {
 
 impl<const D: usize> Kept<D> {
     /// Whether the matrix at hand is the one of a shape, of factors and of a way to keep it definite.
-    pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: Option<f64>) -> bool {
+    pub(crate) fn is_of(&self, reference: &Columns<D>, mixture: &Mixture<D>, raised: f64) -> bool {
         let nodes = mixture.mass.len();
         self.there
             && (self.sigma, self.beta, self.raised) == (mixture.sigma, mixture.beta, raised)
@@ -55,16 +54,10 @@ impl<const D: usize> Kept<D> {
     }
 
     /// Makes the matrix in the shape that was evaluated last, which is `reference`.
-    pub(crate) fn make(
-        &mut self,
-        linear: &mut Linear<D>,
-        mixture: &Mixture<D>,
-        raised: Option<f64>,
-        reference: &Columns<D>,
-    ) {
+    pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, raised: f64, reference: &Columns<D>) {
         linear.assemble(mixture);
-        if let Some(part) = raised.filter(|part| *part > 0.0) {
-            linear.raise(part);
+        if raised > 0.0 {
+            linear.raise(raised);
         }
         self.packed.take(linear.whole(), mixture.system.threads);
         (self.there, self.ready) = (true, false);
@@ -131,12 +124,6 @@ impl<const D: usize> Kept<D> {
         };
         if out.iter().all(|x| x.is_finite()) { Ok(outcome) } else { Err(Indefinite) }
     }
-}
-
-/// Which derivatives a number of the history stands for: those of the exact energy, or those of elements without negative
-/// eigenvalues, with the diagonal raised by a part of itself.
-pub(crate) fn definiteness(raised: Option<f64>) -> Definiteness {
-    if raised.is_none() { Definiteness::Exact } else { Definiteness::Clamped }
 }
 
 /// A vector becomes a copy of a slice, in memory that is there already.

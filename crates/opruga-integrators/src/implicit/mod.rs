@@ -12,7 +12,6 @@
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
-//! | `damped` | its directions where damping is strong and the step deforms much |
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
@@ -20,7 +19,7 @@
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
 //! each element's block without its negative eigenvalues, for which every direction leads downhill. What the damping force
-//! changes with position is left out, until convergence is seen to suffer from that. The line search accepts a step when the
+//! changes with position is left out: with damping, convergence is fast but linear. The line search accepts a step when the
 //! slope of Φ along it has fallen (Hager and Zhang 2005, approximate Wolfe condition) and, where Φ is known, when Φ has not
 //! risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
 //!
@@ -32,7 +31,6 @@
 //! dealt with at the end of the step: what a node brings along the normal is lost or returned by the restitution.
 
 pub(crate) mod contact;
-mod damped;
 mod kept;
 pub(crate) mod linear;
 pub(crate) mod newton;

@@ -1,6 +1,5 @@
 //! Newton's method on the balance of forces of a stage.
 
-use super::damped;
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -44,7 +43,7 @@ const LONGEST: f64 = 0.5;
 
 /// Which derivatives a direction is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Keep {
+enum Keep {
     /// The exact ones.
     Exact,
     /// Each element's without its negative eigenvalues.
@@ -54,10 +53,10 @@ pub(crate) enum Keep {
 }
 
 impl Keep {
-    pub(crate) fn definiteness(self) -> Definiteness {
+    fn definiteness(self) -> Definiteness {
         if self == Keep::Exact { Definiteness::Exact } else { Definiteness::Clamped }
     }
-    pub(crate) fn next(self) -> Option<Keep> {
+    fn next(self) -> Option<Keep> {
         match self {
             Keep::Exact => Some(Keep::Clamped),
             Keep::Clamped => Some(Keep::Raised(1e-8)),
@@ -68,9 +67,6 @@ impl Keep {
 
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
-
-/// After so many iterations the derivative of damping forces by position counts.
-const MOST_SYMMETRIC: u32 = 8;
 
 /// The part of the slope that may be left after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
@@ -151,13 +147,7 @@ pub(crate) fn solve<const D: usize>(
         if far || solved.correction <= goal {
             full_step(system, room, balance)?;
         } else {
-            let mut length = 0.0;
-            if solved.iterations > MOST_SYMMETRIC && !moves && system.is_damped() {
-                length = damped::go(system, room, balance, settings, keep)?;
-            }
-            if length == 0.0 {
-                length = line_search(system, room, balance, slope)?;
-            }
+            let length = line_search(system, room, balance, slope)?;
             solved.correction *= length;
             if length == 0.0 && !changed {
                 solved.converged = at_rounding(system, room, balance, settings, size);

@@ -6,12 +6,12 @@
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
-use super::kept::definiteness;
 use super::linear::{Filter, Mixture};
 use super::newton::{Balance, Solved, evaluate, look};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
+use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::Indefinite;
@@ -25,6 +25,9 @@ const ENOUGH: f64 = 0.2;
 /// The part with which the matrix is made anew in the next step.
 const WORN: f64 = 0.2;
 
+/// The part that the linear solver leaves of bodies that are free or near obstacles; an iteration is enough with its square.
+const LOOSE: f64 = 1e-3;
+
 /// What is out of balance counts as nothing where it moves nodes by less than this part of the extent.
 const NOTHING: f64 = 1e-9;
 
@@ -36,28 +39,30 @@ const PRODUCTS: u32 = 100;
 pub(crate) const COLUMNS: usize = 2;
 pub(crate) const NUMBERS: usize = 2;
 
-/// Numbers of the history: the exact matrix, the clamped one; above it raised ones. Zero is none, a negative number one that
-/// is to be made anew.
-const EXACT: f64 = 1.0;
-const CLAMPED: f64 = 2.0;
-const MOST_RAISED: f64 = 6.0;
+/// Numbers of the history: the matrix of elements without negative eigenvalues, above it ones with a raised diagonal. Zero is
+/// none, a negative number one that is to be made anew.
+const CLAMPED: f64 = 1.0;
+const MOST_RAISED: f64 = 5.0;
 
-/// By how much the diagonal is raised; none for the exact derivatives.
-fn raised(kind: f64) -> Option<f64> {
-    if kind <= EXACT {
-        return None;
-    }
+/// By how much the diagonal is raised.
+fn raised(kind: f64) -> f64 {
     let mut part = 0.0;
     for k in 0..(kind - CLAMPED) as u32 {
         part = if k == 0 { 1e-8 } else { 100.0 * part };
     }
-    Some(part)
+    part
+}
+
+/// Whether nothing holds a body, or obstacles may be near. What is left out of balance would push and turn it, a matrix of
+/// another shape is one that is turned, and the acceleration of an impact leads nowhere: nothing is kept from step to step.
+fn is_loose<const D: usize>(system: &System<D>) -> bool {
+    system.contacts.is_some() || system.pins.is_empty()
 }
 
 /// Where the body would come to under the acceleration of the last step, less x₀: in `room.u`.
 pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, theta: f64, h: f64) {
     let last = system.history.numbers[room.own.numbers + 1];
-    if last <= 0.0 {
+    if last <= 0.0 || is_loose(system) {
         return;
     }
     let before = &system.history.columns[room.own.columns + 1];
@@ -74,7 +79,8 @@ pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, th
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
 pub(crate) fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h: f64) {
-    system.history.numbers[room.own.numbers + 1] = h;
+    // The acceleration of an impact leads nowhere.
+    system.history.numbers[room.own.numbers + 1] = if room.struck.is_empty() { h } else { 0.0 };
     let before = &mut system.history.columns[room.own.columns + 1];
     for node in 0..system.nodes {
         for d in 0..D {
@@ -96,7 +102,7 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn mixture<'a, const D: usize>(&self, system: &'a System<D>, mass: &'a [f64], kind: f64) -> Mixture<'a, D> {
+    fn mixture<'a, const D: usize>(&self, system: &'a System<D>, mass: &'a [f64]) -> Mixture<'a, D> {
         Mixture {
             system,
             sigma: self.balance.sigma,
@@ -104,7 +110,7 @@ impl Task<'_> {
             mass,
             stage: Room::<D>::STAGE,
             time: self.balance.time,
-            keep: definiteness(raised(kind)),
+            keep: Definiteness::Clamped,
             matrix_free: false,
         }
     }
@@ -113,7 +119,7 @@ impl Task<'_> {
     fn make<const D: usize>(&self, system: &System<D>, room: &mut Room<D>) {
         let kind = system.history.numbers[room.own.numbers];
         let Room { kept, linear, mass, own, .. } = room;
-        let mixture = self.mixture(system, mass, kind);
+        let mixture = self.mixture(system, mass);
         kept.make(linear, &mixture, raised(kind), &system.history.columns[own.columns]);
     }
 
@@ -130,10 +136,10 @@ impl Task<'_> {
     /// Makes the matrix of the reference shape that the state remembers, if it is not at hand; none where there is none.
     fn recall<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>) -> Result<bool, StepError> {
         let kind = system.history.numbers[room.own.numbers];
-        if kind <= 0.0 || !system.hessian_is_of_positions() {
+        if kind <= 0.0 || is_loose(system) || !system.hessian_is_of_positions() {
             return Ok(false);
         }
-        let mixture = self.mixture(system, &room.mass, kind);
+        let mixture = self.mixture(system, &room.mass);
         if !room.kept.is_of(&system.history.columns[room.own.columns], &mixture, raised(kind)) {
             let (nodes, places) = (system.nodes, system.places());
             let System { history, state, .. } = system;
@@ -160,7 +166,7 @@ impl Task<'_> {
         trial.copy_from_slice(residual);
         contacting.subtract_friction(trial);
         if moves {
-            linear.multiply(&self.mixture(system, mass, EXACT), prescribed, right);
+            linear.multiply(&self.mixture(system, mass), prescribed, right);
             for (t, r) in trial.iter_mut().zip(&*right) {
                 *t += r;
             }
@@ -188,20 +194,19 @@ impl Task<'_> {
             match kept.solve(system, right, self.direct, goal, PRODUCTS, step) {
                 Ok((products, indefinite)) => {
                     if indefinite {
-                        // What was found leads downhill; the next matrix is a definite one.
+                        // What was found leads downhill; the next matrix is another one.
                         system.history.numbers[room.own.numbers] = -CLAMPED;
                     }
                     return (spent + products, true);
                 }
                 Err(Indefinite) => {
                     spent += 1;
-                    // Of the exact derivatives, or of those of a shape that no longer holds, none may be definite.
+                    // Directions without any stiffness, or a gas that pushes.
                     let kind = system.history.numbers[room.own.numbers].abs();
                     if kind >= MOST_RAISED {
                         return (spent, false);
                     }
-                    let next = if kind < CLAMPED { CLAMPED } else { kind + 1.0 };
-                    self.make_here(system, room, next);
+                    self.make_here(system, room, kind + 1.0);
                     if self.out_of_balance(system, room, moves).is_err() {
                         room.kept.forget_right_hand_side();
                     }
@@ -222,11 +227,10 @@ pub(crate) fn solve<const D: usize>(
     let number = room.own.numbers;
     let mut solved = Solved { converged: true, ..Solved::default() };
     // Whether the matrix is of this step.
-    let mut fresh = !task.recall(system, room)?;
+    let fresh = !task.recall(system, room)?;
     evaluate(system, room, balance, false)?;
     if fresh {
-        let kind = system.history.numbers[number];
-        task.make_here(system, room, if kind == -CLAMPED { CLAMPED } else { EXACT });
+        task.make_here(system, room, CLAMPED);
     }
     let (mut first, mut undecided) = (0.0, false);
     loop {
@@ -244,24 +248,24 @@ pub(crate) fn solve<const D: usize>(
         }
         let floor = NOTHING * room.extent * room.kept.stiffness().sqrt();
         let settled = !undecided && !moves;
-        let enough = if solved.iterations > 0 { (ENOUGH * first).larger(floor) } else { floor };
+        let (enough, linear) = if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (ENOUGH, LINEAR) };
+        let enough = if solved.iterations > 0 { (enough * first).larger(floor) } else { floor };
         if last || settled && size <= enough {
             if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
-                system.history.numbers[number] = -EXACT;
+                system.history.numbers[number] = -CLAMPED;
             }
             return Ok(solved);
         }
-        if solved.iterations > 0 && !fresh && settled && size > WORN * first {
+        if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
             // The matrix of another shape does not lead there.
-            task.make_here(system, room, EXACT);
-            fresh = true;
+            task.make_here(system, room, CLAMPED);
             size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
         }
         if size.is_nan() {
             room.kept.forget_right_hand_side();
         }
         solved.iterations += 1;
-        let (products, found) = task.direction(system, room, moves, (LINEAR * first).larger(floor));
+        let (products, found) = task.direction(system, room, moves, (linear * first).larger(floor));
         solved.products += products;
         if !found {
             solved.converged = false;
@@ -290,7 +294,7 @@ fn go<const D: usize>(
     }
     // What is out of balance after the step in the directions that are held: r + A Δ.
     if contacting.any() {
-        linear.multiply(&task.mixture(system, mass, EXACT), step, reaction);
+        linear.multiply(&task.mixture(system, mass), step, reaction);
         for (r, residual) in reaction.iter_mut().zip(&*residual) {
             *r += residual;
         }

@@ -1,7 +1,6 @@
 //! The vectors that an implicit step works on.
 
 use super::contact::Contacting;
-use super::damped::Krylov;
 use super::kept::Kept;
 use super::linear::Linear;
 use opruga_core::integrator::HistorySize;
@@ -47,7 +46,6 @@ pub(crate) struct Room<const D: usize> {
     /// Nodes that met an obstacle in this step.
     pub(crate) struck: Vec<usize>,
     pub(crate) linear: Linear<D>,
-    pub(crate) krylov: Krylov,
     /// The matrix of the real-time setting.
     pub(crate) kept: Kept<D>,
     /// Where the history of the real-time setting begins, behind that of the rule.
@@ -84,7 +82,6 @@ impl<const D: usize> Default for Room<D> {
             free: Vec::new(),
             projectors: Vec::new(),
             linear: Linear::default(),
-            krylov: Krylov::default(),
             kept: Kept::default(),
             own: HistorySize::default(),
             contacting: Contacting::default(),
@@ -125,10 +122,8 @@ impl<const D: usize> Room<D> {
         ] {
             vector.resize(size, 0.0);
         }
+        self.struck.clear();
         self.struck.reserve(system.nodes);
-        if system.is_damped() {
-            self.krylov.fit(size);
-        }
         self.mass.clear();
         self.mass.extend((0..system.nodes).map(|node| system.mass.at(node)));
         self.free.resize(system.nodes, true);
