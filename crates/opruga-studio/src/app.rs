@@ -69,7 +69,7 @@ impl Studio {
             plots: Plots::default(),
             gallery: Gallery::default(),
             keeping: Keeping::default(),
-            hand: Hand::default(),
+            hand: Default::default(),
             language: Language::default(),
             show: Show::default(),
             plots_open: false,

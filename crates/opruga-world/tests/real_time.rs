@@ -2,13 +2,14 @@
 //! in it, and (`-- --ignored --nocapture`) how long it takes.
 
 use opruga_core::spec::{Value, Values};
+use opruga_math::Lane;
 use opruga_mesh::{Cut, Mesh};
 use opruga_world::blueprint::*;
 use opruga_world::{Options, Registry, World};
 use std::sync::Arc;
 use std::time::Instant;
 
-fn fields<'a>(defaults: Values, set: &[(&'a str, Value)], spec: &'static opruga_core::spec::Spec) -> Values {
+fn fields(defaults: Values, set: &[(&str, Value)], spec: &'static opruga_core::spec::Spec) -> Values {
     let mut values = defaults;
     for (name, value) in set {
         values.set(spec, name, value.clone(), 3).expect("a field of the test's own");
@@ -74,7 +75,7 @@ fn world(blueprint: Blueprint<3>, threads: usize) -> World<3> {
 
 /// Mean height of the nodes that are farthest from the clamp at rest, less that at rest.
 fn tip(world: &World<3>, at_rest: &[[f64; 3]]) -> f64 {
-    let far = at_rest.iter().map(|p| p[0]).fold(0.0, f64::max);
+    let far = at_rest.iter().map(|p| p[0]).fold(0.0, Lane::larger);
     let nodes: Vec<usize> = (0..at_rest.len()).filter(|n| at_rest[*n][0] > far - 1e-9).collect();
     nodes.iter().map(|n| world.position(0, *n as u32)[1] - at_rest[*n][1]).sum::<f64>() / nodes.len() as f64
 }
@@ -203,7 +204,7 @@ fn time_and_error_of_the_clamped_cube() {
                  iterations and {:.1} products a step; energy {:.1e}",
                 spent.iter().sum::<f64>() / frames as f64,
                 spent[5..30].iter().sum::<f64>() / 25.0,
-                spent.iter().copied().fold(0.0, f64::max),
+                spent.iter().copied().fold(0.0, Lane::larger),
                 work.iterations as f64 / work.steps as f64,
                 work.linear_iterations as f64 / work.steps as f64,
                 quick.energy().closure,

@@ -73,7 +73,7 @@ fn volumes(world: &World<3>, mesh: &Mesh<3>) -> (f64, f64) {
         };
         let now = sides(&|node| world.position(0, node));
         let rest = sides(&|node| mesh.positions[node as usize]);
-        (whole, at_rest, least) = (whole + now, at_rest + rest, f64::min(least, now / rest));
+        (whole, at_rest, least) = (whole + now, at_rest + rest, if now / rest < least { now / rest } else { least });
     }
     (whole / at_rest, least)
 }
