@@ -51,7 +51,11 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
     if let Some(folder) = folder.filter(|_| !call.json) {
         eprintln!("written to {}", folder.path("").display());
     }
-    Ok(u8::from(rows.iter().any(|row| !row.pass)))
+    let failed = rows.iter().any(|row| !row.pass);
+    if failed && !call.json {
+        eprintln!("docs/verification.md tells why cases fail that are known to");
+    }
+    Ok(u8::from(failed))
 }
 
 /// The cases that any of the words names; all where there are no words.

@@ -54,6 +54,22 @@ fn a_missing_file_is_told_with_the_nearest_name_and_exit_code_4() {
 }
 
 #[test]
+fn a_misspelt_word_beside_a_file_is_the_only_error_and_hides_no_other() {
+    let folder = folder("art/heart.svg");
+    let path = folder.path().join("scenes/mine.toml");
+    let scene = std::fs::read_to_string(&path).expect("the scene");
+    std::fs::write(&path, scene.replace("node_mass = 0.01", "node_mass = 0.01\nmas = 3")).expect("a scene");
+    let output = opruga(folder.path(), &["check", "scenes/mine.toml"]);
+    let told = text(&output.stderr);
+    assert_eq!(code(&output), 2, "{told}");
+    assert!(told.contains("there is no field `mas`") && !told.contains("scene.shape"), "{told}");
+    std::fs::write(&path, scene.replace("node_mass = 0.01", "node_mass = 0.01\nmas = 3").replace("heart", "hart"))
+        .expect("a scene");
+    let told = text(&opruga(folder.path(), &["check", "scenes/mine.toml"]).stderr);
+    assert!(told.contains("there is no field `mas`") && told.contains("hart.svg"), "{told}");
+}
+
+#[test]
 fn files_outside_of_the_folder_are_refused_and_never_shown() {
     let links = folder("art/link.svg");
     #[cfg(unix)]

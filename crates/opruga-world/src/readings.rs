@@ -248,7 +248,8 @@ impl<const D: usize> World<D> {
         count(
             "ledger.closure",
             "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
-             integrator (more substeps make it smaller, `verlet` and `runge_kutta` make less of it)",
+             integrator, or what an implicit one damps by itself; more substeps make it smaller, and rules of higher order \
+             make less of it",
             self.flows.open_frames,
         );
         let solver = &self.flows.solver;

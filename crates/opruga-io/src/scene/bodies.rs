@@ -159,10 +159,11 @@ fn draft<'n, const D: usize>(
         check_name(reader, at, &join(&path, "name"), &name);
     }
     let mass = mass(reader, node, &path, &values);
+    let before_shape = reader.count();
     let shape =
         node.get("shape").and_then(|shape| reader.kind_table(shape, &join(&path, "shape"), "shape", &shapes::all()));
-    let loaded =
-        shape.as_ref().and_then(|values| shape::loaded::<D>(reader, node, &path, values, reader.count() == before));
+    let sound = reader.count() == before_shape;
+    let loaded = shape.as_ref().and_then(|values| shape::loaded::<D>(reader, node, &path, values, sound));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
     let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
     let integrator = reader.integrator(node, &path);

@@ -17,7 +17,7 @@ pub(super) struct ShapePlace<'a> {
     pub(super) path: String,
 }
 
-/// Reads the file of a shape that has one. The file is looked at only where the scene itself has no errors so far.
+/// Reads the file of a shape that has one. The file is looked at only where its own fields have no errors.
 pub(super) fn loaded<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -54,6 +54,8 @@ pub(super) fn mesh<const D: usize>(
 ) -> Option<Mesh<D>> {
     let made = match loaded {
         Some(loaded) => loaded.mesh::<D>(transform),
+        // Why there is no file was told.
+        None if shapes::is_from_file(shape.kind()) => return None,
         None => {
             shapes::mesh::<D>(shape, transform).map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))
         }
