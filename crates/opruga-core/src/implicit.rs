@@ -111,11 +111,11 @@ impl<const D: usize> System<D> {
     }
 
     /// Delivers the second derivatives of what acts from outside, after [`System::evaluate`] of the same state.
-    pub fn outer_hessian(&self, stage: Stage, time: f64, sink: &mut dyn Sink<D>) {
+    pub fn outer_hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in self.members.iter().filter(|member| member.potential.account() == Account::User) {
             if member.potential.views().hessian {
-                member.potential.hessian(&view, &member.scratch, Definiteness::Exact, sink);
+                member.potential.hessian(&view, &member.scratch, keep, sink);
             }
         }
     }

@@ -49,34 +49,54 @@ pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f
 }
 
 /// What the pins hold: every place once with its held axes, by place.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Held<const D: usize>(Vec<(usize, [bool; D])>);
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Held<const D: usize>(Vec<HeldNode<D>>);
 
-impl<const D: usize> Default for Held<D> {
-    fn default() -> Self {
-        Held(Vec::new())
-    }
+/// A held node.
+#[derive(Clone, Debug, PartialEq)]
+struct HeldNode<const D: usize> {
+    place: usize,
+    axes: [bool; D],
+    /// Its mean velocity within the step, where that is known [m/s]: a motion may begin or end within a step.
+    mean: Option<[f64; D]>,
 }
 
 impl<const D: usize> Held<D> {
     /// What these pins hold; a place held twice is held once.
     pub(crate) fn of(pins: &[Pin<D>]) -> Held<D> {
-        let mut held: Vec<(usize, [bool; D])> = pins.iter().map(|pin| (pin.place, pin.axes)).collect();
-        held.sort_by_key(|entry| entry.0);
+        let mut held: Vec<HeldNode<D>> =
+            pins.iter().map(|pin| HeldNode { place: pin.place, axes: pin.axes, mean: None }).collect();
+        held.sort_by_key(|node| node.place);
         held.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
+            let same = next.place == kept.place;
             if same {
-                (0..D).for_each(|d| kept.1[d] |= next.1[d]);
+                (0..D).for_each(|d| kept.axes[d] |= next.axes[d]);
             }
             same
         });
         Held(held)
     }
+    /// Learns how far pins move in the step to come.
+    fn learn(&mut self, pins: &[Pin<D>], time: f64, h: f64) {
+        for pin in pins.iter().filter(|pin| !pin.motion.is_empty()) {
+            let (from, to) = (pin.target(time).0, pin.target(time + h).0);
+            if let Ok(k) = self.0.binary_search_by_key(&pin.place, |node| node.place) {
+                let node = &mut self.0[k];
+                let mean = node.mean.get_or_insert([0.0; D]);
+                for d in (0..D).filter(|d| pin.axes[*d]) {
+                    mean[d] = (to[d] - from[d]) / h;
+                }
+            }
+        }
+    }
     /// Held places within a range, and their held axes.
     pub(crate) fn within(&self, range: &Range<usize>) -> impl Iterator<Item = (usize, usize)> {
-        let first = self.0.partition_point(|entry| entry.0 < range.start);
-        let last = self.0.partition_point(|entry| entry.0 < range.end);
-        self.0[first..last].iter().flat_map(|(place, axes)| (0..D).filter(|d| axes[*d]).map(|d| (*place, d)))
+        self.nodes(range).flat_map(|node| (0..D).filter(|d| node.axes[*d]).map(|d| (node.place, d)))
+    }
+    fn nodes(&self, range: &Range<usize>) -> impl Iterator<Item = &HeldNode<D>> {
+        let first = self.0.partition_point(|node| node.place < range.start);
+        let last = self.0.partition_point(|node| node.place < range.end);
+        self.0[first..last].iter()
     }
     /// Adds the work −F·v dt that pins do against the forces of the models.
     #[inline]
@@ -91,13 +111,21 @@ impl<const D: usize> Held<D> {
         if self.0.is_empty() {
             return;
         }
-        for (place, d) in self.within(range) {
-            work[place % WIDTH] -= weight * force(d, place) * velocity[d][place];
+        for node in self.nodes(range) {
+            for d in (0..D).filter(|d| node.axes[*d]) {
+                let rate = node.mean.map_or(velocity[d][node.place], |mean| mean[d]);
+                work[node.place % WIDTH] -= weight * force(d, node.place) * rate;
+            }
         }
     }
 }
 
 impl<const D: usize> System<D> {
+    /// Tells the ledger how far pins move in the step of `h` that comes.
+    pub fn lead_pins(&mut self, h: f64) {
+        self.held.learn(&self.pins, self.time, h);
+    }
+
     /// Puts held nodes where they are prescribed to be.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
         let (x, v) = match stage {

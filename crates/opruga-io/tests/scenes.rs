@@ -29,9 +29,9 @@ fn the_full_scene_has_all_its_parts() {
     assert_eq!(scene.loads[1].body, 4);
     assert_eq!(scene.loads[2].kind, LoadKind::Pressure(10.0));
     // Commands come in the order of time.
-    assert_eq!(scene.commands.iter().map(|c| c.at).collect::<Vec<_>>(), [1.0, 1.0, 2.0, 2.5, 3.0, 5.0]);
+    assert_eq!(scene.commands.iter().map(|c| c.at).collect::<Vec<_>>(), [1.0, 1.0, 1.5, 2.0, 2.5, 3.0, 5.0]);
     assert_eq!(
-        scene.commands[2].action,
+        scene.commands[3].action,
         Action::Set { path: "body.ball.models.pressure.nRT".into(), value: Value::Number(50.0) }
     );
 }

@@ -127,7 +127,8 @@ fn every_solver_finds_the_same_solution() {
                 let size = packed.begin(simd, threads, &b);
                 let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
                 check(&x, "packed");
-                assert_eq!(reached.iterations, counts[0], "{reached:?}");
+                // The same method with sums in another order, which tells once vectors are no longer conjugate.
+                assert!(reached.iterations.abs_diff(counts[0]) <= counts[0] / 10, "{reached:?}");
                 bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
                 let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
                 matrix.multiply(&b, &mut whole);

@@ -190,6 +190,7 @@ impl<const D: usize> Island<D> {
         }
         for substep in 0..plan.substeps {
             self.system.time = plan.start + f64::from(substep) * plan.h;
+            self.system.lead_pins(plan.h);
             self.integrator.step(&mut self.system, plan.h)?;
             let done = substep + 1;
             if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {

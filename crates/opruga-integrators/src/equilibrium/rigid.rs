@@ -1,7 +1,7 @@
 //! The motions of a body as a whole that nothing holds.
 
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Account, Sink};
+use opruga_core::potential::{Account, Definiteness, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
@@ -148,7 +148,7 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
         }
     });
     let mut projection = Projection { motions: &shapes, out: vec![0.0; n * n], largest: 0.0 };
-    system.outer_hessian(Stage::Current, 0.0, &mut projection);
+    system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
     if projection.largest > 0.0 {
         for (held, strained) in held.iter_mut().zip(&projection.out) {
             *held += strained / projection.largest;

@@ -33,6 +33,8 @@ pub(crate) struct Mixture<'a, const D: usize> {
     pub(crate) system: &'a System<D>,
     pub(crate) sigma: f64,
     pub(crate) beta: f64,
+    /// The part of the loads that acts.
+    pub(crate) load: f64,
     pub(crate) mass: &'a [f64],
     pub(crate) stage: Stage,
     pub(crate) time: f64,
@@ -119,6 +121,11 @@ impl<const D: usize> Mixture<'_, D> {
     /// Delivers K, then C after `scale` was told its factor.
     fn deliver<S: Sink<D>>(&self, sink: &mut S, scale: impl Fn(&mut S, f64)) {
         self.system.hessian(self.stage, self.time, self.keep, sink);
+        if self.load != 1.0 {
+            scale(sink, self.load - 1.0);
+            self.system.outer_hessian(self.stage, self.time, self.keep, sink);
+            scale(sink, 1.0);
+        }
         if self.beta != 0.0 {
             scale(sink, self.beta);
             self.system.damping_matrix(self.stage, self.time, sink);

@@ -185,6 +185,7 @@ pub(crate) fn mixture<'a, const D: usize>(
         system,
         sigma: balance.sigma,
         beta: balance.beta,
+        load: balance.load,
         mass,
         stage: Room::<D>::STAGE,
         time: balance.time,

@@ -107,6 +107,7 @@ impl Task<'_> {
             system,
             sigma: self.balance.sigma,
             beta: self.balance.beta,
+            load: 1.0,
             mass,
             stage: Room::<D>::STAGE,
             time: self.balance.time,
