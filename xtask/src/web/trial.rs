@@ -101,6 +101,7 @@ impl Trial {
 
     fn drags(&mut self) -> Outcome {
         self.click("Reset")?;
+        self.until("the start", |state| state["time"].as_f64() < Some(2.0))?;
         let top = self.resting_ball(40.0)?;
         self.browser.mouse("mouseMoved", top, false)?;
         self.browser.mouse("mousePressed", top, true)?;
