@@ -5,6 +5,7 @@ use super::springs::summit;
 use crate::bodies::{Cells, at_radius, octant, outward, symmetric};
 use crate::case::{Case, Check, Family, Over};
 use crate::lab::{Lab, Scene, Trouble};
+use opruga::mesh::Mesh;
 
 const SPHERE: Case = Case {
     family: Family::Pressure,
@@ -35,6 +36,15 @@ pub(super) const CASES: &[Case] = &[
         name: "thick-tube-quadratic-triangles",
         levels: &[4.0, 8.0, 16.0],
         measure: |lab, n| tube(lab, n, Cells::Quadratic),
+        ..TUBE
+    },
+    Case {
+        name: "gas-in-a-thick-tube",
+        quantity: "growth of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, whose cavity holds gas of nRT = 1.353396 μ m³ for each metre; neo-Hookean, plane strain, ν = 0.49999",
+        source: "incompressible tube (R. S. Rivlin 1949) and nRT = p π A² λ_A²: p = 0.275712 μ at λ_A = 1.25",
+        levels: &[4.0, 8.0, 16.0],
+        quick: true,
+        measure: gas_in_a_tube,
         ..TUBE
     },
     Case {
@@ -94,6 +104,38 @@ fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mut world = lab.plane(scene)?;
     world.frame()?;
     Ok(outward(&world, &inner))
+}
+
+fn gas_in_a_tube(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+    let mesh = whole_tube(n as u32)?;
+    let inner = at_radius(&mesh, 1.0);
+    let gas = ", { kind = \"pressure\", inside = \"cavities\", nRT = 1.353_395_841_455_489_4 }]";
+    let body = rubber(&symmetric(&mesh)).replacen(" }]", &format!(" }}{gas}"), 1);
+    let mut world = lab.plane(Scene::statics(2, 1e-9).body(&mesh, &body)?)?;
+    world.frame()?;
+    Ok(outward(&world, &inner))
+}
+
+/// A tube of inner radius 1 m and outer radius 2 m all around, of quadrilaterals.
+fn whole_tube(layers: u32) -> Result<Mesh<2>, Trouble> {
+    let around = 8 * layers;
+    let mut mesh = Mesh::<2>::default();
+    for k in 0..around {
+        let angle = f64::from(k) * std::f64::consts::TAU / f64::from(around);
+        for layer in 0..=layers {
+            let radius = 1.0 + f64::from(layer) / f64::from(layers);
+            mesh.positions.push([radius * angle.cos(), radius * angle.sin()]);
+        }
+    }
+    let node = |k: u32, layer: u32| (k % around) * (layers + 1) + layer;
+    for k in 0..around {
+        for layer in 0..layers {
+            let cell = [node(k, layer), node(k, layer + 1), node(k + 1, layer + 1), node(k + 1, layer)];
+            mesh.cells.quadrilaterals.push(cell);
+        }
+    }
+    mesh.facets = mesh.facets_from_cells()?;
+    Ok(mesh)
 }
 
 fn sphere(lab: &Lab, [n, layers]: [u32; 2], cells: Cells, outer: f64, pressure: f64) -> Result<f64, Trouble> {

@@ -57,10 +57,6 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// What a reader may look for and not find, and why.
 pub const LEFT_OUT: &[(&str, &str)] = &[
     (
-        "gas in the cavity of a solid",
-        "a chamber of gas is what a closed boundary encloses, so the gas of a solid would fill its matter; thick balloons are blown up by a pressure on their inner wall",
-    ),
-    (
         "Hertz's contact of spheres and cylinders",
         "obstacles hold nodes, not surfaces: the pressure within the area of contact has no limit of a fine mesh that could be compared yet",
     ),
