@@ -2,6 +2,7 @@
 //!
 //! They go through `libm`, a translation of musl's C code to Rust without any platform call.
 
+#[cfg(target_arch = "x86_64")]
 use crate::lane::Lane;
 
 /// Natural logarithm of `x`.
@@ -17,9 +18,11 @@ pub fn exponential(x: f64) -> f64 {
 }
 
 /// ln 2 in two parts: the first is exact times any exponent.
+#[cfg(target_arch = "x86_64")]
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 
 /// Coefficients of (ln(1 + f) − f + f²/2 − …) in s = f/(2 + f) (fdlibm, `e_log.c`).
+#[cfg(target_arch = "x86_64")]
 const LOGARITHM: [f64; 7] = [
     6.666_666_666_666_735e-1,
     3.999_999_999_940_942e-1,
@@ -31,6 +34,7 @@ const LOGARITHM: [f64; 7] = [
 ];
 
 /// ln(m 2ᵏ) for √½ ≤ m < √2: the operations of `libm::log` in its order, so that lanes have its bits.
+#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(crate) fn logarithm_of_parts<S: Lane>(mantissa: S, exponent: S) -> S {
     let c = |k: usize| S::splat(LOGARITHM[k]);

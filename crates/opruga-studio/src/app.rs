@@ -257,12 +257,11 @@ impl Studio {
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
                         }
-                        ui.add_enabled_ui(self.canvas.selected.is_some(), |ui| {
-                            let about = format!("{}  (C)", words.focus_hint());
-                            if ui.button(words.focus()).on_hover_text(about).clicked() {
-                                self.canvas.focus(shown);
-                            }
-                        });
+                        // A part of the row by itself would not go to the next row where it finds no room.
+                        let focus = ui.add_enabled(self.canvas.selected.is_some(), egui::Button::new(words.focus()));
+                        if focus.on_hover_text(format!("{}  (C)", words.focus_hint())).clicked() {
+                            self.canvas.focus(shown);
+                        }
                         bars::view_menu(ui, words, self.show, asks);
                     });
                 });

@@ -32,7 +32,7 @@ mod window {
 
     /// A window takes files from the system, and knows no address.
     #[derive(Debug, Default)]
-    pub(crate) struct Hand;
+    pub(crate) struct Hand {}
 
     impl Hand {
         pub(crate) fn copy_link(&mut self, _: &Link) {}

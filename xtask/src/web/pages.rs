@@ -1,10 +1,11 @@
 //! The files of the page.
 
 use super::bindings::Made;
+use libdeflater::{CompressionLvl, Compressor};
 use std::path::Path;
 
 /// The most that the page may take on its way [bytes].
-const MOST_BYTES: usize = 4 << 20;
+const MOST_BYTES: usize = 4_000_000;
 
 /// Lays the page into a folder: the program packed, its JavaScript, and what is written by hand with the names filled in.
 ///
@@ -59,9 +60,11 @@ pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), 
 }
 
 fn packed(bytes: &[u8]) -> Result<Vec<u8>, String> {
-    use std::io::Write as _;
-    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-    encoder.write_all(bytes).and_then(|()| encoder.finish()).map_err(|e| e.to_string())
+    let mut compressor = Compressor::new(CompressionLvl::best());
+    let mut packed = vec![0; compressor.gzip_compress_bound(bytes.len())];
+    let length = compressor.gzip_compress(bytes, &mut packed).map_err(|e| e.to_string())?;
+    packed.truncate(length);
+    Ok(packed)
 }
 
 fn packed_size(bytes: &[u8]) -> Result<usize, String> {

@@ -100,10 +100,9 @@ impl Trial {
     }
 
     fn drags(&mut self) -> Outcome {
-        // The ball of the scene is led by a pointer of its own at first: afterwards a person may.
         self.click("Reset")?;
-        self.until("the start", |state| state["frames"].as_u64() < Some(30))?;
-        let top = self.top()?;
+        self.until("the start", |state| state["time"].as_f64() < Some(2.0))?;
+        let top = self.resting_ball(40.0)?;
         self.browser.mouse("mouseMoved", top, false)?;
         self.browser.mouse("mousePressed", top, true)?;
         for step in 1..=10 {
@@ -205,8 +204,8 @@ impl Trial {
         self.browser.open("about:blank")?;
         self.browser.open(&address)?;
         self.until("the page on a phone", |state| state["frames"].as_u64() > Some(20))?;
+        let top = self.resting_ball(20.0)?;
         self.keep_picture("web-phone")?;
-        let top = self.top()?;
         self.browser.fingers("touchStart", &[top])?;
         for step in 1..=8 {
             self.browser.fingers("touchMove", &[[top[0] + 6.0 * f64::from(step), top[1] - 10.0 * f64::from(step)]])?;
@@ -275,6 +274,13 @@ impl Trial {
         }
     }
 
+    /// A place so far below the highest node of the ball, once it lies: while it falls it is gone before it is pressed.
+    fn resting_ball(&mut self, below: f64) -> Result<[f64; 2], String> {
+        self.until("the ball lies on the floor", |state| state["time"].as_f64() > Some(2.6))?;
+        let [x, y] = self.top()?;
+        Ok([x, y + below])
+    }
+
     /// Where something of this name is: left, top, width, height.
     fn place(&mut self, name: &str) -> Result<[f64; 4], String> {
         let begin = Instant::now();
@@ -304,7 +310,10 @@ impl Trial {
                 return self.browser.mouse("mouseReleased", middle, false);
             }
             if below {
-                self.browser.wheel([middle[0], 0.5 * height], 200.0)?;
+                let above = [middle[0], 0.5 * height];
+                // The wheel turns what the pointer is over.
+                self.browser.mouse("mouseMoved", above, false)?;
+                self.browser.wheel(above, 200.0)?;
             }
             // It is pressed where it has come to rest.
             last = middle;

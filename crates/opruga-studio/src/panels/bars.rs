@@ -76,18 +76,14 @@ pub fn tools(
             });
         });
         ui.separator();
-        ui.add_enabled_ui(shown.undo.is_some(), |ui| {
-            let about = format!("{} (Ctrl Z)", shown.undo.as_deref().unwrap_or_default());
-            if ui.button(words.undo()).on_hover_text(about).clicked() {
-                asks.push(Request::Undo);
+        for (name, key, step, ask) in
+            [(words.undo(), "Ctrl Z", &shown.undo, Request::Undo), (words.redo(), "Ctrl Y", &shown.redo, Request::Redo)]
+        {
+            let about = format!("{} ({key})", step.as_deref().unwrap_or_default());
+            if ui.add_enabled(step.is_some(), egui::Button::new(name)).on_hover_text(about).clicked() {
+                asks.push(ask);
             }
-        });
-        ui.add_enabled_ui(shown.redo.is_some(), |ui| {
-            let about = format!("{} (Ctrl Y)", shown.redo.as_deref().unwrap_or_default());
-            if ui.button(words.redo()).on_hover_text(about).clicked() {
-                asks.push(Request::Redo);
-            }
-        });
+        }
         let compared = ui.add(egui::Button::new(words.compare()).selected(shown.beside.is_some()));
         if compared.on_hover_text(format!("{}  (B)", words.compare_hint())).clicked() {
             asks.push(Request::Compare(shown.beside.is_none()));
