@@ -32,7 +32,7 @@ const LOOSE: f64 = 1e-3;
 const NOTHING: f64 = 1e-9;
 
 /// Products with the matrix in an iteration at most.
-const PRODUCTS: u32 = 100;
+const PRODUCTS: u32 = 1000;
 
 /// What the setting adds to what a rule remembers: the reference shape of the matrix and the velocities before the step;
 /// which matrix it is, and the length of the step.
