@@ -8,7 +8,9 @@ use std::process::Command;
 /// Compiles and runs the baseline, runs `opruga bench vertices`, and prints the ratios.
 pub(crate) fn compare() -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
-    let program = root.join("target/thesis-baseline");
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
+    std::fs::create_dir_all(&target).map_err(|e| format!("{}: {e}", target.display()))?;
+    let program = target.join("thesis-baseline");
     let compiled = Command::new("g++")
         .args(["-O3", "-march=native", "-fopenmp", "-o"])
         .arg(&program)
@@ -18,8 +20,8 @@ pub(crate) fn compare() -> Result<(), String> {
     if !compiled.success() {
         return Err("the baseline does not compile".into());
     }
-    let opruga = root.join("target/release/opruga");
-    let built = Command::new(env!("CARGO")).args(["build", "--release", "-p", "opruga-cli"]).status();
+    let opruga = target.join("release/opruga");
+    let built = Command::new(env!("CARGO")).args(["build", "--release"]).current_dir(root).status();
     if !built.is_ok_and(|s| s.success()) {
         return Err("opruga does not build".into());
     }
