@@ -57,6 +57,12 @@ impl Outputs<'_> {
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
         }
+        for ours in ["strip.png", "plots.svg", "video.mp4", "video.gif"] {
+            // What an earlier run left under a name that this one does not use would pass for its own.
+            if !files.iter().any(|file| file == ours) {
+                self.folder.remove(ours)?;
+            }
+        }
         files.push("summary.json".into());
         let summary = self.summary(world, files);
         self.folder.write("summary.json", false, |out| summary.write(out))?;
@@ -220,12 +226,13 @@ impl Outputs<'_> {
             None => format!(" in {:.2} s", self.wall),
         };
         eprintln!(
-            "{}: {from}{:.3} s of {}{speed}, energy {:.6} J; {:.6} J unexplained, {:.2e} of the most that moved",
+            "{}: {from}{:.3} s of {}{speed}\n  energy {:.6} J; {:.6} J {} without a cause, {:.2e} of the most that was in motion",
             world.blueprint().name,
             world.time(),
             counted(nodes as u64, "node", "nodes"),
             e.total(),
-            e.loss_integrator,
+            e.loss_integrator.abs(),
+            if e.loss_integrator < 0.0 { "gained" } else { "lost" },
             e.closure,
         );
         for warning in world.warnings() {

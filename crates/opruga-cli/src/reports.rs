@@ -96,10 +96,14 @@ impl core::fmt::Display for Found {
         let substeps = counted(self.substeps.into(), "substep", "substeps");
         writeln!(f, "{}: h = {:.6e} s, {substeps} a frame", self.integrator, self.h)?;
         for (body, stability) in &self.stability {
-            let limit = stability.largest_stable_step.map_or("none".into(), |h| format!("{h:.4e} s"));
+            let limit = match stability.largest_stable_step {
+                None => "there is no stable step".into(),
+                Some(limit) if limit.is_infinite() => "every step is stable".into(),
+                Some(limit) => format!("largest stable step {limit:.4e} s"),
+            };
             let s = &stability.spectrum;
             let (omega, damping) = (s.omega, s.damping);
-            writeln!(f, "  `{body}`: ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s, largest stable step {limit}")?;
+            writeln!(f, "  `{body}`: ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s, {limit}")?;
         }
         for warning in &self.warnings {
             writeln!(f, "warning[{}]: {}", warning.code, warning.message)?;

@@ -80,6 +80,18 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     }
 }
 
+/// Where there is no screen for a bar, a line says so often how far the run is [s].
+const TALK_EVERY: f64 = 10.0;
+
+/// As [`default_folder`], or the first of `name-2`, `name-3`, … that holds nothing yet: for a call that has said nothing
+/// about its output.
+pub(crate) fn fresh_folder(name: &str) -> Result<PathBuf, Failure> {
+    let first = default_folder(name)?;
+    let used = |path: &PathBuf| path.exists() && !std::fs::read_dir(path).is_ok_and(|mut files| files.next().is_none());
+    let next = (2..).map(|number| first.with_file_name(format!("{name}-{number}")));
+    Ok(std::iter::once(first.clone()).chain(next).find(|path| !used(path)).unwrap_or(first))
+}
+
 /// The folder for what nobody has chosen a folder for; `out` around it is made.
 pub(crate) fn default_folder(name: &str) -> Result<PathBuf, Failure> {
     let parent = PathBuf::from("out");
@@ -154,7 +166,7 @@ impl Job<'_> {
         let bar = progress_bar(frames);
         let start = Instant::now();
         let first = world.frames();
-        let mut failure = None;
+        let (mut failure, mut told_at) = (None, 0.0);
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut world);
         while failure.is_none() && world.frames() < frames {
@@ -176,6 +188,16 @@ impl Job<'_> {
             if wall > 0.0 {
                 let ratio = (world.frames() - first) as f64 * frame / wall;
                 bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
+                if bar.is_hidden() && !call.json && wall - told_at >= TALK_EVERY {
+                    told_at = wall;
+                    let done = world.frames() - first;
+                    let left = wall * (frames - world.frames()) as f64 / done.max(1) as f64;
+                    eprintln!(
+                        "{}/{frames} frames, t = {:.2} s, {ratio:.1} × real time, {left:.0} s left",
+                        world.frames(),
+                        world.time()
+                    );
+                }
             }
         }
         let taped = tape.and_then(|tape| tape.finish(&mut world).err()).map(unrecorded);

@@ -56,6 +56,13 @@ impl Source {
             };
             Failure::Scene(vec![SceneError { file: file.clone(), ..error }])
         })?;
+        if let Some(shape) = opruga::io::shapes::kind_of_file(name) {
+            let named = visible(&path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()));
+            let error = SceneError::new("scene.no_scene", "this is the file of a shape, no scene").hint(format!(
+                "a scene names it: shape = {{ kind = \"{shape}\", file = \"{named}\", … }}; `opruga mesh` looks at it"
+            ));
+            return Err(Failure::Scene(vec![SceneError { file, ..error }]));
+        }
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
         Ok(Source { name, file, bytes, files: Files::beside(path) })
     }

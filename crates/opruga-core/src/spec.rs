@@ -382,10 +382,42 @@ impl core::fmt::Display for Value {
     }
 }
 
-/// The candidate that differs from a word in the fewest letters, if it is near enough to be meant.
+/// What else in the field bears a name, letters and digits only, and how it is called here.
+const OTHER_NAMES: [(&str, &str); 22] = [
+    ("rk4", "runge_kutta"),
+    ("rungekutta4", "runge_kutta"),
+    ("euler", "symplectic_euler"),
+    ("semiimpliciteuler", "symplectic_euler"),
+    ("forwardeuler", "explicit_euler"),
+    ("impliciteuler", "backward_euler"),
+    ("leapfrog", "verlet"),
+    ("velocityverlet", "verlet"),
+    ("midpoint", "implicit_midpoint"),
+    ("rk2", "heun"),
+    ("generalizedalpha", "newmark"),
+    ("generalisedalpha", "newmark"),
+    ("hht", "newmark"),
+    ("static", "equilibrium"),
+    ("statics", "equilibrium"),
+    ("springs", "mass_spring"),
+    ("gas", "pressure"),
+    ("finiteelements", "fem"),
+    ("stvk", "st_venant_kirchhoff"),
+    ("circle", "ring"),
+    ("plane", "half_space"),
+    ("sphere", "icosphere"),
+];
+
+/// The candidate that another name in the field stands for, or that differs from a word in the fewest letters, if it is near enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    let candidates: Vec<&str> = candidates.collect();
+    let spelt: String = word.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    if let Some((_, ours)) = OTHER_NAMES.iter().find(|(name, ours)| *name == spelt && candidates.contains(ours)) {
+        return Some((*ours).to_string());
+    }
     let limit = word.chars().count() / 3 + 1;
     candidates
+        .into_iter()
         .map(|c| (letters_apart(word, c), c))
         // A word of which no letter is kept is near to nothing.
         .filter(|(distance, c)| *distance <= limit && *distance < c.chars().count())

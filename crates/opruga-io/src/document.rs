@@ -97,29 +97,46 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let end = table.span().end;
     let root = table_node(table.into_inner(), Place::Bytes(0, end.min(1)));
     let mut errors: Vec<SceneError> = Vec::new();
-    let mut broken = false;
-    for problem in problems.iter().take(MOST_ERRORS) {
+    let (mut broken, mut broken_line) = (false, None);
+    let mut problems: Vec<_> = problems.iter().collect();
+    problems.sort_by_key(|problem| problem.span().map_or(0, |span| span.start));
+    for problem in problems.into_iter().take(MOST_ERRORS) {
         let span = problem.span().unwrap_or(0..0);
         if problem.message() == "duplicate key" {
             errors.push(duplicate(source, &root, span.start, span.end));
             continue;
         }
-        // One error a line: the rest follows from the first.
+        // What stands in the lines after an error follows from it, up to the next line that is sound.
+        let line = source.position(span.start).0;
+        let structure = FOLLOW.iter().any(|what| problem.message().starts_with(what));
+        let follows = broken_line.is_some_and(|before| line == before || line == before + 1 && structure);
+        broken_line = Some(line);
+        broken = true;
+        if follows {
+            continue;
+        }
         let empty = span.is_empty()
             && source.text.get(..span.start).is_some_and(|t| t.trim_end_matches([' ', '\t']).ends_with('='));
         let message =
             if empty { "a value is missing".to_string() } else { problem.message().replace(", expected nothing", "") };
-        let error = source.mark(
-            SceneError::new("scene.syntax", format!("the text is no TOML: {message}")),
-            span.start,
-            span.end,
-        );
-        if !errors.iter().any(|e| e.line == error.line && e.code == "scene.syntax") {
-            errors.push(error);
-        }
-        broken = true;
+        let mut error = SceneError::new("scene.syntax", format!("the text is no TOML: {message}"));
+        error.hint = source.text.get(span.start..span.end).and_then(with_unit);
+        errors.push(source.mark(error, span.start, span.end));
     }
     (if broken { None } else { Some(root) }, errors)
+}
+
+/// How the parser complains of lines that make no sense since the line before made none.
+const FOLLOW: [&str; 3] = ["invalid key-value pair", "missing table open", "key with no value"];
+
+/// What helps where a value is a number with a unit behind it.
+fn with_unit(value: &str) -> Option<String> {
+    let end = value.find(|c: char| !(c.is_ascii_digit() || "+-._eE".contains(c)))?;
+    let (number, unit) = (value[..end].trim_end_matches(['e', 'E']), value[end..].trim());
+    let known = number.parse::<f64>().is_ok() && !unit.is_empty() && unit.len() <= 12;
+    (known && unit.chars().next().is_some_and(char::is_alphabetic)).then(|| {
+        format!("numbers stand without units: write {number}; `opruga reference` tells the unit of every field")
+    })
 }
 
 /// The error for a key that was written a second time, naming the first place.

@@ -29,6 +29,12 @@ impl From<&WorldError> for SceneError {
             ))
             .value(time.to_string())
             .hint(format!("the output ends with the last good frame, t = {last} s; more substeps may help")),
+            WorldError::NotConverged { body, message } => {
+                let what = "more substeps, more `iterations`, or `when_not_converged = \"halve\"`";
+                let said = split(say(format!("body `{body}`: {message}")));
+                let message = format!("{}; the world is at its last good frame", said.message);
+                SceneError { message, hint: said.hint.or_else(|| Some(what.into())), ..said }
+            }
             // The obstacle says itself which one it is.
             WorldError::Build { place, source } if place == "collider" => split(say(source.to_string())),
             other => split(say(other.to_string())),
@@ -36,12 +42,18 @@ impl From<&WorldError> for SceneError {
     }
 }
 
-/// Messages of models and obstacles may say themselves what is allowed.
+/// Messages of models, integrators and obstacles may say themselves what is allowed, and what would help.
 fn split(error: SceneError) -> SceneError {
-    match error.message.split_once("; allowed: ").map(|(m, a)| (m.to_string(), a.to_string())) {
-        Some((message, allowed)) => SceneError { message, ..error }.allowed(allowed),
-        None => error,
+    let mut error = error;
+    if let Some((message, hint)) = error.message.split_once("; hint: ").map(|(m, h)| (m.to_string(), h.to_string())) {
+        (error.message, error.hint) = (message, Some(hint));
     }
+    if let Some((message, allowed)) =
+        error.message.split_once("; allowed: ").map(|(m, a)| (m.to_string(), a.to_string()))
+    {
+        (error.message, error.allowed) = (message, Some(allowed));
+    }
+    error
 }
 
 /// The path of the part of the scene that an error is about.

@@ -295,7 +295,7 @@ pub struct OutputFolder {
     path: PathBuf,
     force: bool,
     // Held for its lock, which ends with the process at the latest.
-    _lock: File,
+    lock: Option<File>,
 }
 
 /// The file that carries the lock.
@@ -325,13 +325,15 @@ impl OutputFolder {
             })?;
         }
         let locked_before = path.join(LOCK).exists();
-        let lock = OpenOptions::new()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(path.join(LOCK))
-            .map_err(|e| cannot("written", &e))?;
-        match lock.try_lock() {
+        let open = || OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK));
+        let mut lock = open().map_err(|e| cannot("written", &e))?;
+        let mut locked = lock.try_lock();
+        while locked.is_ok() && !is_the_file(&lock, &path.join(LOCK)) {
+            // Its last owner took it away in the moment before: what is locked here nobody else would find.
+            lock = open().map_err(|e| cannot("written", &e))?;
+            locked = lock.try_lock();
+        }
+        match locked {
             Ok(()) => {}
             Err(fs::TryLockError::WouldBlock) => {
                 let error = WriteError::new("write.locked", path, "another process writes into this folder");
@@ -378,7 +380,7 @@ impl OutputFolder {
                 });
             }
         }
-        let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, _lock: lock };
+        let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, lock: Some(lock) };
         try_write(&folder.path("trial")).map_err(|e| WriteError {
             code: "write.folder",
             path: path.to_path_buf(),
@@ -449,4 +451,27 @@ impl OutputFolder {
             _ => Ok(()),
         }
     }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        // While it is still locked, so that nobody can have locked it meanwhile; some systems keep files that are open.
+        let gone = cfg!(unix) && fs::remove_file(self.path(LOCK)).is_ok();
+        drop(self.lock.take());
+        if !gone {
+            let _ = fs::remove_file(self.path(LOCK));
+        }
+    }
+}
+
+/// Whether an open file still has its name.
+#[cfg(unix)]
+fn is_the_file(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let same = |a: fs::Metadata, b: fs::Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
+    file.metadata().is_ok_and(|own| fs::metadata(path).is_ok_and(|named| same(own, named)))
+}
+#[cfg(not(unix))]
+fn is_the_file(_: &File, path: &Path) -> bool {
+    path.exists()
 }

@@ -208,6 +208,7 @@ fn what_a_killed_run_was_writing_is_cleared_away() {
     left.sort();
     assert_eq!(left, [".a.b.writing", ".mine.writing", ".opruga-lock", "x.1.writing"]);
     drop(out);
+    assert!(!folder.join(".opruga-lock").exists(), "the lock goes with its owner");
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 

@@ -245,11 +245,17 @@ impl<const D: usize> World<D> {
             "bodies went farther than `world.largest_distance` and were taken away",
             self.flows.lost_bodies,
         );
+        let (lost, way) = match self.energy.loss_integrator {
+            lost if lost < 0.0 => (-lost, "gained"),
+            lost => (lost, "lost"),
+        };
         count(
             "ledger.closure",
-            "a frame ended with more than a tenth of the energy in motion unexplained (`closure`): the error of the \
-             integrator, or what an implicit one damps by itself; more substeps make it smaller, and rules of higher order \
-             make less of it",
+            &format!(
+                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {lost:.4} J {way} by \
+                 the end: the error of the integrator, or what an implicit one damps by itself; more substeps make it \
+                 smaller, and rules of higher order make less of it"
+            ),
             self.flows.open_frames,
         );
         let solver = &self.flows.solver;

@@ -8,6 +8,9 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
 use std::sync::Arc;
 
+/// How many islands are looked at again when energy comes from nowhere.
+const MOST_LOOKED_AT: usize = 8;
+
 impl<const D: usize> World<D> {
     /// Estimates the stable step of every kind of body that was built anew, and compares all steps with their limits.
     ///
@@ -98,6 +101,37 @@ impl<const D: usize> World<D> {
         self.warnings.extend(warnings);
         self.stability = estimates.into_iter().map(|(_, name, stability)| (name, stability)).collect();
         Ok(())
+    }
+
+    /// Looks whether the step is still stable in the state that the bodies have come to: the estimate before the run knows
+    /// the shape at rest, and a body that is squeezed or stretched may be stiffer. Only those with the most energy are
+    /// looked at.
+    pub(crate) fn look_at_steps_again(&mut self) {
+        let energy = |island: &Island<D>| island.survey.kinetic + island.stock.elastic + island.stock.gas;
+        let mut order: Vec<usize> = (0..self.islands.len()).collect();
+        order.sort_by(|a, b| energy(&self.islands[*b]).total_cmp(&energy(&self.islands[*a])).then(a.cmp(b)));
+        let (h, time) = (self.h(), self.time());
+        for number in order.into_iter().take(MOST_LOOKED_AT) {
+            let island = &self.islands[number];
+            // What was unstable from the start has been said.
+            if island.stability.is_some_and(|s| s.largest_stable_step.is_none_or(|limit| h > limit)) {
+                continue;
+            }
+            let Ok(Stability { largest_stable_step: Some(limit), .. }) = estimate(&island.system, &*island.integrator)
+            else {
+                continue;
+            };
+            if h > limit {
+                let name = &self.blueprint.bodies[island.bodies[0]].name;
+                let substeps = (self.blueprint.time.frame / limit).ceil();
+                let message = format!(
+                    "at t = {time:.3} s the largest stable step of body `{name}` had fallen to {limit:.4e} s, below h = {h:.4e} s: \
+                     what is squeezed or stretched is stiffer than at rest; substeps >= {substeps} hold there"
+                );
+                self.warnings.push(Warning { code: "step.outgrown".into(), message, count: 1 });
+                return;
+            }
+        }
     }
 
     fn has_more_than_models(&self, island: &Island<D>) -> bool {

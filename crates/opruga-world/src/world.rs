@@ -191,7 +191,9 @@ impl<const D: usize> World<D> {
         (self.looks.flows, self.looks.fresh) = (self.flows, false);
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
-        match &self.pool {
+        // One small body has nothing to share: waking threads for it would cost more than its frame.
+        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads));
+        match self.pool.as_ref().filter(|_| !alone(islands)) {
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
                 // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
@@ -239,7 +241,12 @@ impl<const D: usize> World<D> {
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE);
+        if self.energy.closure > LARGEST_CLOSURE {
+            if self.flows.open_frames == 0 {
+                self.look_at_steps_again();
+            }
+            self.flows.open_frames += 1;
+        }
         self.take_away_what_is_far()
     }
 

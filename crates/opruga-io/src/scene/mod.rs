@@ -16,7 +16,7 @@ mod selectors;
 mod shape;
 
 use crate::catalogue::Catalogue;
-use crate::document::{self, Node, Place};
+use crate::document::{self, Data, Node, Place};
 use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
@@ -251,6 +251,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let commands = reader.list(root, "", "command");
     bodies::later(reader, &commands, &mut bodies);
     let loads = actions::loads(reader, root, &bodies);
+    never(reader, root, &commands);
     let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders);
     let probes = actions::probes(reader, root, &bodies);
     bodies.list.truncate(bodies.initial);
@@ -295,6 +296,26 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         probes: Vec::new(),
         ..whole
     })
+}
+
+/// Notices commands that begin after the end of the run. An end that an override has set is not that of the scene.
+fn never(reader: &mut Reader<'_>, root: &Node, commands: &[(&Node, String)]) {
+    let number = |node: &Node| match node.data {
+        Data::Number(x, _) => Some(x),
+        Data::Integer(x, _) => x.map(|x| x as f64),
+        _ => None,
+    };
+    let end = root.get("time").and_then(|time| time.get("seconds")).filter(|n| matches!(n.place, Place::Bytes(..)));
+    let Some(end) = end.and_then(number) else { return };
+    for (node, path) in commands {
+        if let Some(at) = node.get("at").and_then(number).filter(|at| *at > end) {
+            let about =
+                SceneError::new("command.never", format!("the command begins at {at} s, after the end at {end} s"))
+                    .path(format!("{path}.at"))
+                    .hint("it only comes about in a run with a larger --seconds");
+            reader.notice(place_of(node, "at"), about);
+        }
+    }
 }
 
 /// The name of the file without folder and ending.

@@ -214,6 +214,15 @@ impl<'a> Reader<'a> {
                 .value(visible(&entry.key))
                 .nearest(nearest(&entry.key, names()));
                 error.allowed = Some(listed(names()));
+                // The field was one of the kind that an override has put another in the place of.
+                if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
+                    && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
+                {
+                    error.hint = Some(format!(
+                        "`{table}.kind` was set to `{0}`, and the other fields stayed; --set {table}={0} takes its defaults",
+                        section.spec.kind
+                    ));
+                }
                 if self.options.lenient { self.notice(entry.place, error) } else { self.report(entry.place, error) }
             }
         }

@@ -104,6 +104,18 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
     }
 }
 
+/// The kind of shape that a file of this name is made for; none where the name does not tell.
+pub fn kind_of_file(name: &str) -> Option<&'static str> {
+    match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
+        "svg" => Some("svg"),
+        "geojson" | "topojson" => Some("map"),
+        "png" => Some("bitmap"),
+        "ttf" | "otf" => Some("text"),
+        "obj" | "stl" | "ply" | "gltf" | "glb" => Some("surface"),
+        _ => meshes::is_mesh(name).then_some("mesh"),
+    }
+}
+
 /// A surface in the format that its contents, or else its ending, tell.
 fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
