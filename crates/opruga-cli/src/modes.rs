@@ -12,6 +12,7 @@ use opruga::pictures::Scenery;
 use opruga::world::modes::Mode;
 use opruga::{Options, World};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The largest displacement in a picture, in extents of the body.
@@ -138,8 +139,10 @@ fn draw_shapes<const D: usize>(
         extent = extent.max(column().fold(f64::MIN, f64::max) - column().fold(f64::MAX, f64::min));
     }
     let number = world.bodies().position(|b| b == body).unwrap_or(0);
+    let own = |picture: draw::Picture| picture.bodies.into_iter().nth(number);
+    let Some(rest) = own(scenery.picture(&scenery.capture(world, false))) else { return Ok(None) };
     let (mut pictures, mut captions) = (Vec::new(), Vec::new());
-    for mode in modes.iter().take(24) {
+    for (k, mode) in modes.iter().enumerate().take(24) {
         let most = mode.shape.iter().map(|v| v.iter().map(|c| c * c).sum::<f64>()).fold(0.0, f64::max).sqrt();
         let factor = if most > 0.0 { AMPLITUDE * extent / most } else { 0.0 };
         for (node, (x, shape)) in start.iter().zip(&mode.shape).enumerate() {
@@ -147,11 +150,22 @@ fn draw_shapes<const D: usize>(
             world.place_node(body, node as u32, place, [0.0; D]).map_err(|e| Failure::call(e.to_string()))?;
         }
         let mut picture = scenery.picture(&scenery.capture(world, false));
+        let legend = picture.legend.take().unwrap_or_default();
         picture.bodies = picture.bodies.into_iter().skip(number).take(1).collect();
+        for body in &mut picture.bodies {
+            body.scalar = moved(&rest, body);
+        }
+        picture.bodies.insert(0, outline(&rest));
+        picture.legend = Some(draw::Legend {
+            label: "displacement / largest".into(),
+            unit: String::new(),
+            range: Some([0.0, 1.0]),
+            ..legend
+        });
         pictures.push(picture);
         captions.push(match &mode.rigid {
-            Some(motion) => motion.clone(),
-            None => format!("{:.4} Hz", mode.frequency()),
+            Some(motion) => format!("{}: {motion}", k + 1),
+            None => format!("{}: {:.4} Hz", k + 1, mode.frequency()),
         });
     }
     let mut fitting = draw::Fitting::default();
@@ -164,4 +178,49 @@ fn draw_shapes<const D: usize>(
     let panels: Vec<&draw::Picture> = pictures.iter().collect();
     let strip = draw::captioned_strip(&panels, &captions, &view, &draw::StripStyle::default()).map_err(failed)?;
     Ok(Some(strip.to_png().map_err(failed)?))
+}
+
+/// How far every point of a body has gone, over the farthest.
+fn moved(rest: &draw::BodyPicture, body: &draw::BodyPicture) -> Vec<f64> {
+    let apart = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt();
+    let ways: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();
+    let most = ways.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    ways.into_iter().map(|way| way / most).collect()
+}
+
+/// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
+const SHARP: f64 = 0.8;
+
+/// The body at rest as grey lines: its outline, or where its surface has edges.
+fn outline(rest: &draw::BodyPicture) -> draw::BodyPicture {
+    let segments = match &rest.facets {
+        draw::Facets::Edges(edges) => edges.clone(),
+        draw::Facets::Triangles(triangles) => sharp_edges(triangles, &rest.positions),
+    };
+    let positions = rest.positions.clone();
+    draw::BodyPicture { positions, segments, colour: Some([130, 136, 146]), ..draw::BodyPicture::default() }
+}
+
+/// Edges of one triangle alone, and those where two meet at an angle.
+fn sharp_edges(triangles: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[u32; 2]> {
+    let normal = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|k| positions[k as usize]);
+        let (u, v): ([f64; 3], [f64; 3]) =
+            (core::array::from_fn(|d| b[d] - a[d]), core::array::from_fn(|d| c[d] - a[d]));
+        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        n.map(|x| x / length)
+    };
+    let mut edges: BTreeMap<[u32; 2], Vec<[f64; 3]>> = BTreeMap::new();
+    for triangle in triangles {
+        for k in 0..3 {
+            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+            edges.entry([a.min(b), a.max(b)]).or_default().push(normal(triangle));
+        }
+    }
+    let sharp = |normals: &[[f64; 3]]| match normals {
+        [a, b] => (0..3).map(|d| a[d] * b[d]).sum::<f64>() < SHARP,
+        _ => true,
+    };
+    edges.into_iter().filter(|(_, normals)| sharp(normals)).map(|(edge, _)| edge).collect()
 }

@@ -361,3 +361,107 @@ fn a_scene_that_is_no_utf_8_is_refused() {
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(said(&output).contains("latin.toml:15:6: error[scene.encoding]"), "{}", said(&output));
 }
+
+/// One slip is one error, however many lines lose their sense by it.
+#[test]
+fn one_slip_of_syntax_is_one_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = scene("");
+    let lists =
+        good.replace("models = [{", "models = \n  {").replace("}]\n", "},\n  { kind = \"pressure\", nRT = 5.0 },\n]\n");
+    let cases = [
+        (lists, "a value is missing", ""),
+        (good.replace("mass = 1\n", "mass = 1 kg\n"), "must be quoted", "numbers stand without units: write 1;"),
+        (good.replace("mass = 1\n", "mass = 2.5e-3kg\n"), "", "write 2.5e-3;"),
+    ];
+    for (text, message, hint) in cases {
+        std::fs::write(folder.path().join("s.toml"), &text).expect("a file");
+        let output = opruga(folder.path(), &["check", "s.toml"]);
+        assert_eq!(code(&output), 2, "{text}");
+        let said = said(&output);
+        assert_eq!(said.matches("error[scene.syntax]").count(), 1, "{said}");
+        assert!(said.contains(message) && said.contains(hint), "{said}");
+    }
+    // Two slips are two errors, also in lines that follow each other.
+    let two = good.replace("dimension = 2\n", "dimension = = 2\nseed = 1 2\n");
+    std::fs::write(folder.path().join("s.toml"), two).expect("a file");
+    let output = opruga(folder.path(), &["check", "s.toml"]);
+    assert_eq!(said(&output).matches("error[scene.syntax]").count(), 2, "{}", said(&output));
+}
+
+#[test]
+fn the_file_of_a_shape_is_not_read_as_a_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (file, kind) in [("cow.obj", "surface"), ("heart.svg", "svg"), ("beam.msh", "mesh"), ("land.geojson", "map")] {
+        std::fs::write(folder.path().join(file), "1 2 3\n4 5 6\n7 8 9\n").expect("a file");
+        for command in ["check", "run", "modes"] {
+            let output = opruga(folder.path(), &[command, file]);
+            assert_eq!(code(&output), 2, "{}", said(&output));
+            let text = format!(
+                "error[scene.no_scene]: this is the file of a shape, no scene\n  = hint: a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\""
+            );
+            assert!(said(&output).contains(&text), "{}", said(&output));
+        }
+    }
+}
+
+/// Words of the field that are called otherwise here, and fields that a new kind does not know.
+#[test]
+fn other_words_of_the_field_lead_to_ours() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("s.toml"), scene("")).expect("a file");
+    for (word, ours) in [("rk4", "runge_kutta"), ("Leapfrog", "verlet"), ("implicit_euler", "backward_euler")] {
+        let output = opruga(folder.path(), &["check", "s.toml", "--set", &format!("integrator={word}")]);
+        assert_eq!(code(&output), 2);
+        assert!(said(&output).contains(&format!("did you mean `{ours}`?")), "{}", said(&output));
+    }
+    let implicit = scene("").replace("kind = \"verlet\"", "kind = \"backward_euler\"\niterations = 20");
+    std::fs::write(folder.path().join("i.toml"), implicit).expect("a file");
+    let output = opruga(folder.path(), &["check", "i.toml", "--set", "integrator.kind=heun"]);
+    assert_eq!(code(&output), 2);
+    assert!(said(&output).contains("--set integrator=heun takes its defaults"), "{}", said(&output));
+    assert_eq!(code(&opruga(folder.path(), &["check", "i.toml", "--set", "integrator=verlet"])), 0);
+}
+
+#[test]
+fn a_command_after_the_end_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let late =
+        scene("[[command]]\nat = 0.5\nuntil = 0.6\ndo = \"push\"\nbody = \"ring\"\nselect = { all = true }\nforce = [1, 0]\n");
+    std::fs::write(folder.path().join("s.toml"), late).expect("a file");
+    let output = opruga(folder.path(), &["check", "s.toml"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(said(&output).contains("warning[command.never]: the command begins at 0.5 s, after the end at 0.1 s"));
+    // Whoever asks for a shorter run knows what is left out.
+    let output = opruga(folder.path(), &["check", "s.toml", "--set", "time.seconds=0.2"]);
+    assert!(!said(&output).contains("command.never"), "{}", said(&output));
+}
+
+/// The first command of the README works a second time too, and leaves what the first one wrote.
+#[test]
+fn the_program_without_a_command_finds_a_folder_that_is_free() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir_all(folder.path().join("out/ball")).expect("a folder");
+    std::fs::write(folder.path().join("out/ball/summary.json"), "mine").expect("a file");
+    let output =
+        program(folder.path(), &[]).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output().expect("it runs");
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(folder.path().join("out/ball-2/strip.png").exists(), "{}", said(&output));
+    assert_eq!(std::fs::read(folder.path().join("out/ball/summary.json")).expect("it is there"), b"mine");
+}
+
+/// What a run does not write itself does not stay beside what it writes.
+#[test]
+fn pictures_of_an_earlier_run_go_with_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("s.toml"), scene("")).expect("a file");
+    let names = |more: &[&str]| -> Vec<String> {
+        let output = opruga(folder.path(), &[&["run", "s.toml", "--out", "o", "--force"], more].concat());
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        contents(&folder.path().join("o")).into_iter().map(|(name, _)| name).collect()
+    };
+    assert!(names(&[]).contains(&"video.mp4".into()));
+    let gif = names(&["--gif"]);
+    assert!(gif.contains(&"video.gif".into()) && !gif.contains(&"video.mp4".into()), "{gif:?}");
+    assert_eq!(names(&["--no-pictures"]), ["checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
+}

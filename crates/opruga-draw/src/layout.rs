@@ -116,9 +116,12 @@ impl Layout {
         [bar, scale]: [f32; 2],
     ) {
         let first = pictures[0];
-        let mut end = match first.dimension {
-            2 => self.scale_bar(canvas, [left, base], f64::from(bar), f64::from(scale), &first.length_unit),
-            _ => self.squares(canvas, [left, base], first, view),
+        let floored = first.colliders.iter().any(|c| matches!(c, ColliderPicture::HalfSpace { .. }));
+        let mut end = if first.dimension == 3 && floored {
+            self.squares(canvas, [left, base], first, view)
+        } else {
+            // In space the length is one in the middle of the scene, square to the line of sight.
+            self.scale_bar(canvas, [left, base], f64::from(bar), f64::from(scale), &first.length_unit)
         };
         if view.y_down {
             let (start, size) = (end + 24.0 * self.unit, 13.0 * self.unit);
@@ -149,9 +152,6 @@ impl Layout {
 
     /// Writes how large the squares of a floor in three dimensions are, and gives the place where the text ends.
     fn squares(&self, canvas: &mut Canvas, [left, base]: [f32; 2], picture: &Picture, view: &View) -> f32 {
-        if !picture.colliders.iter().any(|collider| matches!(collider, ColliderPicture::HalfSpace { .. })) {
-            return left;
-        }
         let size = 14.0 * self.unit;
         let text = format!("squares of {}", length_text(view.square(), &picture.length_unit));
         canvas.text(&text, [left, base], size, Anchor::Start, INK);

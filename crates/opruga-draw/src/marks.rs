@@ -69,7 +69,8 @@ pub(crate) fn draw_marks(
         let mut marked: Vec<[f32; 2]> = Vec::new();
         for &node in &body.pinned {
             let near = |a: &[f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
-            if let Some(point) = project(body.positions[node as usize])
+            let place = body.positions[node as usize];
+            if let Some(point) = project(place).filter(|_| in_sight(place))
                 && !marked.iter().any(|other| near(other, point))
             {
                 if few {

@@ -46,7 +46,7 @@ impl Default for Picture {
 }
 
 /// The meaning of the scalars of the bodies.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Legend {
     /// The name of the quantity, such as "stress".
     pub label: String,

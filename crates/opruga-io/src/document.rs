@@ -120,7 +120,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
         let message =
             if empty { "a value is missing".to_string() } else { problem.message().replace(", expected nothing", "") };
         let mut error = SceneError::new("scene.syntax", format!("the text is no TOML: {message}"));
-        error.hint = source.text.get(span.start..span.end).and_then(with_unit);
+        error.hint = source.text.lines().nth(line - 1).and_then(|text| with_unit(text.split_once('=')?.1));
         errors.push(source.mark(error, span.start, span.end));
     }
     (if broken { None } else { Some(root) }, errors)
@@ -131,6 +131,7 @@ const FOLLOW: [&str; 3] = ["invalid key-value pair", "missing table open", "key 
 
 /// What helps where a value is a number with a unit behind it.
 fn with_unit(value: &str) -> Option<String> {
+    let value = value.split('#').next().unwrap_or(value).trim();
     let end = value.find(|c: char| !(c.is_ascii_digit() || "+-._eE".contains(c)))?;
     let (number, unit) = (value[..end].trim_end_matches(['e', 'E']), value[end..].trim());
     let known = number.parse::<f64>().is_ok() && !unit.is_empty() && unit.len() <= 12;

@@ -73,13 +73,16 @@ pub fn safe_write(
     safe_write_through(path, force, |file| file, fill)
 }
 
+/// The ending of files that are written to see whether they can be.
+const TRIAL: &str = ".opruga-trial";
+
 /// Tries whether a file could be written by [`safe_write`] with `force`; leaves what is there as it is.
 ///
 /// # Errors
 /// `write.failed`.
 pub fn try_write(path: &Path) -> Result<(), WriteError> {
     let mut trial = path.as_os_str().to_owned();
-    trial.push(".opruga-trial");
+    trial.push(TRIAL);
     let trial = PathBuf::from(trial);
     let of_path = |e| WriteError { path: path.to_path_buf(), ..e };
     if path.is_dir() {
@@ -348,7 +351,7 @@ impl OutputFolder {
         }
         // Only the owner of the lock writes here: what was being written when an earlier one was killed is nobody's.
         for entry in fs::read_dir(path).map_err(|e| cannot("read", &e))?.flatten() {
-            if entry.file_name().to_str().is_some_and(is_aside) {
+            if entry.file_name().to_str().is_some_and(|name| is_aside(name) || name.ends_with(TRIAL)) {
                 let _ = fs::remove_file(entry.path());
             }
         }

@@ -196,8 +196,14 @@ fn interrupted_and_short_writes_lose_nothing() {
 #[test]
 fn what_a_killed_run_was_writing_is_cleared_away() {
     let folder = folder("killed");
-    for name in [".checkpoint.4711.writing", ".summary.json.1.writing", ".mine.writing", "x.1.writing", ".a.b.writing"]
-    {
+    for name in [
+        ".checkpoint.4711.writing",
+        ".summary.json.1.writing",
+        ".mine.writing",
+        "x.1.writing",
+        ".a.b.writing",
+        "trial.opruga-trial",
+    ] {
         std::fs::write(folder.join(name), b"half").expect("a file");
     }
     let out = OutputFolder::open(&folder, Existing::Replace).expect("the folder is there");

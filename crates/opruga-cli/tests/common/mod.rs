@@ -39,10 +39,10 @@ pub(crate) fn summary(folder: &Path, arguments: &[&str]) -> Value {
 pub(crate) fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut out: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
         .expect("a folder")
-        .map(|entry| {
-            let entry = entry.expect("an entry");
-            (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()).expect("a file"))
-        })
+        .map(|entry| entry.expect("an entry"))
+        // The lock of a process that was killed holds nothing and locks nobody out.
+        .filter(|entry| entry.file_name() != ".opruga-lock")
+        .map(|entry| (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()).expect("a file")))
         .collect();
     out.sort();
     out
