@@ -426,8 +426,9 @@ fn other_words_of_the_field_lead_to_ours() {
 #[test]
 fn a_command_after_the_end_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
-    let late =
-        scene("[[command]]\nat = 0.5\nuntil = 0.6\ndo = \"push\"\nbody = \"ring\"\nselect = { all = true }\nforce = [1, 0]\n");
+    let late = scene(
+        "[[command]]\nat = 0.5\nuntil = 0.6\ndo = \"push\"\nbody = \"ring\"\nselect = { all = true }\nforce = [1, 0]\n",
+    );
     std::fs::write(folder.path().join("s.toml"), late).expect("a file");
     let output = opruga(folder.path(), &["check", "s.toml"]);
     assert_eq!(code(&output), 0, "{}", said(&output));

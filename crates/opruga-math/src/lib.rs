@@ -1,5 +1,6 @@
 //! Numbers of Opruga: one formula over `f64` or eight of them, the same bits with every set of vector instructions.
 
+pub mod calibration;
 mod column;
 pub mod elementary;
 pub mod lane;

@@ -11,6 +11,7 @@ pub mod dense;
 pub mod eigen;
 mod lu;
 mod matrix;
+mod one_model;
 pub mod packed;
 mod preconditioner;
 mod scalars;

@@ -131,7 +131,7 @@ fn measure(
     }
     let mut matrix = BlockMatrix::<3>::default();
     let mut hessian = |keep: Definiteness| {
-        let mut assemble = || matrix.assemble(nodes, 0, |sink| solid.hessian(&view, &scratch, keep, sink));
+        let mut assemble = || matrix.assemble_one(solid, &view, &scratch, keep);
         assemble();
         per_element(best(5, assemble))
     };

@@ -6,7 +6,7 @@ mod timed;
 pub(crate) mod vertices;
 
 use opruga::Simd;
-use opruga::math::{Pack, WIDTH, Work};
+use opruga::math::{WIDTH, calibration};
 
 /// Processor time of this thread [s]; wall time where the system has no such clock.
 pub(crate) fn processor_time() -> f64 {
@@ -64,43 +64,13 @@ pub(crate) struct Machine {
 
 impl Machine {
     pub(crate) fn measure(simd: Simd) -> Machine {
-        const ROUNDS: usize = 4096;
-        const CHAINS: usize = 12;
-        struct Chains<'a>(&'a mut [f64]);
-        impl Work for Chains<'_> {
-            type Output = ();
-            #[inline(always)]
-            fn run<P: Pack>(self) {
-                let (factor, term) = (P::splat(0.999_999), P::splat(1e-6));
-                let mut chains = [P::one(); CHAINS];
-                for _ in 0..ROUNDS {
-                    for k in 0..CHAINS {
-                        chains[k] = chains[k] * factor + term;
-                    }
-                }
-                let mut sum = P::zero();
-                for k in 0..CHAINS {
-                    sum += chains[k];
-                }
-                sum.store(self.0);
-            }
-        }
-        struct Triad<'a>(&'a mut [f64], &'a [f64], &'a [f64]);
-        impl Work for Triad<'_> {
-            type Output = ();
-            #[inline(always)]
-            fn run<P: Pack>(self) {
-                for k in (0..self.0.len()).step_by(WIDTH) {
-                    (P::load(&self.1[k..]) + P::splat(0.5) * P::load(&self.2[k..])).store(&mut self.0[k..]);
-                }
-            }
-        }
         let mut out = [0.0; WIDTH];
-        let seconds = best(5, || simd.run(Chains(std::hint::black_box(&mut out))));
-        let operations = (2 * ROUNDS * CHAINS * WIDTH) as f64 / seconds * 1e-9;
+        let mut count = 0;
+        let seconds = best(5, || count = calibration::products_and_sums(simd, std::hint::black_box(&mut out)));
+        let operations = count as f64 / seconds * 1e-9;
         let (mut a, b, c) = (vec![0.0; 1 << 22], vec![1.0; 1 << 22], vec![2.0; 1 << 22]);
-        let seconds = best(3, || simd.run(Triad(std::hint::black_box(&mut a), &b, &c)));
-        let memory = (24 * a.len()) as f64 / seconds * 1e-9;
+        let seconds = best(3, || count = calibration::triad(simd, std::hint::black_box(&mut a), &b, &c));
+        let memory = count as f64 / seconds * 1e-9;
         Machine { simd: simd.name(), operations, memory }
     }
     pub(crate) fn sentence(&self) -> String {

@@ -1,8 +1,9 @@
 //! `opruga bench vertices`: figure 4 of the thesis, the speed against the number of vertices.
 
-use super::processor_time;
+use super::{best, processor_time};
 use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
 use opruga::core::spec::{Value, Values};
+use opruga::math::calibration::inverse_roots;
 use opruga::{Options, Simd, World, mesh};
 use std::sync::Arc;
 use std::time::Instant;
@@ -172,28 +173,10 @@ pub(crate) fn time(
 
 /// Time of a pack of square roots and divisions [ns].
 fn calibration(simd: Simd) -> f64 {
-    use opruga::math::{Pack, WIDTH, Work};
-    struct Roots<'a>(&'a mut [f64]);
-    impl Work for Roots<'_> {
-        type Output = ();
-        #[inline(always)]
-        fn run<P: Pack>(self) {
-            for k in (0..self.0.len()).step_by(WIDTH) {
-                let x = P::load(&self.0[k..]);
-                (P::one() / x.sqrt()).store(&mut self.0[k..]);
-            }
-        }
-    }
     let mut numbers = vec![1.5; 1024];
-    let mut best = f64::INFINITY;
-    for _ in 0..20 {
-        let start = processor_time();
-        for _ in 0..20 {
-            simd.run(Roots(&mut numbers));
-        }
-        best = best.min((processor_time() - start) * 1e9 / (20.0 * 128.0));
-    }
-    best
+    let mut packs = 0;
+    let seconds = best(20, || packs = inverse_roots(simd, std::hint::black_box(&mut numbers)));
+    seconds * 1e9 / packs as f64
 }
 
 /// The rows as a table for people.

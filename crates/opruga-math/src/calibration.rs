@@ -1,0 +1,70 @@
+//! Loops that show what the machine can do, to be timed beside those that are to be judged. They are compiled here, as kernels
+//! are, whatever program calls them.
+
+use crate::{Pack, Simd, WIDTH, Work};
+
+const ROUNDS: usize = 4096;
+const CHAINS: usize = 12;
+
+/// Products and sums in registers, not fused, in twelve chains that do not wait for one another; their number.
+#[inline(never)]
+pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
+    struct Chains<'a>(&'a mut [f64]);
+    impl Work for Chains<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<P: Pack>(self) {
+            let (factor, term) = (P::splat(0.999_999), P::splat(1e-6));
+            let mut chains = [P::one(); CHAINS];
+            for _ in 0..ROUNDS {
+                for k in 0..CHAINS {
+                    chains[k] = chains[k] * factor + term;
+                }
+            }
+            let mut sum = P::zero();
+            for k in 0..CHAINS {
+                sum += chains[k];
+            }
+            sum.store(self.0);
+        }
+    }
+    simd.run(Chains(out));
+    2 * ROUNDS * CHAINS * WIDTH
+}
+
+/// a = b + c/2 over arrays of one length, a multiple of the width; the number of bytes that are read and written.
+#[inline(never)]
+pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
+    struct Triad<'a>(&'a mut [f64], &'a [f64], &'a [f64]);
+    impl Work for Triad<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<P: Pack>(self) {
+            for k in (0..self.0.len()).step_by(WIDTH) {
+                (P::load(&self.1[k..]) + P::splat(0.5) * P::load(&self.2[k..])).store(&mut self.0[k..]);
+            }
+        }
+    }
+    let bytes = 24 * a.len();
+    simd.run(Triad(a, b, c));
+    bytes
+}
+
+/// Takes the inverse of the root of every number, as many as a multiple of the width; the number of packs.
+#[inline(never)]
+pub fn inverse_roots(simd: Simd, numbers: &mut [f64]) -> usize {
+    struct Roots<'a>(&'a mut [f64]);
+    impl Work for Roots<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<P: Pack>(self) {
+            for k in (0..self.0.len()).step_by(WIDTH) {
+                let x = P::load(&self.0[k..]);
+                (P::one() / x.sqrt()).store(&mut self.0[k..]);
+            }
+        }
+    }
+    let packs = numbers.len() / WIDTH;
+    simd.run(Roots(numbers));
+    packs
+}
