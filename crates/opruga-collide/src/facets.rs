@@ -51,9 +51,12 @@ macro_rules! tree {
                 Some((out, facet as usize))
             }
             fn visit(&self, low: &[f64; D], high: &[f64; D], call: &mut dyn FnMut(usize)) {
-                use $parry::math::Vector;
-                let space = $parry::bounding_volume::Aabb::new(Vector::new($(low[$axis % D]),*), Vector::new($(high[$axis % D]),*));
-                for facet in self.bounds.intersect_aabb(&space) {
+                // Compared here, so that the loop is compiled with the kernels of this crate.
+                let meets = |node: &$parry::partitioning::BvhNode| {
+                    let (least, greatest) = (node.mins(), node.maxs());
+                    $((least[$axis] <= high[$axis % D]) & (low[$axis % D] <= greatest[$axis]))&*
+                };
+                for facet in self.bounds.leaves(meets) {
                     call(facet as usize);
                 }
             }
