@@ -60,6 +60,14 @@ fn cases() -> Vec<(String, &'static str)> {
   = hint: did you mean `stiffness`?"#,
         ),
         (
+            with("pin = [{ select = { nodes = [[0, 1], [2, 3]] } }]\n"),
+            r#"scene.toml:12:29: error[scene.type]: `nodes` is a list of lists
+ 12 | pin = [{ select = { nodes = [[0, 1], [2, 3]] } }]
+    |                             ^^^^^^^^^^^^^^^^
+  = allowed: a list of whole numbers from 0
+  = hint: write the numbers of all of them one after another, in one list"#,
+        ),
+        (
             model("stiffness = -5"),
             r#"scene.toml:11:47: error[scene.range]: `stiffness` is -5
  11 | models = [{ kind = "mass_spring", stiffness = -5 }]

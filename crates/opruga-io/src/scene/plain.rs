@@ -169,6 +169,16 @@ impl Reader<'_> {
     /// A list of whole numbers not below zero.
     pub(crate) fn naturals(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<Vec<u32>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
+        if items.len() > 1 && items.iter().all(|item| matches!(item.data, Data::Array(_))) {
+            // One slip, and not as many as there are triangles.
+            let name = path.rsplit('.').next().unwrap_or(path);
+            let error = SceneError::new("scene.type", format!("`{}` is a list of lists", visible(name)))
+                .path(path)
+                .value(node.shown())
+                .allowed(range.describe(self.dimension));
+            self.report(node.place, error.hint("write the numbers of all of them one after another, in one list"));
+            return None;
+        }
         let before = self.count();
         let numbers =
             items.iter().enumerate().filter_map(|(k, item)| self.natural(item, &join(path, &k.to_string()))).collect();
