@@ -14,7 +14,6 @@ mod matrix;
 pub mod packed;
 mod preconditioner;
 mod scalars;
-pub mod threads;
 mod woodbury;
 
 pub use cholesky::Cholesky;
