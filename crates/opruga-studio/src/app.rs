@@ -314,7 +314,7 @@ impl Studio {
         }
         egui::Area::new(egui::Id::unique("message"))
             .pivot(Align2::CENTER_BOTTOM)
-            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, 40.0))
+            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, if shown.beside.is_some() { 66.0 } else { 40.0 }))
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };

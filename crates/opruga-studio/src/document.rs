@@ -334,6 +334,9 @@ impl Document {
 
 /// Gives the nodes of a selection other numbers; several that come to the same one are named once.
 fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
+    if let Some(node) = select.get("node").and_then(Item::as_integer) {
+        select.insert("node", toml_edit::value(renamed(node)));
+    }
     if let Some(nodes) = select.get_mut("nodes").and_then(Item::as_array_mut) {
         let new: std::collections::BTreeSet<i64> = nodes.iter().filter_map(Toml::as_integer).map(renamed).collect();
         *nodes = new.into_iter().collect();

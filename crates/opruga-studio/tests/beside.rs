@@ -225,6 +225,7 @@ fn a_pull_on_either_side_takes_the_nodes_that_lie_at_the_same_place_at_rest_and_
     for on_right in [false, true] {
         let mut session = open("ball");
         ask(&mut session, Request::Compare(true));
+        ask(&mut session, Request::Differ(finer(7)));
         ask(&mut session, Request::Differ(finer(72)));
         pass(&mut session, 3);
         // The top of the ball: node 9 of 36, node 18 of 72.

@@ -419,6 +419,7 @@ fn every_scene_of_the_program_opens_moves_and_can_be_seen_in_every_colour() {
                 velocities: true,
                 normals: true,
                 contacts: true,
+                own_colours: false,
                 ..Show::default()
             }));
             let shown = session.shown();

@@ -5,8 +5,10 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Painter, Pos2, Shape, Vec2};
 use std::sync::Arc;
 
-/// Points of a line nearer to one another than this are drawn as one [points of the screen].
+/// Points of a line nearer to one another than this are drawn as one; with hard borders, in a crowd, nearer than that [points of
+/// the screen].
 const JOINED: f32 = 0.4;
+const JOINED_HARD: f32 = 1.5;
 /// The most by which a corner sticks out, as a multiple of half the width.
 const MOST_MITRE: f32 = 2.0;
 
@@ -95,12 +97,14 @@ impl Brush {
     pub(crate) fn ring(&mut self, points: impl Iterator<Item = (Pos2, Color32)>, width: f32) {
         let mut line = std::mem::take(&mut self.line);
         line.clear();
+        let joined = if self.soft > 0.0 { JOINED } else { JOINED_HARD };
+        let near = joined * joined;
         for point in points {
-            if line.last().is_none_or(|last: &(Pos2, Color32)| (point.0 - last.0).length_sq() > JOINED * JOINED) {
+            if line.last().is_none_or(|last: &(Pos2, Color32)| (point.0 - last.0).length_sq() > near) {
                 line.push(point);
             }
         }
-        while line.len() > 1 && (line[line.len() - 1].0 - line[0].0).length_sq() <= JOINED * JOINED {
+        while line.len() > 1 && (line[line.len() - 1].0 - line[0].0).length_sq() <= near {
             line.pop();
         }
         match line[..] {
@@ -115,6 +119,9 @@ impl Brush {
     fn around(&mut self, line: &[(Pos2, Color32)], width: f32) {
         let first = self.mesh.vertices.len() as u32;
         let count = line.len();
+        let rows = if self.soft > 0.0 { 4 } else { 2 };
+        self.mesh.vertices.reserve(count * rows);
+        self.mesh.indices.reserve(count * 6 * (rows - 1));
         let way = |k: usize| (line[(k + 1) % count].0 - line[k].0).normalized();
         let mut before = way(count - 1);
         for (k, (at, color)) in line.iter().enumerate() {

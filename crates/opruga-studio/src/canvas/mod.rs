@@ -61,6 +61,8 @@ pub struct Canvas {
     beside: space::Space,
     kept_beside: plane::Kept,
     scales: Option<View>,
+    /// Whether two scenes were shown.
+    two: bool,
     fitted: u64,
     /// The size of the window for which the scene was fitted; none once somebody has moved the view.
     fitted_size: Option<Vec2>,
@@ -133,6 +135,11 @@ impl Canvas {
             return Vec::new();
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
+        if self.two != other.is_some() {
+            // There is half the room, or twice as much: everything is shown as it is now.
+            self.two = other.is_some();
+            self.fit();
+        }
         self.rect = Some(rect);
         let paper = Paper::of(ui);
         let painter = ui.painter_at(rect);

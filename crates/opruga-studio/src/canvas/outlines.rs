@@ -6,11 +6,15 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Outlines up to which triangles are found anew where a body has folded.
 const MOST_ANEW: usize = 4_000;
+/// Bodies up to which all are looked at for folds with every picture; of more, so many with each.
+const LOOKED_AT: usize = 64;
 
 /// The outlines of every body that was seen.
 #[derive(Default)]
 pub(crate) struct Outlines {
     known: Vec<Option<Outline>>,
+    /// The number of the picture.
+    turn: usize,
 }
 
 impl core::fmt::Debug for Outlines {
@@ -40,7 +44,12 @@ impl Outlines {
         self.known.clear();
     }
 
-    /// The outline of a body now.
+    /// Begins another picture.
+    pub(crate) fn next_picture(&mut self) {
+        self.turn = self.turn.wrapping_add(1);
+    }
+
+    /// The outline of a body now. In a crowd a fold may be seen some pictures later.
     pub(crate) fn of(&mut self, place: usize, body: &BodyPicture) -> &Outline {
         if self.known.len() <= place {
             self.known.resize_with(place + 1, || None);
@@ -50,17 +59,18 @@ impl Outlines {
             Facets::Triangles(_) => &[],
         };
         let counts = [body.positions.len(), edges.len(), body.segments.len()];
+        let groups = self.known.len().div_ceil(LOOKED_AT).max(1);
+        let its_turn = place % groups == self.turn % groups;
         let slot = &mut self.known[place];
-        let outline = match slot.take() {
-            Some(mut outline) if outline.counts == counts => {
-                if edges.len() <= MOST_ANEW && body.cells.is_empty() && !fits(body, &outline.triangles) {
-                    outline.triangles = fill(body, &outline.closed);
-                }
-                outline
-            }
-            _ => Outline::new(body, edges, counts),
-        };
-        slot.insert(outline)
+        if slot.as_ref().is_none_or(|outline| outline.counts != counts) {
+            *slot = None;
+        }
+        let outline = slot.get_or_insert_with(|| Outline::new(body, edges, counts));
+        let looked_at = its_turn && edges.len() <= MOST_ANEW && body.cells.is_empty();
+        if looked_at && !fits(body, &outline.triangles) {
+            outline.triangles = fill(body, &outline.closed);
+        }
+        outline
     }
 }
 

@@ -81,10 +81,13 @@ impl Canvas {
             _ => {}
         }
         if !self.pulled
+            && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
+            // What is far out of sight cannot be dragged.
+            && rect.expand(0.2 * rect.width()).contains(top)
         {
             plane::hint(painter, top, rect, self.tools, language.drag_me());
         }

@@ -74,6 +74,7 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     };
     let lines: usize = picture.bodies.iter().map(|body| body.segments.len() + edges(body)).sum();
     let crowd = lines > SOFT_EDGES && !alone;
+    kept.outlines.next_picture();
     kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() });
     let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map), paper);
     for (place, body) in picture.bodies.iter().enumerate() {
@@ -108,6 +109,12 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
             let colour = Color32::from_rgba_unmultiplied(r, g, b, opacity);
             let corners = area.positions.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour));
             brush.fill(corners, &area.triangles);
+            // A thin line of the same colour makes its border smooth.
+            let starts = std::iter::once(0).chain(area.ends.iter().copied());
+            for (start, end) in starts.zip(area.ends.iter().copied()) {
+                let Some(line) = area.positions.get(start..end) else { continue };
+                brush.ring(line.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour)), 0.5);
+            }
         }
         return;
     }

@@ -91,6 +91,14 @@ pub enum Request {
     Differ(Difference),
 }
 
+impl Request {
+    /// Whether it changes the scene.
+    fn is_edit(&self) -> bool {
+        use Request::{Compare, Differ, Edit, Integrator, Models, Redo, Set, Undo};
+        matches!(self, Set(..) | Models(..) | Integrator(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..))
+    }
+}
+
 /// A scene that runs while a person works on it.
 pub struct Session {
     document: Document,
@@ -169,6 +177,7 @@ impl Session {
     /// Does what is asked. What cannot be done is told by [`Shown::message`] and leaves everything as it was.
     pub fn handle(&mut self, request: Request) {
         let again = request.clone();
+        let (before, edits) = (self.messages, request.is_edit());
         let outcome = match request {
             Request::Open { name, text, files } => self.open_another(&name, &text, files),
             Request::Play(playing) => {
@@ -228,6 +237,10 @@ impl Session {
             }
         };
         match outcome {
+            // What was refused before is over where something else was accepted.
+            Ok(()) if edits && self.messages == before => {
+                self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
+            }
             Ok(()) => {}
             Err(Refusal::Scene(text)) => self.tell(Severity::Refused, Said::Because(text), None),
             Err(Refusal::World(error)) => self.refuse(&error, Some(again)),
