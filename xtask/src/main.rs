@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask licences | goldens | bench | web | web-trial`.
+//! Chores of the workspace: `cargo xtask licences | goldens | bench | web | web-trial | web-measure`.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;
@@ -16,8 +16,12 @@ fn main() -> ExitCode {
         Some("bench") => bench::compare(),
         Some("web") => web::build(&arguments[1..]),
         Some("web-trial") => web::trial(&arguments[1..]),
-        _ => Err("usage: cargo xtask licences | goldens | bench | web [--serve] [--port NUMBER] | web-trial [PROFILE]"
-            .into()),
+        Some("web-measure") => web::measure(&arguments[1..]),
+        _ => Err(
+            "usage: cargo xtask licences | goldens | bench | web [--serve] [--port NUMBER] | web-trial [PROFILE] | \
+                  web-measure [PICTURES]"
+                .into(),
+        ),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

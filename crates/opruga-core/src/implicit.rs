@@ -91,7 +91,7 @@ impl<const D: usize> System<D> {
     /// The part of the forces that comes from outside, weight and loads, after [`System::evaluate`] of the same state [N].
     pub fn outer_forces(&mut self, stage: Stage, time: f64, out: &mut Columns<D>) {
         let now = self.time + time;
-        let view = view(&self.state, self.nodes, self.layout, stage, now);
+        let view = view(&self.state, self.nodes, self.layout, stage, now, self.threads);
         for tile in 0..self.plan.len() {
             let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
             let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);

@@ -14,4 +14,5 @@ pub mod stability;
 pub mod state;
 pub mod stencil;
 pub mod system;
+pub mod threads;
 pub mod tile;

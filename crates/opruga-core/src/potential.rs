@@ -5,6 +5,7 @@ use crate::spec::{Spec, Values};
 use crate::state::{Layout, View};
 use crate::tile::Tile;
 use core::fmt::Debug;
+use core::ops::Range;
 use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
 
@@ -92,6 +93,18 @@ impl StencilPack<'_> {
     }
 }
 
+/// Matrices of many stencils that are worked out on demand: what lets a [`Sink`] spread the work over threads.
+pub trait StencilPacks<const D: usize>: Sync {
+    /// Nodes of a stencil.
+    fn nodes(&self) -> usize;
+    /// How many stencils there are; all packs but the last are full.
+    fn stencils(&self) -> usize;
+    /// Whether these are the places of all packs, one pack after the other as in [`StencilPack::places`].
+    fn are_at(&self, places: &[u32]) -> bool;
+    /// Delivers the packs with a place in `rows` in their order, each with its number among all.
+    fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>));
+}
+
 /// Where a model delivers its Hessian.
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two places of the same body.
@@ -107,6 +120,10 @@ pub trait Sink<const D: usize> {
                 }
             }
         }
+    }
+    /// The same of many, which may be worked out on so many threads; they change no bits.
+    fn stencil_packs(&mut self, _threads: usize, packs: &dyn StencilPacks<D>) {
+        packs.deliver(&(0..usize::MAX), &mut |_, pack| self.stencils(pack));
     }
 }
 
@@ -133,6 +150,10 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     /// What is remembered at the start.
     fn initial_memory(&self) -> Vec<f64> {
         Vec::new()
+    }
+    /// Whether `prepare` and the derivatives are spread over [`View::threads`], for bodies that are large enough.
+    fn shares_threads(&self) -> bool {
+        false
     }
     /// How many numbers `prepare` leaves behind.
     fn scratch_len(&self) -> usize {

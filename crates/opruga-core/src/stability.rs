@@ -272,6 +272,7 @@ impl<'a, const D: usize> Probe<'a, D> {
             nodes: system.nodes,
             layout: system.layout,
             time: system.time,
+            threads: system.threads,
         };
         for column in &mut self.force.0 {
             column.fill(0.0);

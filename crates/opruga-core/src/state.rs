@@ -226,6 +226,8 @@ pub struct View<'a, const D: usize> {
     pub layout: Layout,
     /// Time [s].
     pub time: f64,
+    /// Threads that work on this state may be spread over ([`crate::threads`]); they change no bits.
+    pub threads: usize,
 }
 
 impl<const D: usize> View<'_, D> {

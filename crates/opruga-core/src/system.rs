@@ -337,7 +337,7 @@ impl<const D: usize> System<D> {
     }
     /// The state of a stage at a time.
     pub fn view(&self, stage: Stage, time: f64) -> View<'_, D> {
-        view(&self.state, self.nodes, self.layout, stage, time)
+        view(&self.state, self.nodes, self.layout, stage, time, self.threads)
     }
 
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
@@ -382,7 +382,7 @@ impl<const D: usize> System<D> {
 
     /// Lets every model look at the body as a whole.
     pub(crate) fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
-        let view = view(&self.state, self.nodes, self.layout, stage, time);
+        let view = view(&self.state, self.nodes, self.layout, stage, time, self.threads);
         for member in &mut self.members {
             member.potential.prepare(self.simd, &view, &member.memory, &mut member.scratch)?;
         }
@@ -392,7 +392,7 @@ impl<const D: usize> System<D> {
     /// Adds up the forces of all models on the nodes of one tile.
     #[inline]
     pub(crate) fn add_forces(&mut self, stage: Stage, time: f64, weight: f64, tile: usize) {
-        let view = view(&self.state, self.nodes, self.layout, stage, time);
+        let view = view(&self.state, self.nodes, self.layout, stage, time, self.threads);
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
         let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
@@ -507,7 +507,7 @@ impl<const D: usize> System<D> {
     /// Ends a substep: models move their memory on, time passes.
     pub fn finish_step(&mut self, h: f64) {
         let now = self.time + h;
-        let view = view(&self.state, self.nodes, self.layout, Stage::Current, now);
+        let view = view(&self.state, self.nodes, self.layout, Stage::Current, now, self.threads);
         for member in &mut self.members {
             if !member.memory.is_empty() {
                 let given = member.potential.remember(self.simd, &view, h, &mut member.scratch, &mut member.memory);
@@ -539,7 +539,7 @@ impl<const D: usize> System<D> {
         let mut out = Columns::zeros(self.places());
         self.make_room();
         self.prepare(Stage::Current, self.time)?;
-        let view = view(&self.state, self.nodes, self.layout, Stage::Current, self.time);
+        let view = view(&self.state, self.nodes, self.layout, Stage::Current, self.time, self.threads);
         for tile in 0..self.plan.len() {
             let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
             let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
@@ -595,12 +595,13 @@ pub(crate) fn view<const D: usize>(
     layout: Layout,
     stage: Stage,
     time: f64,
+    threads: usize,
 ) -> View<'_, D> {
     let (x, v) = match stage {
         Stage::Current => (&state.x, &state.v),
         Stage::Work(k) => (&state.work[k][0], &state.work[k][1]),
     };
-    View { x: x.slices(), v: v.slices(), nodes, layout, time }
+    View { x: x.slices(), v: v.slices(), nodes, layout, time, threads }
 }
 
 /// Hands a tile to the integrator.

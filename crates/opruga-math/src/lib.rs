@@ -7,6 +7,7 @@ pub mod lane;
 pub mod matrix;
 mod portable;
 mod registers;
+pub mod rotation;
 pub mod simd;
 pub mod singular;
 pub mod strip;

@@ -1,4 +1,4 @@
-//! Singular values with proper rotations, and the polar decomposition from them.
+//! Singular values with proper rotations.
 //!
 //! F = U diag(σ) Vᵀ with det U = det V = 1 and |σ| falling; so the last σ is negative where F turns the body inside out,
 //! and R = U Vᵀ is a rotation always (Irving, Teran, Fedkiw 2004).
@@ -132,30 +132,9 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
     Singular { u, sigma, v }
 }
 
-/// The rotation that is nearest to a matrix, R of F = R S with det R = 1.
-#[inline(always)]
-pub fn nearest_rotation<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
-    if D == 2 {
-        // In the plane (f₀₀ + f₁₁, f₁₀ − f₀₁) is its direction.
-        let mut along = [S::zero(); D];
-        along[0] = f[0][0] + f[1][1];
-        along[1] = f[1][0] - f[0][1];
-        let mut axis = [S::zero(); D];
-        axis[0] = S::one();
-        let (a, _) = direction(&along, &axis);
-        let mut out = matrix::zeros();
-        out[0][0] = a[0];
-        out[0][1] = -a[1];
-        out[1][0] = a[1];
-        out[1][1] = a[0];
-        return out;
-    }
-    singular(f).rotation()
-}
-
 /// A vector without its length, and its length; the substitute and zero where it has none.
 #[inline(always)]
-fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]) -> ([S; D], S) {
+pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]) -> ([S; D], S) {
     let mut square = S::zero();
     for i in 0..D {
         square += a[i] * a[i];
@@ -202,6 +181,7 @@ fn make_orthogonal<S: Lane, const D: usize>(b: &mut Matrix<S, D>, v: &mut Matrix
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rotation::nearest_rotation;
 
     fn check<const D: usize>(f: &Matrix<f64, D>) {
         let s = singular(f);
@@ -218,7 +198,7 @@ mod tests {
                 assert!((back[i][j] - f[i][j]).abs() <= 4e-15 * scale, "{f:?} {back:?}");
             }
         }
-        for m in [&s.u, &s.v, &nearest_rotation(f)] {
+        for m in [&s.u, &s.v, &s.rotation()] {
             let unit = matrix::transposed_product(m, m);
             for i in 0..D {
                 for j in 0..D {

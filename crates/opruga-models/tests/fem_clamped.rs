@@ -41,7 +41,8 @@ where
         (q[0], q[1]) = (c * along - s * across, s * along + c * across);
         x.set(k, q);
     }
-    let view = View { x: x.slices(), v: v.slices(), nodes: mesh.nodes(), layout: Layout::Single, time: 0.0 };
+    let view =
+        View { x: x.slices(), v: v.slices(), nodes: mesh.nodes(), layout: Layout::Single, time: 0.0, threads: 1 };
     let mut scratch = Column::zeros(solid.scratch_len());
     solid.prepare(Simd::best(), &view, &[], &mut scratch).unwrap();
     [Definiteness::Exact, Definiteness::Clamped].map(|keep| {

@@ -15,7 +15,6 @@ mod one_model;
 pub mod packed;
 mod preconditioner;
 mod scalars;
-pub mod threads;
 mod woodbury;
 
 pub use cholesky::Cholesky;

@@ -2,7 +2,8 @@
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
-use opruga_core::potential::{Sink, StencilPack};
+use opruga_core::potential::{Sink, StencilPack, StencilPacks};
+use opruga_core::threads::each_part;
 use opruga_math::WIDTH;
 
 /// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
@@ -77,6 +78,63 @@ pub(crate) struct RankOne<const D: usize> {
 /// Whether packs of stencils of so many nodes are remembered as a whole.
 fn is_replayed(nodes: usize) -> bool {
     matches!(nodes, 3 | 4 | 6 | 8 | 10)
+}
+
+/// The blocks of some rows, in which matrices of stencils land; what belongs to other rows is left to others.
+struct Landing<'a, const D: usize> {
+    values: &'a mut [Block<D>],
+    /// The place of the first of them in the matrix.
+    first: usize,
+    factor: f64,
+}
+
+impl<const D: usize> Landing<'_, D> {
+    /// Adds the blocks of a pack of stencils at the places that are known.
+    fn add(&mut self, pack: &StencilPack<'_>, slots: &[u32]) {
+        match pack.nodes {
+            3 => self.add_all::<3>(pack, slots),
+            4 => self.add_all::<4>(pack, slots),
+            6 => self.add_all::<6>(pack, slots),
+            8 => self.add_all::<8>(pack, slots),
+            10 => self.add_all::<10>(pack, slots),
+            _ => unreachable!("`is_replayed` has told"),
+        }
+    }
+
+    #[inline(always)]
+    fn add_all<const N: usize>(&mut self, pack: &StencilPack<'_>, slots: &[u32]) {
+        let blocks = &pack.blocks[..N * N * D * D * WIDTH];
+        for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
+            for a in 0..N {
+                for b in a..N {
+                    let stored = &blocks[(a * N + b) * D * D * WIDTH..][..D * D * WIDTH];
+                    let mut block = [[0.0; D]; D];
+                    for i in 0..D {
+                        for j in 0..D {
+                            block[i][j] = self.factor * stored[(i * D + j) * WIDTH + lane % WIDTH];
+                        }
+                    }
+                    if let Some(upper) = self.values.get_mut((slots[a][b] as usize).wrapping_sub(self.first)) {
+                        for i in 0..D {
+                            for j in 0..D {
+                                upper[i][j] += block[i][j];
+                            }
+                        }
+                    }
+                    if a == b {
+                        continue;
+                    }
+                    if let Some(lower) = self.values.get_mut((slots[b][a] as usize).wrapping_sub(self.first)) {
+                        for i in 0..D {
+                            for j in 0..D {
+                                lower[i][j] += block[j][i];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// How far ahead a call is looked for that comes out of turn.
@@ -216,38 +274,47 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Adds blocks of packs of stencils of N nodes where they landed before.
-    #[inline(always)]
-    fn replay<const N: usize>(&mut self, pack: &StencilPack<'_>) {
-        let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..pack.count * N * N];
-        let blocks = &pack.blocks[..N * N * D * D * WIDTH];
-        for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
-            for a in 0..N {
-                for b in a..N {
-                    let stored = &blocks[(a * N + b) * D * D * WIDTH..][..D * D * WIDTH];
-                    let mut block = [[0.0; D]; D];
-                    for i in 0..D {
-                        for j in 0..D {
-                            block[i][j] = self.factor * stored[(i * D + j) * WIDTH + lane % WIDTH];
-                        }
-                    }
-                    let upper = &mut self.values[slots[a][b] as usize];
-                    for i in 0..D {
-                        for j in 0..D {
-                            upper[i][j] += block[i][j];
-                        }
-                    }
-                    if a != b {
-                        let lower = &mut self.values[slots[b][a] as usize];
-                        for i in 0..D {
-                            for j in 0..D {
-                                lower[i][j] += block[j][i];
-                            }
-                        }
-                    }
-                }
-            }
+    /// Adds the blocks of a pack of stencils of so many nodes where they landed before; gives the number of these places.
+    fn replay(&mut self, pack: &StencilPack<'_>) -> usize {
+        let count = pack.count * pack.nodes * pack.nodes;
+        let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..count];
+        Landing { values: &mut self.values, first: 0, factor: self.factor }.add(pack, slots);
+        count
+    }
+
+    /// Adds packs of stencils on several threads, each of which looks after some rows; false where they come out of turn.
+    fn replay_in_rows(&mut self, threads: usize, packs: &dyn StencilPacks<D>) -> bool {
+        let (nodes, stencils) = (packs.nodes(), packs.stencils());
+        let (places, slots) = (stencils.div_ceil(WIDTH) * WIDTH * nodes, stencils * nodes * nodes);
+        let script = &self.scripts[self.script];
+        let (Some(known), Some(slots)) = (
+            script.pack_places.get(self.packs.places..self.packs.places + places),
+            script.pack_slots.get(self.packs.slots..self.packs.slots + slots),
+        ) else {
+            return false;
+        };
+        if !packs.are_at(known) {
+            return false;
         }
+        // Rows with about as many blocks each.
+        let share = self.values.len().div_ceil(threads);
+        let mut rows: Vec<usize> =
+            (0..threads).map(|k| self.start.partition_point(|start| (*start as usize) < k * share)).collect();
+        rows.dedup();
+        rows.retain(|row| *row < self.rows());
+        let starts: Vec<usize> = rows.iter().map(|row| self.start[*row] as usize).collect();
+        let factor = self.factor;
+        each_part(&mut self.values, &starts, |part, values| {
+            let rows = rows[part]..rows.get(part + 1).map_or(usize::MAX, |row| *row);
+            let mut landing = Landing { values, first: starts[part], factor };
+            packs.deliver(&rows, &mut |number, pack| {
+                let from = number * WIDTH * nodes * nodes;
+                landing.add(pack, &slots[from..from + pack.count * nodes * nodes]);
+            });
+        });
+        self.packs.places += places;
+        self.packs.slots += slots.len();
+        true
     }
 
     /// y = A x, over all rows in the order of columns: the same bits everywhere.
@@ -409,16 +476,15 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
                 return self.block_by_block(pack);
             }
         }
-        match pack.nodes {
-            3 => self.replay::<3>(pack),
-            4 => self.replay::<4>(pack),
-            6 => self.replay::<6>(pack),
-            8 => self.replay::<8>(pack),
-            10 => self.replay::<10>(pack),
-            _ => unreachable!("`is_replayed` has told"),
-        }
+        let slots = self.replay(pack);
         self.packs.places += places;
         self.packs.slots += slots;
+    }
+    fn stencil_packs(&mut self, threads: usize, packs: &dyn StencilPacks<D>) {
+        let known = threads > 1 && !self.recording && is_replayed(packs.nodes());
+        if !(known && self.replay_in_rows(threads, packs)) {
+            packs.deliver(&(0..usize::MAX), &mut |_, pack| self.stencils(pack));
+        }
     }
 }
 

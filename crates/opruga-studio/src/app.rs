@@ -1,8 +1,8 @@
 //! The window: what is where, shortcuts, messages.
 
 use crate::canvas::{Canvas, Tool};
+use crate::differences::Difference;
 use crate::hand::{Arrived, Hand};
-use crate::pair::Difference;
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
 use crate::panels::plots::Plots;
@@ -83,6 +83,16 @@ impl Studio {
         })
     }
 
+    /// Goes on in another context, on another device: pictures that were handed to the last one are handed over anew.
+    #[cfg(target_arch = "wasm32")]
+    pub fn move_to(&mut self, context: &egui::Context) {
+        crate::theme::apply(context);
+        let waker = context.clone();
+        self.link.wake_by(move || waker.request_repaint());
+        self.canvas.forget_textures();
+        self.gallery.forget_textures();
+    }
+
     /// What is shown now.
     pub fn shown(&self) -> Arc<Shown> {
         self.link.shown()
@@ -115,7 +125,6 @@ impl Studio {
 
     /// Shows the window for one frame.
     pub fn show(&mut self, ui: &mut Ui) {
-        self.link.turn();
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
         self.rate += 0.05 * (1.0 / seconds - self.rate);
@@ -262,7 +271,7 @@ impl Studio {
                         if focus.on_hover_text(format!("{}  (C)", words.focus_hint())).clicked() {
                             self.canvas.focus(shown);
                         }
-                        bars::view_menu(ui, words, self.show, asks);
+                        bars::view_menu(ui, shown, words, self.show, asks);
                     });
                 });
             });
@@ -287,7 +296,7 @@ impl Studio {
         let message = shown.message.as_ref().filter(|message| message.number != self.closed);
         let (text, severity, offer) = match (own, message, self.keeping.message()) {
             (Some(text), ..) => (text.to_string(), Severity::Refused, None),
-            (None, Some(message), _) => (message.text.clone(), message.severity, message.offer.clone()),
+            (None, Some(message), _) => (words.said(&message.said), message.severity, message.offer.clone()),
             (None, None, Some((text, severity))) => {
                 let head = if self.keeping.is_written() { format!("{} ", words.kept()) } else { String::new() };
                 (format!("{head}{text}"), severity, None)
@@ -305,7 +314,7 @@ impl Studio {
         }
         egui::Area::new(egui::Id::unique("message"))
             .pivot(Align2::CENTER_BOTTOM)
-            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, 40.0))
+            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, if shown.beside.is_some() { 66.0 } else { 40.0 }))
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };
@@ -331,10 +340,8 @@ impl Studio {
                             }
                             // What made it fail may have been the last change.
                             if offer == Some(Offer::HalveStep)
-                                && shown.undo.is_some()
-                                && ui
-                                    .button(format!("{} ({})", words.undo(), shown.undo.as_deref().unwrap_or_default()))
-                                    .clicked()
+                                && let Some(step) = &shown.undo
+                                && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
                             {
                                 asks.push(Request::Undo);
                                 self.closed = message.map_or(self.closed, |m| m.number);
@@ -369,8 +376,19 @@ impl Studio {
             .collapsible(false)
             .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ui.ctx(), |ui| {
-                ui.set_max_width((ui.ctx().content_rect().width() - 40.0).clamp(120.0, 480.0));
-                ui.label(RichText::new(words.shortcuts()).size(14.0).line_height(Some(22.0)));
+                let room = (ui.ctx().content_rect().width() - 60.0).clamp(120.0, 560.0);
+                ui.set_max_width(room);
+                egui::Grid::new("shortcuts").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
+                    for (keys, what) in words.shortcuts().lines().filter_map(|line| line.split_once('\t')) {
+                        for (text, share) in [(RichText::new(keys).strong(), 0.36), (RichText::new(what), 0.58)] {
+                            ui.scope(|ui| {
+                                ui.set_max_width(share * room);
+                                ui.add(egui::Label::new(text.size(13.5)).wrap());
+                            });
+                        }
+                        ui.end_row();
+                    }
+                });
             });
         self.help_open = open;
     }
@@ -473,17 +491,14 @@ fn difference(ask: &Request, shown: &Shown) -> Option<Difference> {
         Request::Integrator(None, values) => Difference::Integrator(None, values.clone()),
         Request::Integrator(Some(body), values) => Difference::Integrator(Some(name(*body)?), values.clone()),
         Request::Models(body, models) => Difference::Models(name(*body)?, models.clone()),
+        Request::Edit(Edit::Shape(body, field, value)) => Difference::Shape(body.clone(), field, value.clone()),
         _ => return None,
     })
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 impl eframe::App for Studio {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
-    }
-
-    #[cfg(target_arch = "wasm32")]
-    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
-        Some(self)
     }
 }

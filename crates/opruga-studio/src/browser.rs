@@ -29,6 +29,14 @@ pub(crate) async fn next_turn() {
     let _ = JsFuture::from(promise).await;
 }
 
+/// Tells the page that the graphics device was lost.
+pub(crate) fn tell_lost() {
+    let event = web_sys::Event::new("opruga-device-lost");
+    if let (Some(window), Ok(event)) = (window(), event) {
+        let _ = window.dispatch_event(&event);
+    }
+}
+
 /// The part of the address behind its `#`.
 pub(crate) fn fragment() -> String {
     window().and_then(|window| window.location().hash().ok()).unwrap_or_default()

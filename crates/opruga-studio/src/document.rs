@@ -223,6 +223,44 @@ impl Document {
         true
     }
 
+    /// The bodies at the start alone, without anything that names one of their nodes.
+    pub fn without_nodes(&self) -> Document {
+        let mut bare = self.clone();
+        for key in ["command", "load", "probe"] {
+            bare.text.remove(key);
+        }
+        if let Some(tables) = bare.text.get_mut("body").and_then(Item::as_array_of_tables_mut) {
+            tables.iter_mut().for_each(|table| {
+                table.remove("pin");
+            });
+        }
+        bare
+    }
+
+    /// Gives the nodes of a body other numbers wherever they are named.
+    pub fn rename_nodes(&mut self, name: &str, other: &dyn Fn(u32) -> u32) {
+        let renamed = |number: i64| u32::try_from(number).map_or(number, |node| i64::from(other(node)));
+        for key in ["body", "command", "load", "probe"] {
+            let field = if key == "body" { "name" } else { "body" };
+            let Some(tables) = self.text.get_mut(key).and_then(Item::as_array_of_tables_mut) else { continue };
+            let its_own = |table: &&mut Table| table.get(field).and_then(Item::as_str) == Some(name);
+            for table in tables.iter_mut().filter(its_own) {
+                if let Some(node) = table.get("node").and_then(Item::as_integer) {
+                    table["node"] = toml_edit::value(renamed(node));
+                }
+                if let Some(select) = table.get_mut("select").and_then(Item::as_table_like_mut) {
+                    rename_selected(select, &renamed);
+                }
+                let pins = table.get_mut("pin").and_then(Item::as_array_mut);
+                for pin in pins.into_iter().flat_map(Array::iter_mut).filter_map(Toml::as_inline_table_mut) {
+                    if let Some(select) = pin.get_mut("select").and_then(Toml::as_inline_table_mut) {
+                        rename_selected(select, &renamed);
+                    }
+                }
+            }
+        }
+    }
+
     fn own_body(&mut self, name: &str) -> Option<&mut Table> {
         let tables = self.text.get_mut("body")?.as_array_of_tables_mut()?;
         let found = |table: &&mut Table| table.get("name").and_then(Item::as_str) == Some(name);
@@ -291,6 +329,17 @@ impl Document {
             table.decor_mut().set_prefix("\n");
         }
         self.text.insert("integrator", Item::Table(table));
+    }
+}
+
+/// Gives the nodes of a selection other numbers; several that come to the same one are named once.
+fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
+    if let Some(node) = select.get("node").and_then(Item::as_integer) {
+        select.insert("node", toml_edit::value(renamed(node)));
+    }
+    if let Some(nodes) = select.get_mut("nodes").and_then(Item::as_array_mut) {
+        let new: std::collections::BTreeSet<i64> = nodes.iter().filter_map(Toml::as_integer).map(renamed).collect();
+        *nodes = new.into_iter().collect();
     }
 }
 

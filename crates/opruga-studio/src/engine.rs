@@ -5,7 +5,7 @@ use crate::shown::{BodyShown, EnergyShown, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::draw::{ArrowKind, ArrowPicture, Facets};
-use opruga::pictures::Scenery;
+use opruga::pictures::{Quantity, Scenery};
 use opruga::{Options, World, WorldError};
 use toml_edit::Table;
 
@@ -15,6 +15,15 @@ pub struct Given {
     pub number: usize,
     /// Its table.
     pub table: Table,
+}
+
+/// What scenes have in common whatever their nodes are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Common {
+    /// The centre of mass of all bodies \[m\].
+    pub center: [f64; 3],
+    /// What closed outlines and surfaces enclose \[m³, m² in the plane\]; none where there are none.
+    pub volume: Option<f64>,
 }
 
 /// A running world.
@@ -60,6 +69,16 @@ pub trait Engine: Send {
     fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
+    /// The node for which the one nearest to a point in the scene beside it stands; none where there is but one scene.
+    fn nearest_beside(&self, _body: usize, _point: [f64; 3]) -> Option<u32> {
+        None
+    }
+    /// The position of what stands for a node in the scene beside it [m].
+    fn position_beside(&self, _body: usize, _node: u32) -> Option<[f64; 3]> {
+        None
+    }
+    /// What scenes have in common whatever their nodes are.
+    fn common(&self) -> Common;
     /// The position of a node [m].
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]>;
     /// The positions of all nodes of the bodies that are there [m].
@@ -137,6 +156,12 @@ pub fn build(blueprint: AnyBlueprint, options: &Options) -> Result<Box<dyn Engin
     }
 }
 
+/// Whether bodies carry drawings with colours of their own.
+fn has_drawings<const D: usize>(world: &World<D>) -> bool {
+    let skins = world.bodies().filter_map(|body| world.blueprint().bodies[body].mesh.skin.as_ref());
+    D == 2 && skins.flat_map(|skin| &skin.areas).any(|area| area.colour.is_some())
+}
+
 fn cut<const D: usize>(point: [f64; 3]) -> [f64; D] {
     core::array::from_fn(|d| point[d])
 }
@@ -182,7 +207,9 @@ impl<const D: usize> Living<D> {
         if bodies != self.known {
             (self.scenery, self.known) = (Scenery::new(&self.world), bodies);
         }
-        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, show.quantity);
+        let as_drawn = show.own_colours && has_drawings(&self.world);
+        let quantity = if as_drawn { Quantity::Plain } else { show.quantity };
+        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, quantity);
         let mut picture = self.scenery.picture(&moment);
         if let Some(legend) = &mut picture.legend {
             legend.map = show.map;
@@ -338,6 +365,24 @@ impl<const D: usize> Engine for Living<D> {
         (0..self.world.node_count(body) as u32).min_by(|a, b| far(a).total_cmp(&far(b)))
     }
 
+    fn common(&self) -> Common {
+        let (mut mass, mut moment, mut volume) = (0.0, [0.0; D], None);
+        for body in self.world.bodies() {
+            let mesh = &self.world.blueprint().bodies[body].mesh;
+            let positions: Vec<[f64; D]> =
+                (0..mesh.nodes() as u32).map(|node| self.world.position(body, node)).collect();
+            for (node, position) in positions.iter().enumerate() {
+                let m = self.world.node_mass(body, node as u32);
+                mass += m;
+                (0..D).for_each(|d| moment[d] += m * position[d]);
+            }
+            if !mesh.facets.is_empty() {
+                *volume.get_or_insert(0.0) += opruga::mesh::signed_volume(&mesh.facets, &positions);
+            }
+        }
+        Common { center: three(moment.map(|m| m / mass)), volume }
+    }
+
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
         self.world.handle(body)?;
         ((node as usize) < self.world.node_count(body)).then(|| three(self.world.position(body, node)))
@@ -375,6 +420,7 @@ impl<const D: usize> Engine for Living<D> {
             bodies.push(BodyShown {
                 number,
                 name: blueprint.name.clone(),
+                title: blueprint.name.clone(),
                 nodes: blueprint.mesh.nodes(),
                 models: if numbers.len() <= 64 { blueprint.models.clone() } else { Vec::new() },
                 integrator: blueprint.integrator.clone(),
@@ -414,6 +460,7 @@ impl<const D: usize> Engine for Living<D> {
             warnings: self.world.warnings(),
             bodies,
             obstacles,
+            has_drawings: has_drawings(&self.world),
             picture,
             ..Shown::default()
         }

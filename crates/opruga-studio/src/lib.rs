@@ -4,6 +4,7 @@
 // No physics here: pictures and clocks may differ in a last bit.
 #![allow(clippy::disallowed_methods)]
 
+pub mod differences;
 pub mod document;
 pub mod engine;
 pub mod keyframes;
@@ -16,7 +17,6 @@ pub mod app;
 pub mod canvas;
 pub mod dropping;
 mod hand;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
 pub mod panels;
 pub mod runner;

@@ -46,7 +46,7 @@ fn main() -> ExitCode {
         Box::new(move |creation| {
             let studio = Studio::new(session, &creation.egui_ctx)?;
             if let Some(count) = measured {
-                return Ok(Box::new(Measured::new(studio, count, &report)) as Box<dyn eframe::App>);
+                return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }
             studio.ask(Request::Play(true));
             Ok(Box::new(studio))

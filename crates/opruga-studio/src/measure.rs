@@ -1,79 +1,55 @@
-//! How long frames of the window take: `opruga-studio SCENE --measure-frames N` shows them, prints what it has seen and ends.
+//! How long frames of the window take: `opruga-studio SCENE --measure-frames N` shows them, prints what it has seen and ends;
+//! a page is asked by `opruga.measure(N)`, or opened with `?measure=N`.
 
-use crate::app::Studio;
-use crate::session::Request;
-use eframe::egui::{Context, Ui, ViewportCommand};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use crate::shown::Shown;
 
 /// Frames before any is counted: fonts, textures and the first build of everything.
 const WARM_UP: usize = 60;
 
-/// The name of the graphics driver, which the painter of the window tells its log and nobody else.
-static ADAPTER: Mutex<String> = Mutex::new(String::new());
-
-struct Ear;
-
-impl log::Log for Ear {
-    fn enabled(&self, about: &log::Metadata<'_>) -> bool {
-        about.target().starts_with("egui_glow")
-    }
-    fn log(&self, record: &log::Record<'_>) {
-        let text = record.args().to_string();
-        if let Some(name) = text.lines().find_map(|line| line.strip_prefix("opengl renderer: ")) {
-            *ADAPTER.lock().unwrap_or_else(PoisonError::into_inner) = name.to_string();
-        }
-    }
-    fn flush(&self) {}
-}
-
-/// Begins to listen for the name of the graphics driver.
-pub fn listen() {
-    if log::set_logger(&Ear).is_ok() {
-        log::set_max_level(log::LevelFilter::Debug);
-    }
-}
-
-/// The processor time of this thread [ms]; where the system does not tell it, the time that has passed.
-fn processor_time(begin: Instant) -> f64 {
-    // The system counts when a thread gives way.
-    std::thread::yield_now();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
-}
-
 /// What was measured of one frame [ms].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
     /// What passes from the beginning of the frame before to that of this one.
     whole: f64,
-    /// Processor time of panels and scene, up to the shapes that are to be drawn.
+    /// Panels and scene, up to the shapes that are to be drawn.
     interface: f64,
-    /// Processor time of the whole thread: these, the triangles made of the shapes, and what the driver does in it.
+    /// The triangles made of these shapes, where that was measured by itself.
+    triangles: f64,
+    /// The simulation, where it has no thread of its own.
+    simulation: f64,
+    /// The whole thread: these, the triangles made of the shapes, and what the driver does in it.
     thread: f64,
 }
 
-/// The window, with a watch in its hand.
-pub struct Measured {
-    studio: Studio,
+/// The times of so many frames.
+#[derive(Clone, Debug)]
+pub struct Watch {
     frames: Vec<Frame>,
     wanted: usize,
-    begin: Instant,
-    last: Option<(Instant, f64)>,
-    report: Arc<Mutex<String>>,
+    last: Option<f64>,
 }
 
-impl Measured {
-    /// Measures so many frames while time passes; the report is there when the window has closed.
-    pub fn new(studio: Studio, wanted: usize, report: &Arc<Mutex<String>>) -> Measured {
-        studio.ask(Request::Play(true));
-        let report = Arc::clone(report);
-        Measured { studio, frames: Vec::new(), wanted, begin: Instant::now(), last: None, report }
+impl Watch {
+    /// A watch for so many frames, and those before them that are not counted.
+    pub fn new(wanted: usize) -> Watch {
+        Watch { frames: Vec::new(), wanted: wanted.max(1), last: None }
     }
 
-    fn close(&self, context: &Context) {
-        let shown = self.studio.shown();
+    /// A frame that began at this time; what its interface and its simulation took, and for the last frame the triangles and the
+    /// thread [ms].
+    pub fn add(&mut self, begin: f64, interface: f64, triangles: f64, simulation: f64, thread: f64) {
+        if let Some(last) = self.last.replace(begin) {
+            self.frames.push(Frame { whole: begin - last, interface, triangles, simulation, thread });
+        }
+    }
+
+    /// Whether all were seen.
+    pub fn is_done(&self) -> bool {
+        self.frames.len() >= self.wanted + WARM_UP
+    }
+
+    /// Median and 99th percentile of what was seen.
+    pub fn report(&self, shown: &Shown) -> String {
         let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
         let counted = self.frames.get(WARM_UP..).unwrap_or_default();
         let ends = |of: fn(&Frame) -> f64| {
@@ -82,10 +58,16 @@ impl Measured {
             let at = |share: f64| times.get(((times.len().max(1) - 1) as f64 * share).round() as usize).copied();
             format!("{:.2} / {:.2}", at(0.5).unwrap_or(f64::NAN), at(0.99).unwrap_or(f64::NAN))
         };
-        let adapter = ADAPTER.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let text = format!(
-            "scene {}, {} bodies, {nodes} vertices, {} frames of the window, {adapter}\n\
-             median / 99th percentile in ms: interface {}, its thread {}, frame {}; simulated over real time {:.2}",
+        let where_known = |name: &str, of: fn(&Frame) -> f64| match counted.iter().any(|frame| of(frame) > 0.0) {
+            true => format!("{name} {}, ", ends(of)),
+            false => String::new(),
+        };
+        let triangles = where_known("triangles", |f| f.triangles);
+        let simulation = where_known("simulation", |f| f.simulation);
+        format!(
+            "scene {}, {} bodies, {nodes} vertices, {} frames of the window\n\
+             median / 99th percentile in ms: interface {}, {triangles}{simulation}its thread {}, frame {}; \
+             simulated over real time {:.2}",
             shown.name,
             shown.bodies.len(),
             counted.len(),
@@ -93,24 +75,134 @@ impl Measured {
             ends(|f| f.thread),
             ends(|f| f.whole),
             shown.pace.ratio,
-        );
-        *self.report.lock().unwrap_or_else(PoisonError::into_inner) = text;
-        context.send_viewport_cmd(ViewportCommand::Close);
+        )
     }
 }
 
-impl eframe::App for Measured {
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
-        let (now, before) = (Instant::now(), processor_time(self.begin));
-        self.studio.show(ui);
-        let after = processor_time(self.begin);
-        if let Some((last, thread)) = self.last.replace((now, before)) {
-            let whole = 1e3 * now.duration_since(last).as_secs_f64();
-            self.frames.push(Frame { whole, interface: after - before, thread: before - thread });
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::{Measured, listen};
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    use super::Watch;
+    use crate::app::Studio;
+    use crate::session::Request;
+    use eframe::egui::{Context, FullOutput, Plugin, Ui, ViewportCommand};
+    use std::sync::{Arc, Mutex, PoisonError};
+    use std::time::Instant;
+
+    /// The name of the graphics driver, which the painter of the window tells its log and nobody else.
+    static ADAPTER: Mutex<String> = Mutex::new(String::new());
+
+    struct Ear;
+
+    impl log::Log for Ear {
+        fn enabled(&self, about: &log::Metadata<'_>) -> bool {
+            about.target().starts_with("egui_glow")
         }
-        if self.frames.len() >= self.wanted + WARM_UP {
-            self.close(ui.ctx());
+        fn log(&self, record: &log::Record<'_>) {
+            let text = record.args().to_string();
+            if let Some(name) = text.lines().find_map(|line| line.strip_prefix("opengl renderer: ")) {
+                *ADAPTER.lock().unwrap_or_else(PoisonError::into_inner) = name.to_string();
+            }
         }
-        ui.ctx().request_repaint();
+        fn flush(&self) {}
+    }
+
+    /// Begins to listen for the name of the graphics driver.
+    pub fn listen() {
+        if log::set_logger(&Ear).is_ok() {
+            log::set_max_level(log::LevelFilter::Debug);
+        }
+    }
+
+    /// The processor time of this thread [ms]; where the system does not tell it, the time that has passed.
+    fn processor_time(begin: Instant) -> f64 {
+        // The system counts when a thread gives way.
+        std::thread::yield_now();
+        let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+        let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
+        nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
+    }
+
+    /// Makes the triangles of every frame once more than needed, to see what that takes [ms].
+    struct Triangles(Arc<Mutex<f64>>, Instant);
+
+    impl Plugin for Triangles {
+        fn debug_name(&self) -> &'static str {
+            "triangles"
+        }
+
+        fn output_hook(&mut self, context: &Context, output: &mut FullOutput) {
+            let shapes = output.shapes.clone();
+            let before = processor_time(self.1);
+            drop(context.tessellate(shapes, output.pixels_per_point));
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = processor_time(self.1) - before;
+        }
+    }
+
+    /// The window, with a watch in its hand.
+    pub struct Measured {
+        studio: Studio,
+        watch: Watch,
+        begin: Instant,
+        /// Processor time of the thread when the last frame began [ms].
+        last: f64,
+        /// What the triangles of the last frame took [ms].
+        triangles: Arc<Mutex<f64>>,
+        report: Arc<Mutex<String>>,
+    }
+
+    impl Measured {
+        /// Measures so many frames while time passes; the report is there when the window has closed.
+        pub fn new(studio: Studio, context: &Context, wanted: usize, report: &Arc<Mutex<String>>) -> Measured {
+            studio.ask(Request::Play(true));
+            let (report, triangles, begin) = (Arc::clone(report), Arc::default(), Instant::now());
+            context.add_plugin(Triangles(Arc::clone(&triangles), begin));
+            Measured { studio, watch: Watch::new(wanted), begin, last: 0.0, triangles, report }
+        }
+
+        fn close(&self, context: &Context) {
+            let adapter = ADAPTER.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let text = format!("{}\ndrawn by {adapter}", self.watch.report(&self.studio.shown()));
+            *self.report.lock().unwrap_or_else(PoisonError::into_inner) = text;
+            context.send_viewport_cmd(ViewportCommand::Close);
+        }
+    }
+
+    impl eframe::App for Measured {
+        fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+            let (now, before) = (1e3 * self.begin.elapsed().as_secs_f64(), processor_time(self.begin));
+            self.studio.show(ui);
+            let after = processor_time(self.begin);
+            let triangles = *self.triangles.lock().unwrap_or_else(PoisonError::into_inner);
+            self.watch.add(now, after - before, triangles, 0.0, before - self.last - triangles);
+            self.last = before;
+            if self.watch.is_done() {
+                self.close(ui.ctx());
+            }
+            ui.ctx().request_repaint();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_frames_are_not_counted_and_the_middle_and_the_slow_end_of_the_others_are_told() {
+        let mut watch = Watch::new(101);
+        for k in 0..=WARM_UP {
+            watch.add(1000.0 * k as f64, 500.0, 7.0, 0.0, 900.0);
+        }
+        let begin = 1000.0 * WARM_UP as f64;
+        for k in 1..=101 {
+            assert!(!watch.is_done());
+            watch.add(begin + 20.0 * f64::from(k), f64::from(102 - k), 0.0, 0.0, 3.0);
+        }
+        assert!(watch.is_done());
+        let report = watch.report(&Shown::default());
+        assert!(report.contains("interface 51.00 / 100.00, its thread 3.00 / 3.00, frame 20.00 / 20.00"), "{report}");
     }
 }

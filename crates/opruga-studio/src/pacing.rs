@@ -4,15 +4,18 @@ use std::time::Duration;
 
 /// The longest real time that is made up for: after a pause of ten minutes nothing leaps.
 const LONGEST: f64 = 0.1;
-/// The share of the last moment in what is shown.
+/// The share of the last frame in what a frame takes.
 const FRESH: f64 = 0.1;
+/// The time after which what was no longer counts much in what is shown [s].
+const MEMORY: f64 = 0.3;
 
 /// How much simulated time is owed.
 #[derive(Clone, Debug)]
 pub struct Pacing {
     owed: f64,
-    /// Simulated time over real time that was asked for, and how it went of late.
+    /// The simulated time that has passed of late over that which was asked for.
     ratio: f64,
+    /// What a frame took of late [s].
     cost: f64,
 }
 
@@ -61,14 +64,17 @@ impl Pacing {
         // What cannot be made up for is given up: time goes more slowly.
         let lost = (self.owed - length).max(0.0);
         self.owed -= lost;
-        if real > 0.0 && speed > 0.0 {
-            let now = ((real * speed - lost) / real).max(0.0);
-            self.ratio += FRESH * (now - self.ratio);
+        // What was not even owed, because the last picture was long ago, is lost too.
+        let passed = elapsed.as_secs_f64();
+        let asked = passed * speed;
+        if asked > 0.0 {
+            let now = ((real * speed - lost) / asked).clamp(0.0, 1.0);
+            self.ratio += (1.0 - (-passed / MEMORY).exp()) * (now - self.ratio);
         }
         Ok(done)
     }
 
-    /// Simulated time over real time of late.
+    /// The simulated time that has passed of late over that which was asked for: 1 where it keeps up.
     pub fn ratio(&self) -> f64 {
         self.ratio
     }
@@ -130,6 +136,27 @@ mod tests {
         }
         assert!((pacing.ratio() - 1.0 / 3.0).abs() < 0.05, "{}", pacing.ratio());
         assert!((pacing.cost() - 0.06).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_is_told_of_a_slow_window_and_of_another_speed_is_what_has_passed() {
+        // A picture every 350 ms, and one frame with each.
+        let mut pacing = Pacing::default();
+        let mut simulated = 0.0;
+        for _ in 0..40 {
+            let done = pacing.run(Duration::from_millis(350), 1.0, FRAME, Duration::from_millis(8), took(300));
+            simulated += FRAME * f64::from(done.expect("frames"));
+        }
+        assert!((pacing.ratio() - simulated / (40.0 * 0.35)).abs() < 1e-3, "{}", pacing.ratio());
+        for speed in [0.25, 3.0] {
+            let mut pacing = Pacing::default();
+            for _ in 0..600 {
+                pacing
+                    .run(Duration::from_millis(16), speed, FRAME, Duration::from_millis(12), took(0))
+                    .expect("frames");
+            }
+            assert!((pacing.ratio() - 1.0).abs() < 1e-9, "{speed}: {}", pacing.ratio());
+        }
     }
 
     #[test]

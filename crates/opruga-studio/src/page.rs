@@ -3,30 +3,59 @@
 use crate::app::{FIRST_SCENE, Studio};
 use crate::document::Document;
 use crate::engine;
+use crate::measure::Watch;
 use crate::runner::Copied;
 use crate::session::{Request, Session};
-use crate::share::{self, Shared};
+use crate::share;
 use crate::{browser, shown::Severity};
-use eframe::{WebOptions, WebRunner};
+use eframe::{Renderer, WebOptions, WebRunner};
 use egui::accesskit::Node;
-use egui::{Context, FullOutput};
+use egui::{Context, FullOutput, Ui};
 use opruga::io::scene;
 use opruga::{Options, WorldError};
+use std::cell::{RefCell, RefMut};
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
-/// The studio on a canvas of a page.
+/// The studio on a canvas of a page. It outlives what it is drawn on: a graphics device may be lost.
 #[wasm_bindgen]
 pub struct Page {
-    runner: WebRunner,
-    context: Context,
+    studio: Shared,
+    screen: RefCell<Screen>,
     places: Places,
 }
 
 impl core::fmt::Debug for Page {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("Page")
+    }
+}
+
+/// What the studio is drawn on.
+struct Screen {
+    runner: WebRunner,
+    context: Context,
+}
+
+/// The studio and the watch that is held to its pictures, on whatever they are drawn.
+#[derive(Clone)]
+struct Shared(Rc<RefCell<(Studio, Option<Watch>)>>);
+
+impl eframe::App for Shared {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let (studio, watch) = &mut *self.0.borrow_mut();
+        let begin = browser::milliseconds();
+        studio.link().turn();
+        let turned = browser::milliseconds();
+        studio.show(ui);
+        if let Some(watch) = watch.as_mut().filter(|watch| !watch.is_done()) {
+            let interface = browser::milliseconds() - turned;
+            let thread = 1e3 * f64::from(frame.info().cpu_usage.unwrap_or_default());
+            watch.add(begin, interface, 0.0, turned - begin, thread);
+            ui.ctx().request_repaint();
+        }
     }
 }
 
@@ -46,36 +75,60 @@ impl egui::Plugin for Places {
     }
 }
 
-/// Opens the studio on a canvas: the scene of the address, or the first one where there is none or it is refused.
+/// Opens the studio on a canvas: the scene of the address, or the first one where there is none or it is refused. It is drawn
+/// by `webgpu` or by `webgl`.
 ///
 /// # Errors
-/// Where the browser gives no WebGL.
+/// Where the browser gives no such device.
 #[wasm_bindgen]
-pub async fn open(canvas: web_sys::HtmlCanvasElement) -> Result<Page, JsValue> {
+pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String) -> Result<Page, JsValue> {
     let (session, refused) = first_session().map_err(|error| JsValue::from_str(&error))?;
-    let runner = WebRunner::new();
+    let mut studio = Studio::new(session, &Context::default()).map_err(|e| JsValue::from_str(&e.to_string()))?;
+    studio.ask(Request::Play(true));
+    if let Some(refused) = refused {
+        studio.tell(Severity::Refused, refused);
+    }
+    let studio = Shared(Rc::new(RefCell::new((studio, None))));
     let places = Places::default();
-    let (sender, context) = std::sync::mpsc::channel();
-    let own = places.clone();
-    let begin: eframe::AppCreator<'static> = Box::new(move |creation| {
-        let mut studio = Studio::new(session, &creation.egui_ctx)?;
-        studio.ask(Request::Play(true));
-        if let Some(refused) = refused {
-            studio.tell(Severity::Refused, refused);
-        }
-        creation.egui_ctx.add_plugin(own);
-        let _ = sender.send(creation.egui_ctx.clone());
-        Ok(Box::new(studio))
-    });
-    runner.start(canvas, WebOptions::default(), begin).await?;
-    let context = context.try_recv().map_err(|_| JsValue::from_str("the studio has not begun"))?;
-    Ok(Page { runner, context, places })
+    let screen = Screen::begin(canvas, &drawn_by, studio.clone(), places.clone()).await?;
+    Ok(Page { studio, screen: RefCell::new(screen), places })
+}
+
+impl Screen {
+    /// Begins to draw a studio on a canvas.
+    async fn begin(
+        canvas: web_sys::HtmlCanvasElement,
+        drawn_by: &str,
+        studio: Shared,
+        places: Places,
+    ) -> Result<Screen, JsValue> {
+        let runner = WebRunner::new();
+        let renderer = if drawn_by == "webgpu" { Renderer::Wgpu } else { Renderer::Glow };
+        let (sender, context) = std::sync::mpsc::channel();
+        let begin: eframe::AppCreator<'static> = Box::new(move |creation| {
+            studio.0.try_borrow_mut()?.0.move_to(&creation.egui_ctx);
+            if let Some(state) = &creation.wgpu_render_state {
+                state.device.set_device_lost_callback(|reason, _| {
+                    // A device that was given back is no loss.
+                    if reason != wgpu::DeviceLostReason::Destroyed {
+                        browser::tell_lost();
+                    }
+                });
+            }
+            creation.egui_ctx.add_plugin(places);
+            let _ = sender.send(creation.egui_ctx.clone());
+            Ok(Box::new(studio))
+        });
+        runner.start(canvas, WebOptions { renderer, ..WebOptions::default() }, begin).await?;
+        let context = context.try_recv().map_err(|_| JsValue::from_str("the studio has not begun"))?;
+        Ok(Screen { runner, context })
+    }
 }
 
 /// The scene of the address; where that is refused, the first scene, and why.
 fn first_session() -> Result<(Session, Option<String>), String> {
     let opened = share::of_fragment(&browser::fragment()).and_then(|shared| {
-        let Some(Shared { name, text, files }) = shared else { return Ok(None) };
+        let Some(share::Shared { name, text, files }) = shared else { return Ok(None) };
         Session::open(&name, &text, files, Options::default()).map(Some)
     });
     let refused = match opened {
@@ -87,29 +140,82 @@ fn first_session() -> Result<(Session, Option<String>), String> {
     Session::open(FIRST_SCENE, text, opruga::scenes::files(), Options::default()).map(|session| (session, refused))
 }
 
+impl Page {
+    /// The studio, as long as it has not stopped.
+    fn studio(&self) -> Option<RefMut<'_, (Studio, Option<Watch>)>> {
+        if self.screen.borrow().runner.has_panicked() { None } else { self.studio.0.try_borrow_mut().ok() }
+    }
+
+    fn repaint(&self) {
+        self.screen.borrow().context.request_repaint();
+    }
+}
+
 #[wasm_bindgen]
 impl Page {
+    /// Goes on, with everything as it was, on another canvas: the device of the first one was lost.
+    ///
+    /// # Errors
+    /// Where the browser gives no such device.
+    pub async fn go_on(&self, canvas: web_sys::HtmlCanvasElement, drawn_by: String) -> Result<(), JsValue> {
+        self.screen.borrow().runner.destroy();
+        let screen = Screen::begin(canvas, &drawn_by, self.studio.clone(), self.places.clone()).await?;
+        self.screen.replace(screen);
+        Ok(())
+    }
+
+    /// Writes the whole scene into the address, so that loading the page again opens it; false where it is too large for that.
+    pub fn keep(&self) -> bool {
+        let Ok(studio) = self.studio.0.try_borrow() else { return false };
+        let copied = studio.0.link().with_session(Copied::of);
+        let shared = share::Shared { name: copied.name, text: copied.text, files: copied.files };
+        share::to_fragment(&shared).and_then(|fragment| browser::set_fragment(&fragment)).is_ok()
+    }
+
     /// Opens the scene that the address names now.
     pub fn follow(&self) {
-        let Some(mut studio) = self.runner.app_mut::<Studio>() else { return };
+        let Some(mut studio) = self.studio() else { return };
         match share::of_fragment(&browser::fragment()) {
-            Ok(Some(Shared { name, text, files })) => studio.ask(Request::Open { name, text, files }),
+            Ok(Some(share::Shared { name, text, files })) => studio.0.ask(Request::Open { name, text, files }),
             Ok(None) => {}
-            Err(refused) => studio.tell(Severity::Refused, refused),
+            Err(refused) => studio.0.tell(Severity::Refused, refused),
         }
-        self.context.request_repaint();
+        self.repaint();
+    }
+
+    /// Opens a scene by its text; what is wrong with it is shown as a message.
+    pub fn show(&self, name: String, text: String) {
+        if let Some(studio) = self.studio() {
+            studio.0.ask(Request::Open { name, text, files: opruga::scenes::files() });
+        }
+        self.repaint();
+    }
+
+    /// Begins to measure so many pictures of the window.
+    pub fn measure(&self, pictures: usize) {
+        if let Some(mut studio) = self.studio() {
+            studio.1 = Some(Watch::new(pictures));
+        }
+        self.repaint();
+    }
+
+    /// What was measured, once it is done: median and 99th percentile in milliseconds.
+    pub fn measured(&self) -> Option<String> {
+        let studio = self.studio()?;
+        let watch = studio.1.as_ref().filter(|watch| watch.is_done())?;
+        Some(watch.report(&studio.0.shown()))
     }
 
     /// What the simulation says of itself, as JSON: `name`, `time` \[s\], `frames`, `latest`, `playing`, `bodies`, `nodes`,
     /// `models` of the first body, `pulls`, `recorded`, `real_time` (simulated over real time), `frame_milliseconds`,
     /// `message`, `state_hash`.
     pub fn state(&self) -> String {
-        let Some(studio) = self.runner.app_mut::<Studio>() else {
-            return serde_json::json!({ "stopped": self.runner.panic_summary().map(|summary| summary.message()) })
-                .to_string();
+        let Some(studio) = self.studio() else {
+            let why = self.screen.borrow().runner.panic_summary().map(|summary| summary.message());
+            return serde_json::json!({ "stopped": why }).to_string();
         };
-        let shown = studio.shown();
-        let hash = studio.link().with_session(Session::hash);
+        let shown = studio.0.shown();
+        let hash = studio.0.link().with_session(Session::hash);
         let models = shown.bodies.first().map(|body| body.models.iter().map(|m| m.kind()).collect::<Vec<_>>());
         serde_json::json!({
             "name": shown.name, "time": shown.time, "frames": shown.frames, "latest": shown.latest,
@@ -125,36 +231,38 @@ impl Page {
 
     /// The scene with all that was done, as `Save` writes it.
     pub fn scene(&self) -> Option<String> {
-        Some(self.runner.app_mut::<Studio>()?.link().with_session(|session| Copied::of(session).text))
+        Some(self.studio()?.0.link().with_session(|session| Copied::of(session).text))
     }
 
     /// Goes to a frame of the scene, back or forth.
     pub fn seek(&self, frame: u32) {
-        if let Some(studio) = self.runner.app_mut::<Studio>() {
-            studio.ask(Request::Play(false));
-            studio.ask(Request::Seek(frame.into()));
+        if let Some(studio) = self.studio() {
+            studio.0.ask(Request::Play(false));
+            studio.0.ask(Request::Seek(frame.into()));
         }
     }
 
     /// Where the highest node of a body is on the canvas: x, y \[CSS pixels\]; empty where it is not seen.
     pub fn top_of(&self, body: usize) -> Vec<f32> {
-        let Some(studio) = self.runner.app_mut::<Studio>() else { return Vec::new() };
-        let shown = studio.shown();
+        let Some(studio) = self.studio() else { return Vec::new() };
+        let shown = studio.0.shown();
         let positions = shown.picture.bodies.get(body).map(|body| body.positions.iter().copied());
         let top = positions.and_then(|all| all.max_by(|a, b| a[1].total_cmp(&b[1])));
-        let spot = top.and_then(|top| studio.on_screen(top)).map(|spot| spot * self.context.zoom_factor());
+        let zoom = self.screen.borrow().context.zoom_factor();
+        let spot = top.and_then(|top| studio.0.on_screen(top)).map(|spot| spot * zoom);
         spot.map_or_else(Vec::new, |spot| vec![spot.x, spot.y])
     }
 
     /// Where a button, a slider or a text of this name is: its left, top, width and height \[CSS pixels\]; empty where there
     /// is none. Names are known from the picture after the first question on.
     pub fn find(&self, name: &str) -> Vec<f32> {
-        self.context.enable_accesskit();
-        self.context.request_repaint();
+        let context = self.screen.borrow().context.clone();
+        context.enable_accesskit();
+        context.request_repaint();
         let nodes = self.places.0.lock().unwrap_or_else(PoisonError::into_inner);
         let named = |node: &&Node| node.label() == Some(name) || node.value() == Some(name);
         let Some(bounds) = nodes.values().filter(named).find_map(Node::bounds) else { return Vec::new() };
-        let zoom = f64::from(self.context.zoom_factor());
+        let zoom = f64::from(context.zoom_factor());
         [bounds.x0, bounds.y0, bounds.x1 - bounds.x0, bounds.y1 - bounds.y0].map(|x| (x * zoom) as f32).to_vec()
     }
 }

@@ -1,104 +1,14 @@
 //! A scene under two configurations in lock step: what is done to the one on the left is done to the one on the right.
 
-use crate::document::{Document, kind_table};
-use crate::engine::{self, Engine, Given};
+use crate::differences::{Difference, Twins, right_of};
+use crate::document::Document;
+use crate::engine::{self, Common, Engine, Given};
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::{Files, SceneError, scene};
 use opruga::{Options, WorldError};
 use std::sync::Arc;
-use toml_edit::Value as Toml;
-
-/// In what the right one differs from the left one, from the start on.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Difference {
-    /// A parameter by its path.
-    Set(String, Value),
-    /// The models of a body.
-    Models(String, Vec<Values>),
-    /// The integrator of the scene (none) or of a body.
-    Integrator(Option<String>, Values),
-}
-
-impl Difference {
-    /// What it is about: a later one about the same replaces an earlier one.
-    pub fn about(&self) -> String {
-        match self {
-            Difference::Set(path, _) => path.clone(),
-            Difference::Models(body, _) => format!("body.{body}.models"),
-            Difference::Integrator(None, _) => "integrator".into(),
-            Difference::Integrator(Some(body), _) => format!("body.{body}.integrator"),
-        }
-    }
-
-    /// A few words for the picture.
-    pub fn words(&self) -> String {
-        match self {
-            Difference::Set(path, value) => {
-                let parts: Vec<&str> = path.split('.').collect();
-                let field = parts.last().copied().unwrap_or_default().replace('_', " ");
-                match value {
-                    Value::Number(x) => format!("{field} {}", opruga::draw::format_value(*x)),
-                    value => format!("{field} {value}"),
-                }
-            }
-            Difference::Models(_, models) => {
-                models.iter().map(|m| m.kind().replace('_', " ")).collect::<Vec<_>>().join(" + ")
-            }
-            Difference::Integrator(_, values) => values.kind().replace('_', " "),
-        }
-    }
-}
-
-/// Adds a difference to those that there are. Another kind of model or integrator takes the values of the former one away.
-pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
-    let about = new.about();
-    let below = format!("{about}.");
-    let whole = !matches!(new, Difference::Set(..));
-    differences.retain(|old| old.about() != about && !(whole && old.about().starts_with(&below)));
-    differences.push(new);
-}
-
-/// The scene on the right: that on the left with the differences written into it.
-///
-/// # Errors
-/// A sentence where a difference has no place in the scene.
-pub fn right_of(document: &Document, differences: &[Difference]) -> Result<Document, String> {
-    let mut right = document.clone();
-    for difference in differences {
-        let written = match difference {
-            Difference::Set(path, value) => right.set(path, value),
-            Difference::Integrator(None, values) => {
-                right.set_integrator(values);
-                true
-            }
-            Difference::Models(name, _) | Difference::Integrator(Some(name), _) => {
-                right.body(name).is_some_and(|body| {
-                    let mut table = body;
-                    match difference {
-                        Difference::Models(_, models) => {
-                            let list = models.iter().map(|m| Toml::InlineTable(kind_table(m, None)));
-                            table.insert("models", Toml::Array(list.collect()));
-                        }
-                        Difference::Integrator(_, values) => {
-                            table.insert("integrator", Toml::InlineTable(kind_table(values, None)));
-                        }
-                        Difference::Set(..) => {}
-                    }
-                    right.replace_body(name, &table)
-                })
-            }
-        };
-        if !written {
-            let about = difference.about();
-            let error = SceneError::new("studio.difference", format!("`{about}` stands nowhere in the scene itself"));
-            let hint = "the two sides can differ in bodies that are there from the start and are no copies";
-            return Err(error.hint(hint).to_string());
-        }
-    }
-    Ok(right)
-}
 
 /// Why a world is not the one that was wanted.
 #[derive(Debug)]
@@ -146,9 +56,10 @@ pub fn build(
     };
     let left = one(document)?;
     let Some(differences) = differences else { return Ok(left) };
-    let right = one(&right_of(document, differences).map_err(Refusal::Scene)?)?;
+    let (scene, twins) = right_of(document, differences, files).map_err(Refusal::Scene)?;
+    let right = one(&scene)?;
     let words = differences.iter().map(Difference::words).collect();
-    Ok(Box::new(Pair { left, right, words, stopped: None, behind: false }))
+    Ok(Box::new(Pair { left, right, words, twins, stopped: None, behind: false }))
 }
 
 /// Two engines of one scene.
@@ -157,6 +68,8 @@ struct Pair {
     right: Box<dyn Engine>,
     /// In what the right one differs.
     words: Vec<String>,
+    /// Which node on the right stands for one on the left, where bodies have other nodes.
+    twins: Twins,
     /// Why the right one does not go on.
     stopped: Option<String>,
     /// Whether the right one has missed a command: only one that is built anew can go on then.
@@ -175,6 +88,17 @@ impl Pair {
             self.stopped = Some(error.to_string());
         }
         self.behind |= self.stopped.is_some();
+    }
+
+    /// The distance between the centres of mass [m], and by how much the right one encloses more [m³, m² in the plane].
+    fn in_common(&self) -> [Option<f64>; 2] {
+        if self.stopped.is_some() {
+            return [None; 2];
+        }
+        let (left, right) = (self.left.common(), self.right.common());
+        let square: f64 = left.center.iter().zip(&right.center).map(|(a, b)| (a - b) * (a - b)).sum();
+        let volume = left.volume.zip(right.volume).map(|(left, right)| right - left);
+        [Some(square.sqrt()).filter(|far| far.is_finite()), volume]
     }
 
     /// The mean square root and the largest distance between the nodes of both [m]; none where the bodies differ.
@@ -248,6 +172,7 @@ impl Engine for Pair {
     }
     fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError> {
         let given = self.left.pull(body, node, pointer)?;
+        let node = self.twins.on_right(body, node);
         self.follow(|right| right.pull(body, node, pointer));
         Ok(given)
     }
@@ -263,16 +188,19 @@ impl Engine for Pair {
     }
     fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError> {
         let given = self.left.push(body, node, force)?;
+        let node = self.twins.on_right(body, node);
         self.follow(|right| right.push(body, node, force));
         Ok(given)
     }
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
         let given = self.left.pin(body, node)?;
+        let node = self.twins.on_right(body, node);
         self.follow(|right| right.pin(body, node));
         Ok(given)
     }
     fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError> {
         let given = self.left.free(body, node)?;
+        let node = self.twins.on_right(body, node);
         self.follow(|right| right.free(body, node));
         Ok(given)
     }
@@ -304,8 +232,17 @@ impl Engine for Pair {
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {
         self.left.nearest(body, point)
     }
+    fn nearest_beside(&self, body: usize, point: [f64; 3]) -> Option<u32> {
+        self.right.nearest(body, point).map(|node| self.twins.on_left(body, node))
+    }
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]> {
         self.left.position(body, node)
+    }
+    fn position_beside(&self, body: usize, node: u32) -> Option<[f64; 3]> {
+        self.right.position(body, self.twins.on_right(body, node))
+    }
+    fn common(&self) -> Common {
+        self.left.common()
     }
     fn positions(&self) -> Vec<[f64; 3]> {
         self.left.positions()
@@ -320,8 +257,11 @@ impl Engine for Pair {
         let mut shown = self.left.shown(show);
         let right = self.right.shown(show);
         let energy = self.stopped.is_none().then(|| right.energy.total() - shown.energy.total());
+        let [center, volume] = self.in_common();
         shown.beside = Some(Beside {
             distances: self.distances(),
+            center,
+            volume,
             energy,
             words: self.words.clone(),
             stopped: self.stopped.clone(),
@@ -341,7 +281,14 @@ impl Engine for Pair {
             let energy = stored(&right) - stored(&row);
             row.extend(right.into_iter().skip(1).map(|(name, x)| (format!("right.{name}"), x)));
             let [mean, largest] = distances.unwrap_or([f64::NAN; 2]);
-            let named = [("mean_distance", mean), ("largest_distance", largest), ("energy", energy)];
+            let [center, volume] = self.in_common().map(|x| x.unwrap_or(f64::NAN));
+            let named = [
+                ("mean_distance", mean),
+                ("largest_distance", largest),
+                ("center_of_mass", center),
+                ("volume", volume),
+                ("energy", energy),
+            ];
             row.extend(named.map(|(name, x)| (format!("difference.{name}"), x)));
         }
         row

@@ -10,7 +10,7 @@ pub use sliced::Link;
 #[cfg(not(target_arch = "wasm32"))]
 pub use threaded::Link;
 
-use crate::pair::Difference;
+use crate::differences::Difference;
 use crate::session::{Request, Session};
 use crate::shown::Shown;
 use opruga::io::Files;

@@ -25,6 +25,8 @@ pub struct Show {
     pub contacts: bool,
     /// The colours of numbers.
     pub map: ColourMap,
+    /// Whether bodies that carry a drawing are seen in its colours.
+    pub own_colours: bool,
 }
 
 impl Default for Show {
@@ -38,6 +40,7 @@ impl Default for Show {
             normals: false,
             contacts: false,
             map: ColourMap::default(),
+            own_colours: true,
         }
     }
 }
@@ -68,6 +71,8 @@ pub struct BodyShown {
     pub number: usize,
     /// Its name.
     pub name: String,
+    /// The name under which a person knows it: a body that was set down anew keeps that of the body it was.
+    pub title: String,
     /// How many nodes it has.
     pub nodes: usize,
     /// Its models; empty in a crowd.
@@ -95,6 +100,10 @@ pub struct Beside {
     /// The root of the mean square of the distances between the nodes of both, and the largest one [m]; none where the
     /// bodies differ or the right one has stopped.
     pub distances: Option<[f64; 2]>,
+    /// The distance between the centres of mass of both \[m\].
+    pub center: Option<f64>,
+    /// By how much its outlines or surfaces enclose more than those of the left one \[m³, m² in the plane\].
+    pub volume: Option<f64>,
     /// What it has more of energy than the left one [J].
     pub energy: Option<f64>,
     /// In what it differs.
@@ -113,7 +122,7 @@ pub struct ObstacleShown {
 /// How the simulation keeps up with the clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pace {
-    /// Simulated time over real time; 1 keeps up.
+    /// The simulated time that passes over that which is asked for; 1 keeps up.
     pub ratio: f64,
     /// What a frame of the scene takes [s].
     pub frame_cost: f64,
@@ -137,6 +146,54 @@ pub enum Offer {
     Substeps(u32),
 }
 
+/// A thing that was done and can be undone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A parameter was set, by its path.
+    Set(String),
+    /// A body has other models.
+    Models,
+    /// The scene or a body has another integrator.
+    Integrator,
+    /// A body was added.
+    Add,
+    /// A body was copied.
+    Duplicate,
+    /// A body was moved, turned or scaled.
+    Move,
+    /// A field of a body's shape was changed.
+    Shape(&'static str),
+    /// A body was taken away.
+    Delete,
+    /// A point was let go.
+    Unpin,
+    /// Everything that was recorded was taken back.
+    Reset,
+    /// The scene was shown twice, or no longer.
+    Compare,
+    /// The right side differs in this.
+    Differ(String),
+}
+
+/// What a message says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Said {
+    /// Why something could not be done, in the words of what refused it.
+    Because(String),
+    /// This was undone, and the scene is at this time \[s\].
+    Undone(Step, f64),
+    /// This was done again, and the scene is at this time \[s\].
+    Redone(Step, f64),
+    /// The scene begins anew, without the pins of the pointer.
+    PinsLetGo,
+    /// A body of this name moves on with other models.
+    GoesOn(String),
+    /// All bodies move on with an integrator of this name.
+    AllGoOn(String),
+    /// A body was set down anew.
+    SetDown,
+}
+
 /// A message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
@@ -145,6 +202,8 @@ pub struct Message {
     /// How grave it is.
     pub severity: Severity,
     /// What it says.
+    pub said: Said,
+    /// The same in English.
     pub text: String,
     /// What would help.
     pub offer: Option<Offer>,
@@ -202,9 +261,9 @@ pub struct Shown {
     /// How the simulation keeps up.
     pub pace: Pace,
     /// What can be undone and redone.
-    pub undo: Option<String>,
+    pub undo: Option<Step>,
     /// What can be redone.
-    pub redo: Option<String>,
+    pub redo: Option<Step>,
     /// The last message.
     pub message: Option<Message>,
     /// How many scenes were opened or built anew: a view is fitted once for each.
@@ -213,6 +272,8 @@ pub struct Shown {
     pub beside: Option<Beside>,
     /// Bodies that were set down anew under another name: old and new.
     pub renamed: Vec<(String, String)>,
+    /// Whether bodies carry drawings with colours of their own.
+    pub has_drawings: bool,
     /// How many commands of a person the scene holds.
     pub recorded: usize,
     /// The last moment that can be gone back to without computing from the start [bytes kept].

@@ -1,5 +1,7 @@
 //! Every word of the interface, in every language, in one place.
 
+use crate::shown::{Said, Step};
+
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Language {
@@ -104,6 +106,8 @@ words! {
     mean_distance: "mean distance", "srednja udaljenost";
     largest_distance: "largest", "najveća";
     distance_of_sides: "Distance of the sides [m]", "Udaljenost strana [m]";
+    center_distance: "centres of mass", "težišta";
+    volume_of_sides: "Enclosed, right − left", "Zatvoreno, desno − lijevo";
     energy_of_sides: "Energy, right − left [J]", "Energija, desno − lijevo [J]";
     right_stopped: "The right side does not go on:", "Desna strana ne ide dalje:";
     properties: "Properties", "Svojstva";
@@ -162,12 +166,60 @@ words! {
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";
+    own_colours: "As drawn", "Kako je nacrtano";
+    own_colours_hint: "Bodies that carry a drawing, in its colours", "Tijela koja nose crtež, u njegovim bojama";
+    step_models: "models", "modeli";
+    step_integrator: "integrator", "integrator";
+    step_add: "new body", "novo tijelo";
+    step_duplicate: "copy", "kopija";
+    step_move: "move", "pomak";
+    step_delete: "delete", "brisanje";
+    step_unpin: "free a point", "oslobađanje točke";
+    step_reset: "reset", "povratak na početak";
+    step_compare: "side by side", "usporedba";
+    undone: "Undone:", "Poništeno:";
+    redone: "Done again:", "Ponovljeno:";
+    pins_let_go: "The scene begins anew: pins of the pointer were let go", "Prizor počinje iznova: točke pribodene pokazivačem oslobođene su";
+    goes_on: "goes on as it moves: positions and velocities stay, models that it had remember", "nastavlja u pokretu: položaji i brzine ostaju, dotadašnji modeli pamte";
+    all_go_on: "Every body goes on from where it is with", "Svako tijelo nastavlja odande gdje jest s";
+    set_down: "The body is set down anew, at rest, in its new form", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
     recorded: "recorded commands", "snimljene naredbe";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space  play or pause\n→  one frame      Home  reset\nCtrl Z, Ctrl Y  undo, redo\nCtrl S  save the scene\n1 2 3 4 5  pull, push, pin, move, draw\nDel  delete the body      Ctrl D  duplicate it\n[ ]  turn it      + −  scale it\nF  show everything      C  the selected body\nP  plots      G  scenes      B  side by side\nWheel  zoom      middle drag, Space drag  pan\nright drag  push (in space: turn the view where no body is)\nShift drag  pin      double click  free a pin\n?  this help", "Razmaknica  pokreni ili zaustavi\n→  jedna sličica      Home  na početak\nCtrl Z, Ctrl Y  poništi, ponovi\nCtrl S  spremi prizor\n1 2 3 4 5  vuci, guraj, pribodi, pomakni, crtaj\nDel  izbriši tijelo      Ctrl D  udvostruči ga\n[ ]  zakreni ga      + −  povećaj, smanji\nF  sve u kadar      C  odabrano tijelo\nP  grafovi      G  prizori      B  usporedi\nKotačić  približi      srednja tipka ili razmaknica  pomakni pogled\ndesna tipka  guraj (u prostoru pokraj tijela: okreni pogled)\nShift  pribodi      dvostruki klik  oslobodi\n?  ova pomoć";
+    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\n?\tova pomoć";
 }
 
 impl Language {
+    /// What can be undone, in a word or two.
+    pub fn done(self, step: &Step) -> String {
+        match step {
+            // Of a path the last name is that of the field; what comes before it is seen in the panel.
+            Step::Set(path) | Step::Differ(path) => path.rsplit('.').next().unwrap_or(path).replace('_', " "),
+            Step::Shape(field) => field.replace('_', " "),
+            Step::Models => self.step_models().into(),
+            Step::Integrator => self.step_integrator().into(),
+            Step::Add => self.step_add().into(),
+            Step::Duplicate => self.step_duplicate().into(),
+            Step::Move => self.step_move().into(),
+            Step::Delete => self.step_delete().into(),
+            Step::Unpin => self.step_unpin().into(),
+            Step::Reset => self.step_reset().into(),
+            Step::Compare => self.step_compare().into(),
+        }
+    }
+
+    /// What a message says.
+    pub fn said(self, said: &Said) -> String {
+        match said {
+            Said::Because(text) => text.clone(),
+            Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
+            Said::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
+            Said::PinsLetGo => self.pins_let_go().into(),
+            Said::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
+            Said::AllGoOn(integrator) => format!("{} `{integrator}`", self.all_go_on()),
+            Said::SetDown => self.set_down().into(),
+        }
+    }
+
     /// The name of a quantity in the legend of a picture.
     pub fn quantity(self, label: &str) -> &str {
         match (self, label) {

@@ -6,8 +6,8 @@
 use opruga::Options;
 use opruga::Registry;
 use opruga::core::spec::{Value, Values};
+use opruga_studio::differences::{Difference, right_of};
 use opruga_studio::document::Document;
-use opruga_studio::pair::{Difference, right_of};
 use opruga_studio::panels::keeping::{What, content};
 use opruga_studio::runner::Copied;
 use opruga_studio::session::{Grip, Request, Session};
@@ -87,7 +87,8 @@ fn the_right_side_is_the_scene_with_the_differences_and_the_distance_is_that_bet
     assert_eq!(session.hash(), alone);
     pass(&mut session, 30);
     let text =
-        right_of(&Document::new("ball", &session.text()).expect("a text"), &differences).expect("a scene").text();
+        right_of(&Document::new("ball", &session.text()).expect("a text"), &differences, &opruga::scenes::files());
+    let text = text.expect("a scene").0.text();
     let mut right = Session::open("right", &text, opruga::scenes::files(), Options::default()).expect("it opens");
     pass(&mut right, 42);
     for name in ["time", "kinetic", "elastic", "gas", "ball.volume"] {
@@ -191,4 +192,77 @@ fn scenes_of_space_stand_side_by_side_too() {
     let beside = beside(&mut session);
     assert_eq!(beside.right.dimension, 3);
     assert!(beside.distances.expect("a distance")[0] > 1e-3);
+}
+
+fn finer(vertices: i64) -> Difference {
+    Difference::Shape("ball".into(), "vertices", Value::Integer(vertices))
+}
+
+#[test]
+fn the_sides_can_differ_in_resolution_and_are_compared_by_what_both_have() {
+    let mut session = open("ball");
+    ask(&mut session, Request::Compare(true));
+    ask(&mut session, Request::Differ(finer(90)));
+    let shown = session.shown();
+    let right = shown.beside.as_ref().expect("two scenes");
+    assert_eq!((shown.bodies[0].nodes, right.right.bodies[0].nodes, right.right.frames), (36, 90, 0));
+    assert_eq!(right.words, ["vertices 90"]);
+    assert!(right.distances.is_none(), "there is no distance between nodes that are not the same");
+    // A polygon of n corners in a circle: n/2 sin(2π/n) of its square.
+    let polygon = |n: f64| 0.5 * n * (std::f64::consts::TAU / n).sin() * 0.5 * 0.5;
+    let wanted = polygon(90.0) - polygon(36.0);
+    let found = right.volume.expect("areas");
+    assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+    assert!(right.center.is_some_and(|far| far < 1e-12), "{:?}", right.center);
+    pass(&mut session, 60);
+    assert!(beside(&mut session).center.is_some_and(|far| far > 1e-6 && far < 0.5));
+    assert!(column(&mut session, "difference.center_of_mass") > 0.0);
+    assert!(column(&mut session, "difference.volume").is_finite());
+}
+
+#[test]
+fn a_pull_on_either_side_takes_the_nodes_that_lie_at_the_same_place_at_rest_and_runs_to_the_same_bits() {
+    for on_right in [false, true] {
+        let mut session = open("ball");
+        ask(&mut session, Request::Compare(true));
+        ask(&mut session, Request::Differ(finer(7)));
+        ask(&mut session, Request::Differ(finer(72)));
+        pass(&mut session, 3);
+        // The top of the ball: node 9 of 36, node 18 of 72.
+        let top = beside(&mut session).right.picture.bodies[0].positions[18];
+        let grab = if on_right { Request::GrabBeside } else { Request::Grab };
+        ask(&mut session, grab(Grip::Pull, 0, top));
+        for k in 0..12 {
+            ask(&mut session, Request::Lead([top[0] + 0.3, top[1] + 0.05 * f64::from(k), 0.0]));
+            pass(&mut session, 1);
+        }
+        let shown = session.shown();
+        let right = &shown.beside.as_ref().expect("two scenes").right;
+        for (side, node) in [(&shown, 9), (&**right, 18)] {
+            let [held, ..] = side.pulls[0];
+            let at = side.picture.bodies[0].positions[node];
+            assert!((0..2).all(|d| (held[d] - at[d]).abs() < 1e-6), "{on_right}: {held:?} {at:?}");
+        }
+        ask(&mut session, Request::Release);
+        ask(&mut session, Request::Grab(Grip::Pin, 0, shown.picture.bodies[0].positions[27]));
+        pass(&mut session, 4);
+        // The scene that is saved of the right side comes to its state.
+        let differences = session.differences().expect("two scenes").to_vec();
+        let document = Document::new("ball", &session.saved()).expect("a text");
+        let (right, _) = right_of(&document, &differences, &opruga::scenes::files()).expect("a scene");
+        let mut alone =
+            Session::open("right", &right.text(), opruga::scenes::files(), Options::default()).expect("it opens");
+        while alone.frames() < session.frames() {
+            alone.handle(Request::Step);
+        }
+        for name in ["kinetic", "elastic", "gas", "work_user"] {
+            assert_eq!(column(&mut session, &format!("right.{name}")), column(&mut alone, name), "{on_right} {name}");
+        }
+        // And what is computed again from the start comes to the same.
+        let before = session.shown().beside.expect("two").right.picture.bodies[0].positions.clone();
+        ask(&mut session, Request::Seek(0));
+        let last = session.latest();
+        ask(&mut session, Request::Seek(last));
+        assert_eq!(session.shown().beside.expect("two").right.picture.bodies[0].positions, before);
+    }
 }

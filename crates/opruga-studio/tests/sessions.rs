@@ -419,6 +419,7 @@ fn every_scene_of_the_program_opens_moves_and_can_be_seen_in_every_colour() {
                 velocities: true,
                 normals: true,
                 contacts: true,
+                own_colours: false,
                 ..Show::default()
             }));
             let shown = session.shown();
@@ -480,4 +481,43 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     pass(&mut session, 3);
     assert_eq!(session.shown().dimension, 3);
     std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+#[test]
+fn drawings_are_seen_in_their_own_colours_until_another_colouring_is_chosen() {
+    let mut session = open("emoji");
+    let coloured = |session: &mut Session| {
+        let shown = session.shown();
+        assert!(shown.has_drawings);
+        shown.picture.bodies.iter().flat_map(|body| &body.areas).any(|area| area.colour.is_some())
+    };
+    assert!(coloured(&mut session), "by themselves");
+    session.handle(Request::Show(Show { own_colours: false, ..Show::default() }));
+    assert!(!coloured(&mut session), "told by their strain");
+    assert!(!open("ball").shown().has_drawings);
+}
+
+#[test]
+fn a_body_that_is_set_down_anew_keeps_the_name_by_which_it_is_known() {
+    let mut session = open("ball");
+    let titles = |session: &mut Session| -> Vec<String> {
+        session.shown().bodies.iter().map(|body| body.title.clone()).collect()
+    };
+    session.handle(Request::Step);
+    let moved = Placed { moved: [0.3, 0.0, 0.0], turned: 0.0, scaled: 1.0 };
+    for _ in 0..2 {
+        let name = session.shown().bodies[0].name.clone();
+        session.handle(Request::Edit(Edit::Place(name, moved)));
+        session.handle(Request::Step);
+        assert_eq!(titles(&mut session), ["ball"]);
+    }
+    // A copy is another body, with a name of its own.
+    let name = session.shown().bodies[0].name.clone();
+    session.handle(Request::Edit(Edit::Duplicate(name)));
+    let both = titles(&mut session);
+    assert!(both.len() == 2 && both[0] == "ball" && both[1] != "ball", "{both:?}");
+    for _ in 0..3 {
+        session.handle(Request::Undo);
+    }
+    assert_eq!(titles(&mut session), ["ball"]);
 }

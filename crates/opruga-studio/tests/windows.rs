@@ -201,10 +201,24 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
     window.click("Plots");
     assert!(window.harness.query_by_label("Distance of the sides [m]").is_some());
     window.click("Plots");
-    // What is beside is looked at: a press there pulls nothing.
+    // The right one is pulled as the left one is.
     let right = egui::pos2(window.canvas().right() - 0.25 * window.canvas().width(), window.canvas().center().y);
-    window.drag(&[right, right + Vec2::new(20.0, -30.0)], PointerButton::Primary, Modifiers::NONE);
-    assert_eq!(window.shown().recorded, 0);
+    let half = Vec2::new(0.5 * window.canvas().width(), 0.0);
+    let there = window.shown().beside.as_ref().map(|beside| beside.right.picture.bodies[0].positions[9]);
+    let top = window.studio().on_screen(there.expect("a right side")).expect("in sight") + half;
+    window.drag(
+        &[top, top + Vec2::new(20.0, -30.0), top + Vec2::new(40.0, -60.0)],
+        PointerButton::Primary,
+        Modifiers::NONE,
+    );
+    window.until("a pull of both", |shown| shown.recorded == 1);
+    window.click("Undo");
+    window.click("Reset");
+    window.until("the start", |shown| shown.recorded == 0 && shown.frames == 0);
+    for _ in 0..30 {
+        window.studio().ask(Request::Step);
+    }
+    window.until("thirty frames again", |shown| shown.frames == 30);
     // A press that comes in the same moment as the way to it does not take the view along.
     let ball = window.shown().picture.bodies[0].positions[0];
     let before = window.studio().on_screen(ball);

@@ -336,6 +336,7 @@ impl<const D: usize> World<D> {
                 nodes: system.nodes,
                 layout: system.layout,
                 time: self.time(),
+                threads: 1,
             };
             let (x, pointer, force, _) = pull.force(&view);
             out.push((x, pointer, force));

@@ -111,9 +111,13 @@ impl<const D: usize> Island<D> {
         island
     }
 
-    /// Whether so many threads work on this island together: it is large, and its integrator knows how.
+    /// Whether so many threads work on this island together: it is large, and its integrator or a model knows how.
     pub(crate) fn is_shared_by(&self, threads: usize) -> bool {
-        threads > 1 && self.system.nodes >= SHARED_FROM && self.integrator.shares_threads()
+        let known = || {
+            let mut models = self.system.members.iter();
+            self.integrator.shares_threads() || models.any(|member| member.potential.shares_threads())
+        };
+        threads > 1 && self.system.nodes >= SHARED_FROM && known()
     }
 
     /// Looks at the state again after it was changed from outside.
@@ -131,6 +135,7 @@ impl<const D: usize> Island<D> {
             nodes: system.nodes,
             layout: system.layout,
             time,
+            threads: 1,
         };
         let mut out = Vec::new();
         for member in &mut system.members {

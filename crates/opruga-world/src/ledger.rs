@@ -98,6 +98,7 @@ pub(crate) fn take_stock<const D: usize>(system: &mut System<D>) -> Stock {
         nodes: system.nodes,
         layout: system.layout,
         time,
+        threads: system.threads,
     };
     for member in &mut system.members {
         if !member.potential.views().energy {

@@ -138,10 +138,14 @@ fn collapsed_mirrored_and_scattered_bodies_come_back_or_are_refused_with_a_reaso
         // body out of a point that is smaller than what rounding leaves.
         let size = if material == "stable_neo_hookean" { 1e7 } else { 1.0 };
         comes_back(material, "point", 3, &|_, n| core::array::from_fn(|d| size * small(n, d)));
-        // A mirrored body turns every tetrahedron the right way and ends in a balance of its own, folded as a ball is that was
-        // turned inside out.
+        // A mirrored body turns every tetrahedron the right way; of the stable law it ends in a balance of its own, folded as a
+        // ball is that was turned inside out.
         let mirrored = end(material, "mirrored", 3, &|x, _| [-x[0], x[1], x[2]]);
-        assert!(matches!(mirrored, End::Elsewhere(whole, least) if whole > 0.9 && least > 0.4), "{mirrored:?}");
+        assert!(
+            matches!(mirrored, End::Back)
+                || matches!(mirrored, End::Elsewhere(whole, least) if whole > 0.9 && least > 0.4),
+            "{material}: {mirrored:?}"
+        );
         comes_back(material, "scattered", 3, &|_, node| core::array::from_fn(|d| random(node, d)));
         comes_back(material, "stretched tenfold", 3, &|x, _| [10.0 * x[0], x[1], x[2]]);
         comes_back(material, "twisted three times", 4, &|x, _| {

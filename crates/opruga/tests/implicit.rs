@@ -13,11 +13,6 @@ const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmar
 const BLOCK: &str = "[[body]]\nname = \"block\"\nshape = { kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }\n\
     mass = 2.0\nmodels = [ { kind = \"mass_spring\", stiffness = 2e5, damping = 20.0, edges = \"shear\" } ]\n";
 
-/// Rules that damp nothing need steps that resolve the contact of a stiff body; they keep its every tremor otherwise.
-fn substeps(rule: &str) -> u32 {
-    if ["backward_euler", "bdf2"].contains(&rule) { 1 } else { 16 }
-}
-
 /// A floor at a height with a coefficient of friction.
 fn floor(height: f64, friction: f64, restitution: f64) -> String {
     format!(
@@ -38,8 +33,7 @@ fn mean(world: &World<2>, of: impl Fn(u32) -> f64) -> f64 {
 #[test]
 fn a_stiff_block_falls_comes_to_rest_and_stays() {
     for rule in RULES {
-        let mut world =
-            built(plane(&(head(1.0 / 60.0, substeps(rule), -9.81, rule) + BLOCK + &floor(-0.05, 0.4, 0.0))));
+        let mut world = built(plane(&(head(1.0 / 60.0, 1, -9.81, rule) + BLOCK + &floor(-0.05, 0.4, 0.0))));
         for frame in 0..240 {
             frames(&mut world, 1);
             let lowest = nodes(&world).iter().map(|x| x[1]).fold(f64::INFINITY, f64::min);
@@ -48,17 +42,14 @@ fn a_stiff_block_falls_comes_to_rest_and_stays() {
         let before = nodes(&world);
         frames(&mut world, 60);
         for (x, now) in before.iter().zip(nodes(&world)) {
-            // Rules that damp nothing leave that to the springs, which take their time.
-            let allowed = if ["backward_euler", "bdf2"].contains(&rule) { 1e-7 } else { 1e-4 };
-            assert!((now[0] - x[0]).abs() + (now[1] - x[1]).abs() < allowed, "{rule}: {x:?} {now:?}");
+            assert!((now[0] - x[0]).abs() + (now[1] - x[1]).abs() < 1e-7, "{rule}: {x:?} {now:?}");
         }
         let energy = world.energy();
         // All of the fall went into the impact, the springs' damping and the error of the rule.
         assert!(energy.kinetic < 1e-4 && energy.loss_contact > 0.1, "{rule}: {energy:?}");
         assert!(energy.work_correction.abs() < 1e-9 && energy.work_user.abs() < 1e-9, "{rule}: {energy:?}");
         let solver = world.solver_work();
-        let steps = 300 * u64::from(substeps(rule));
-        assert!(solver.steps == steps && solver.iterations < 8 * steps, "{rule}: {solver:?}");
+        assert!(solver.steps == 300 && solver.iterations < 6 * 300, "{rule}: {solver:?}");
     }
 }
 
@@ -69,9 +60,8 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
     let size = 1.25f64.sqrt();
     let (along, across) = (9.81 * 0.5 / size, -9.81 / size);
     for rule in RULES {
-        let damps = substeps(rule) == 1;
         let incline = |friction: f64| {
-            let head = head(1.0 / 60.0, substeps(rule), 0.0, rule)
+            let head = head(1.0 / 60.0, 1, 0.0, rule)
                 .replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
             let mut world = built(plane(&(head + BLOCK + &floor(0.0, friction, 0.0))));
             frames(&mut world, 150);
@@ -85,14 +75,10 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
         let mut world = built(plane(&(head + rod + &floor(0.0, 0.5, 0.0))));
         frames(&mut world, 600);
         assert!(world.position(0, 0)[0].abs() < 1e-4, "{rule}: {:?}", world.position(0, 0));
-        if !damps {
-            // Where nothing is damped a stiff block trembles for ever, lifts at times, and walks down the slope.
-            continue;
-        }
         let (way, speed, energy) = incline(0.49);
         println!("{rule}: {way:.6} m, {speed:.6} m/s");
         assert!((way / 0.274_198 - 1.0).abs() < 1e-2, "{rule}: {way} {speed}");
-        assert!((speed / 0.219_358 - 1.0).abs() < 1e-3, "{rule}: {way} {speed}");
+        assert!((speed / 0.219_358 - 1.0).abs() < 3e-3, "{rule}: {way} {speed}");
         // Friction takes µ N s of it.
         let rubbed = 0.49 * 2.0 * -across * way;
         assert!((energy.loss_friction / rubbed - 1.0).abs() < 2e-2, "{rule}: {} {rubbed}", energy.loss_friction);
@@ -219,7 +205,7 @@ fn a_stiff_sheet_lies_on_a_ball() {
         [integrator]\nkind = \"backward_euler\"\n\
         [[body]]\nname = \"sheet\"\nshape = { kind = \"sheet\", corner = [-0.5, 0.55, -0.5], u = [0.0, 0.0, 1.0], \
         v = [1.0, 0.0, 0.0], cells = [10, 10] }\nmass = 0.5\n\
-        models = [ { kind = \"mass_spring\", stiffness = 2000.0, damping = 0.05 } ]\n\
+        models = [ { kind = \"mass_spring\", stiffness = 2000.0, damping = 0.5 } ]\n\
         [[collider]]\nkind = \"ball\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\nfriction = 0.5\n";
     let mut world = built(space(&text.replace("seconds = 1\n", "seconds = 1\nsubsteps = 1\n")));
     for _ in 0..90 {

@@ -49,7 +49,8 @@ impl Browser {
         // The browser reads orders from its file 3 and answers into its file 4.
         let script = format!(
             "exec {program} --headless=new --no-sandbox --no-first-run --disable-dev-shm-usage --mute-audio --hide-scrollbars \
-             --use-angle=swiftshader --enable-unsafe-swiftshader --remote-debugging-pipe --user-data-dir=\"$0\" \
+             --use-angle=swiftshader --enable-unsafe-swiftshader --enable-unsafe-webgpu --use-webgpu-adapter=swiftshader \
+             --remote-debugging-pipe --user-data-dir=\"$0\" \
              3<&0 4>&1 </dev/null >/dev/null 2>&1"
         );
         let mut child = Command::new("sh")

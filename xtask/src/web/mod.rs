@@ -43,6 +43,17 @@ pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
     trial::run(&page()?, native)
 }
 
+/// `cargo xtask web-measure [PICTURES]`: how long pictures of the page take in Chromium.
+pub(crate) fn measure(arguments: &[String]) -> Result<(), String> {
+    let pictures = match arguments.first() {
+        None => 100,
+        Some(word) => {
+            word.parse::<u32>().ok().filter(|n| *n > 0).ok_or("web-measure wants a number of pictures above 0")?
+        }
+    };
+    trial::measure(&page()?, pictures)
+}
+
 /// Builds the page; its folder. What translates between the languages of the page is built for this alone: it stays away from
 /// the other chores.
 #[cfg(not(feature = "web"))]

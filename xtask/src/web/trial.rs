@@ -1,6 +1,10 @@
 //! The page tried as a person uses it: it is loaded, the ball is dragged, its model changed, a body drawn, the scene saved
 //! and opened again from its link, on a screen and on a phone; and it comes to the bits of the native program.
 
+mod devices;
+
+pub(super) use devices::measure;
+
 use super::browser::{self, Browser};
 use super::server;
 use serde_json::Value;
@@ -60,6 +64,11 @@ impl Trial {
         self.link_holds_the_scene(&saved)?;
         self.animation_is_handed_over()?;
         self.phone()?;
+        self.browser.size([1280, 720], 1.0, false)?;
+        self.slows_down_honestly()?;
+        self.says_where_nothing_draws()?;
+        self.goes_on_on_another_device()?;
+        self.draws_by_webgpu()?;
         answers.store(false, Ordering::Relaxed);
         self.works_without_a_network()?;
         match self.browser.troubles.first() {

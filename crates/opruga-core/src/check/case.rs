@@ -102,12 +102,25 @@ impl<'a, const D: usize> Case<'a, D> {
         self.layout.places(self.nodes)
     }
     pub(super) fn prepare(&mut self, simd: Simd) -> Answer<()> {
-        let view =
-            View { x: self.x.slices(), v: self.v.slices(), nodes: self.nodes, layout: self.layout, time: self.time };
+        let view = View {
+            x: self.x.slices(),
+            v: self.v.slices(),
+            nodes: self.nodes,
+            layout: self.layout,
+            time: self.time,
+            threads: 1,
+        };
         self.potential.prepare(simd, &view, &self.memory, &mut self.scratch).map_err(|e| e.to_string())
     }
     pub(super) fn view(&self) -> View<'_, D> {
-        View { x: self.x.slices(), v: self.v.slices(), nodes: self.nodes, layout: self.layout, time: self.time }
+        View {
+            x: self.x.slices(),
+            v: self.v.slices(),
+            nodes: self.nodes,
+            layout: self.layout,
+            time: self.time,
+            threads: 1,
+        }
     }
     pub(super) fn energy(&mut self, simd: Simd) -> Answer<[f64; WIDTH]> {
         self.prepare(simd)?;

@@ -10,10 +10,11 @@
 //! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
 //! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
+use super::mixing::Mixing;
 use super::newton::Balance;
 use opruga_core::contacts::Touch;
 use opruga_core::system::System;
-use opruga_math::WIDTH;
+use opruga_math::{Lane, WIDTH};
 use opruga_solve::blocks::{Block, isotropic, nodes};
 
 /// The nodes that obstacles hold.
@@ -34,10 +35,20 @@ pub(crate) struct Contact<const D: usize> {
     hold: Hold,
     /// The force along the normal in the last iteration [N].
     normal_force: f64,
-    /// The direction of the force of friction.
+    /// The direction of the force of friction, and by how much it turned in the last iteration.
     push: [f64; D],
+    turn: f64,
     /// How often it changed between hold and release, or between stick and slip.
     changes: u8,
+}
+
+/// What a look at the forces of the constraints changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Verdict {
+    /// Who is held, or how.
+    pub(crate) anew: bool,
+    /// The force of friction, or its direction.
+    pub(crate) unsettled: bool,
 }
 
 /// How a node is held.
@@ -52,13 +63,19 @@ enum Hold {
 }
 
 /// After so many changes a contact slips or is released for good.
-const MOST_CHANGES: u8 = 8;
+const MOST_CHANGES: u8 = 4;
 
 /// Depths and slides below this part of the extent of a body do not count.
 pub(crate) const SMALL: f64 = 1e-9;
 
 /// A slipping contact is settled when its force changes by no more than this part of itself.
 const SETTLED: f64 = 1e-7;
+
+/// A direction of friction that turns by less than this in an iteration is followed by the next.
+const FOLLOWED: f64 = 0.1;
+
+/// A slide of more than this part of the extent has a direction anyhow.
+const SLIDING: f64 = 1e-4;
 
 fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
@@ -72,10 +89,67 @@ impl<const D: usize> Contact<D> {
     fn is_held(&self) -> bool {
         self.hold != Hold::Released
     }
+    /// Whether it slips against friction.
+    fn rubs(&self) -> bool {
+        self.hold == Hold::Slip && self.touch.friction > 0.0
+    }
+    /// The way along the surface in the stage, less that of the surface.
+    fn slide(&self, u: &[f64], theta: f64, x0: &[f64]) -> [f64; D] {
+        let (at, carried) = (self.node * D, &self.touch.carried);
+        self.along(&core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d])))
+    }
     /// What is left of a vector along the surface.
     fn along(&self, vector: &[f64; D]) -> [f64; D] {
         let normal = dot(vector, &self.touch.normal);
         core::array::from_fn(|d| vector[d] - normal * self.touch.normal[d])
+    }
+}
+
+/// Where nodes are within a step, and what they may meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight<'a, const D: usize> {
+    pub(crate) system: &'a System<D>,
+    pub(crate) x0: &'a [f64],
+    pub(crate) u: &'a [f64],
+    pub(crate) theta: f64,
+    pub(crate) h: f64,
+    pub(crate) extent: f64,
+}
+
+/// How far from a node its surface is looked at, in extents of the body.
+const BESIDE: f64 = 1e-5;
+
+/// Normals that turn by more than this within that distance belong to an edge.
+const EDGE: f64 = 1e-2;
+
+impl<const D: usize> Sight<'_, D> {
+    /// ∂n/∂x along the surface, by differences; nothing at edges.
+    fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
+        let obstacles = self.system.contacts.as_ref()?;
+        let (at, step) = (contact.node * D, BESIDE * self.extent);
+        let from: [f64; D] = core::array::from_fn(|d| self.x0[at + d]);
+        let mut turn = isotropic::<D>(0.0);
+        for axis in 0..D {
+            let mut unit = [0.0; D];
+            unit[axis] = 1.0;
+            let aside = contact.along(&unit);
+            let to: [f64; D] = core::array::from_fn(|d| from[d] + self.u[at + d] / self.theta + step * aside[d]);
+            let mut beside = None;
+            obstacles.touch(&from, &to, self.system.time + self.h, self.h, 0.1 * self.extent, &mut |touch| {
+                if touch.surface == contact.touch.surface {
+                    beside = Some(touch.normal);
+                }
+            });
+            let beside = beside?;
+            let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
+            if dot(&difference, &difference) > EDGE * EDGE {
+                return None;
+            }
+            // Row by row: the derivative along the axis, of what lies along the surface.
+            turn[axis] = contact.along(&difference.map(|x| x / step));
+        }
+        let half = |i: usize, j: usize| 0.5 * (turn[i][j] + turn[j][i]);
+        Some(core::array::from_fn(|i| core::array::from_fn(|j| half(i, j))))
     }
 }
 
@@ -88,14 +162,27 @@ impl<const D: usize> Contacting<D> {
         }
         self.found.reserve(D);
     }
+    /// Whether friction may turn aside what slides.
+    pub(crate) fn any_turns(&self) -> bool {
+        D > 2 && self.contacts.iter().any(Contact::rubs)
+    }
     /// Whether any node is held.
     pub(crate) fn any(&self) -> bool {
         self.contacts.iter().any(Contact::is_held)
     }
 
     /// Looks where nodes are that start at `x0` and end displaced by `u / theta`; nodes that are inside are held from now
-    /// on. Depths below a billionth of `extent` [m] do not count.
-    pub(crate) fn look(&mut self, system: &System<D>, x0: &[f64], u: &[f64], theta: f64, h: f64, extent: f64) -> bool {
+    /// on. Depths below a billionth of `extent` [m] do not count. Nodes that impact are first thought to stick, or to slide.
+    pub(crate) fn look(
+        &mut self,
+        system: &System<D>,
+        x0: &[f64],
+        u: &[f64],
+        theta: f64,
+        h: f64,
+        extent: f64,
+        impacts_slide: bool,
+    ) -> bool {
         let Some(obstacles) = &system.contacts else {
             self.contacts.clear();
             return false;
@@ -142,12 +229,14 @@ impl<const D: usize> Contacting<D> {
                             hold: if touch.friction > 0.0 { Hold::Stick } else { Hold::Slip },
                             normal_force: 0.0,
                             push: [0.0; D],
+                            turn: 1.0,
                             changes: 0,
                         };
                         // What slides on the surface is first thought to slide on.
                         let slide = contact.along(&core::array::from_fn(|d| to[d] - touch.carried[d]));
                         let size = dot(&slide, &slide).sqrt();
-                        if touch.friction > 0.0 && touch.gap_before <= touch.rounding && size > 100.0 * small {
+                        let rests = touch.gap_before <= touch.rounding;
+                        if touch.friction > 0.0 && (impacts_slide || rests) && size > 100.0 * small {
                             contact.hold = Hold::Slip;
                             contact.push = slide.map(|s| -s / size);
                         }
@@ -155,6 +244,13 @@ impl<const D: usize> Contacting<D> {
                     }
                     None => {}
                 }
+            }
+            // What is out of sight is released, and known: a node whose way just grazes a surface may come back to it.
+            for contact in old.iter().filter(|old| !self.found.iter().any(|t| t.surface == old.touch.surface)) {
+                let lost = u8::from(contact.is_held());
+                changed |= contact.is_held();
+                let changes = contact.changes.saturating_add(lost);
+                self.contacts.push(Contact { hold: Hold::Released, normal_force: 0.0, changes, ..*contact });
             }
         }
         changed
@@ -265,10 +361,20 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Decides anew from the forces that the constraints take (`reaction`, per node) and from the displacements after the
-    /// correction; says whether anything changed.
-    pub(crate) fn judge(&mut self, reaction: &[f64], u: &[f64], theta: f64, x0: &[f64], extent: f64) -> bool {
+    /// correction; says what changed.
+    /// `stiffness` of a node [N/m] says how far friction would move it by itself; by less than `tolerance` of the extent is not
+    /// at all.
+    pub(crate) fn judge(
+        &mut self,
+        reaction: &[f64],
+        sight: &Sight<'_, D>,
+        tolerance: f64,
+        stiffness: &dyn Fn(usize) -> f64,
+    ) -> Verdict {
+        let moves = |node: usize| tolerance * sight.extent * stiffness(node);
+        let Sight { x0, u, theta, extent, .. } = *sight;
         let small = SMALL * extent;
-        let mut changed = false;
+        let mut verdict = Verdict::default();
         let mut first = 0;
         while first < self.contacts.len() {
             let node = self.contacts[first].node;
@@ -285,7 +391,7 @@ impl<const D: usize> Contacting<D> {
                     contact.hold = Hold::Released;
                     contact.normal_force = 0.0;
                     contact.changes = contact.changes.saturating_add(1);
-                    changed = true;
+                    verdict.anew = true;
                     continue;
                 }
                 if contact.touch.friction == 0.0 {
@@ -301,37 +407,111 @@ impl<const D: usize> Contacting<D> {
                             contact.hold = Hold::Slip;
                             contact.push = pull.map(|p| p / size);
                             contact.changes = contact.changes.saturating_add(1);
-                            changed = true;
+                            verdict.anew = true;
                         }
                     }
                     _ => {
-                        let carried = &contact.touch.carried;
-                        let slide: [f64; D] = core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d]));
-                        let slide = contact.along(&slide);
+                        let slide = contact.slide(u, theta, x0);
                         let size = dot(&slide, &slide).sqrt();
-                        if dot(&slide, &contact.push) > 0.0 && size > small {
+                        let along = dot(&slide, &contact.push);
+                        if along > 0.0 && size > small {
                             // Friction would push it along.
                             if contact.changes < MOST_CHANGES {
                                 contact.hold = Hold::Stick;
                                 contact.changes += 1;
-                                changed = true;
+                                verdict.anew = true;
                             }
                         } else if size > small {
                             let push = slide.map(|s| -s / size);
                             let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
                             if contact.changes < MOST_CHANGES {
-                                changed |= turn > SETTLED;
-                                contact.push = push;
+                                verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
+                                (contact.push, contact.turn) = (push, turn);
                             }
                         }
-                        changed |= (normal_force - contact.normal_force).abs() > SETTLED * normal_force;
+                        let change = (normal_force - contact.normal_force).abs();
+                        let settled =
+                            change <= SETTLED * normal_force || contact.touch.friction * change <= moves(node);
+                        verdict.unsettled |= !settled;
                     }
                 }
                 contact.normal_force = normal_force;
             }
             first = last;
         }
-        changed
+        verdict
+    }
+
+    /// Lets friction follow the forces that the constraints take now; `right` is then by what it has changed. Says whether it has
+    /// by more than `tolerance` of itself.
+    pub(crate) fn follow(&mut self, reaction: &[f64], mixing: &mut Mixing, tolerance: f64, right: &mut [f64]) -> bool {
+        let (mut state, mut change, mut most, mut worst) = (Vec::new(), Vec::new(), 0.0f64, 0.0f64);
+        for contacts in self.contacts.chunk_by(|a, b| a.node == b.node).filter(|c| c.iter().any(Contact::rubs)) {
+            let at = contacts[0].node * D;
+            let normal_forces = split(contacts, &core::array::from_fn(|d| reaction[at + d]));
+            for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.rubs()) {
+                // A surface does not pull.
+                let normal_force = normal_forces[k.min(D - 1)].larger(0.0);
+                most = normal_force.larger(contact.normal_force).larger(most);
+                worst = (normal_force - contact.normal_force).abs().larger(worst);
+                state.push(contact.normal_force);
+                change.push(normal_force - contact.normal_force);
+            }
+        }
+        if worst <= tolerance * most {
+            return false;
+        }
+        mixing.note(&state, &change);
+        let plain = change.clone();
+        mixing.mix(&mut change);
+        // Where friction and the force along the normal nearly feed each other, mixing leads anywhere.
+        if state.iter().zip(&change).any(|(force, change)| !((force + change).abs() <= 4.0 * most)) {
+            change = plain;
+        }
+        right.fill(0.0);
+        for (contact, change) in self.contacts.iter_mut().filter(|contact| contact.rubs()).zip(&change) {
+            let before = contact.normal_force;
+            contact.normal_force = (before + change).larger(0.0);
+            let strength = contact.touch.friction * (contact.normal_force - before);
+            for d in 0..D {
+                right[contact.node * D + d] += strength * contact.push[d];
+            }
+        }
+        true
+    }
+
+    /// Calls back with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
+    /// across it, and of the constraint, whose direction follows the surface, −λ ∂n/∂x. Where `clamped`, only blocks without
+    /// negative eigenvalues.
+    pub(crate) fn derivatives(&self, sight: &Sight<'_, D>, clamped: bool, visit: &mut dyn FnMut(usize, Block<D>)) {
+        for contact in self.contacts.iter().filter(|contact| contact.normal_force > 0.0) {
+            let normal = &contact.touch.normal;
+            if contact.rubs() && D > 2 {
+                let slide = contact.slide(sight.u, sight.theta, sight.x0);
+                // A slide that turns far has no direction yet that could be followed.
+                let size = dot(&slide, &slide).sqrt();
+                let strength = contact.touch.friction * contact.normal_force / size;
+                if dot(&slide, &contact.push) < 0.0
+                    && size > SMALL * sight.extent
+                    && (contact.turn < FOLLOWED || size > SLIDING * sight.extent)
+                {
+                    let mut block = isotropic::<D>(strength);
+                    for i in 0..D {
+                        for j in 0..D {
+                            block[i][j] -= strength * (normal[i] * normal[j] + contact.push[i] * contact.push[j]);
+                        }
+                    }
+                    visit(contact.node, block);
+                }
+            }
+            if let Some(turn) = sight.turn_of_normal(contact) {
+                let factor = -contact.normal_force / sight.theta;
+                let trace: f64 = (0..D).map(|d| turn[d][d]).sum();
+                if trace != 0.0 && !(clamped && factor * trace < 0.0) {
+                    visit(contact.node, turn.map(|row| row.map(|entry| factor * entry)));
+                }
+            }
+        }
     }
 
     /// Puts nodes that are nevertheless inside onto the surface; `reaction` is what was out of balance without them.

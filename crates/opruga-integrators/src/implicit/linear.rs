@@ -15,8 +15,9 @@ pub(crate) struct Linear<const D: usize> {
     whole: BlockMatrix<D>,
     /// The same without the directions that are held.
     constrained: BlockMatrix<D>,
-    /// The diagonal blocks alone, where there is no matrix.
+    /// The diagonal blocks alone, where there is no matrix, and what was added to them.
     diagonal: Vec<Block<D>>,
+    added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
     incomplete: IncompleteCholesky<D>,
     cholesky: Cholesky,
@@ -137,6 +138,7 @@ impl<const D: usize> Mixture<'_, D> {
 impl<const D: usize> Linear<D> {
     /// Takes the derivatives of a state, after its forces were evaluated.
     pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
+        self.added.clear();
         if mixture.matrix_free {
             self.diagonal.clear();
             self.diagonal.extend(mixture.mass.iter().map(|mass| isotropic::<D>(mixture.sigma * mass)));
@@ -151,6 +153,19 @@ impl<const D: usize> Linear<D> {
                 matrix.add_diagonal(node, mixture.sigma * mass);
             }
         });
+    }
+
+    /// Adds a block to the diagonal of a node.
+    pub(crate) fn add_block(&mut self, mixture: &Mixture<D>, node: usize, block: &Block<D>) {
+        if !mixture.matrix_free {
+            return self.whole.block(node, node, *block);
+        }
+        self.added.push((node, *block));
+        for i in 0..D {
+            for j in 0..D {
+                self.diagonal[node][i][j] += block[i][j];
+            }
+        }
     }
 
     /// Raises the diagonal by a part of itself.
@@ -176,7 +191,11 @@ impl<const D: usize> Linear<D> {
         for ((y, x), mass) in y.iter_mut().zip(x).zip(mixture.mass) {
             *y = x.map(|x| mixture.sigma * mass * x);
         }
-        mixture.deliver(&mut ProductSink { factor: 1.0, x, y }, |sink, factor| sink.factor = factor);
+        let mut sink = ProductSink { factor: 1.0, x, y };
+        mixture.deliver(&mut sink, |sink, factor| sink.factor = factor);
+        for (node, block) in &self.added {
+            sink.block(*node, *node, *block);
+        }
     }
 
     /// The size of the diagonal block of a node.
@@ -199,12 +218,34 @@ impl<const D: usize> Linear<D> {
         b: &[f64],
         out: &mut [f64],
     ) -> Result<u32, Indefinite> {
-        let most = MOST_PRODUCTS;
         if mixture.matrix_free {
             for (node, block) in self.diagonal.iter_mut().enumerate().filter(|(node, _)| !filter.free[*node]) {
                 *block = held(block, &filter.projectors[node]);
             }
             self.jacobi.update(self.diagonal.iter())?;
+        } else {
+            self.constrain(filter);
+            if settings.solver.is_direct::<D>(self.whole.rows()) {
+                self.cholesky.update(&self.constrained)?;
+            } else {
+                self.incomplete.update(&self.constrained)?;
+            }
+        }
+        self.solve_again(mixture, filter, settings, tolerance, b, out)
+    }
+
+    /// Solves with the same matrix for another right-hand side.
+    pub(crate) fn solve_again(
+        &mut self,
+        mixture: &Mixture<D>,
+        filter: &Filter<D>,
+        settings: &Settings,
+        tolerance: f64,
+        b: &[f64],
+        out: &mut [f64],
+    ) -> Result<u32, Indefinite> {
+        let most = MOST_PRODUCTS;
+        if mixture.matrix_free {
             let mut directions = std::mem::take(&mut self.directions);
             let multiply = |x: &[f64], y: &mut [f64]| {
                 self.multiply(mixture, x, y);
@@ -214,16 +255,13 @@ impl<const D: usize> Linear<D> {
             self.directions = directions;
             return finite(out, ended?.iterations);
         }
-        self.constrain(filter);
         if settings.solver.is_direct::<D>(self.whole.rows()) {
-            self.cholesky.update(&self.constrained)?;
             out.copy_from_slice(b);
             self.cholesky.solve(out);
             return finite(out, 1);
         }
         let constrained = &self.constrained;
         let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
-        self.incomplete.update(constrained)?;
         let ended = conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?;
         finite(out, ended.iterations)
     }

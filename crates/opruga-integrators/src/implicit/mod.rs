@@ -33,6 +33,7 @@
 pub(crate) mod contact;
 mod kept;
 pub(crate) mod linear;
+mod mixing;
 pub(crate) mod newton;
 mod real_time;
 pub(crate) mod room;

@@ -1,5 +1,6 @@
 //! Newton's method on the balance of forces of a stage.
 
+use super::contact::{Sight, Verdict};
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -65,17 +66,30 @@ impl Keep {
     }
 }
 
+/// Corrections that fall by less than this in an iteration fall slowly.
+const SLOW: f64 = 0.03;
+
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
 /// The part of the slope that may be left after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
 
+/// A step whose end is steeper than this part of its beginning is gone on with, up to so many times its length.
+const STEEP: f64 = 0.3;
+const LONGEST_STRETCH: f64 = 16.0;
+
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
 
 /// The part of the residual that the linear solver may leave, in the first iteration.
 const LINEAR_TOLERANCE: f64 = 1e-2;
+
+/// How often a direction is corrected for the friction that it changes, at most.
+const MOST_ROUNDS: u32 = 12;
+
+/// The part of the force of friction that may be left, in the first iteration.
+const FRICTION_TOLERANCE: f64 = 1e-3;
 
 /// Rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
@@ -93,13 +107,15 @@ pub(crate) fn solve<const D: usize>(
     for x in &room.x0 {
         size = x.abs().larger(size);
     }
-    evaluate(system, room, balance, false)?;
+    begin(system, room, balance)?;
+    room.mixing.forget();
     let mut first_norm = 0.0;
-    let mut clamped = false;
+    // What the next direction is made of first, and the correction of the last iteration that went all of its way.
+    let (mut first, mut before) = (Keep::Exact, f64::INFINITY);
     while solved.iterations < settings.iterations {
         solved.iterations += 1;
         // Which nodes are held, and how far they have to go.
-        let mut changed = look(system, room, balance);
+        let mut changed = look(system, room, balance, true);
         let farthest = room.contacting.hold(
             &room.u,
             balance.theta,
@@ -110,58 +126,83 @@ pub(crate) fn solve<const D: usize>(
             &mut room.prescribed,
         );
         let moves = farthest > 0.0;
-        // Nodes that have a way to go of their own go it at once: the potential may rise by that.
-        let far = farthest > 1e-4 * room.extent;
 
         // The direction; the exact derivatives as long as they are positive definite.
-        let mut keep = if clamped { Keep::Clamped } else { Keep::Exact };
+        let mut keep = first;
         let direction = loop {
             match find_direction(system, room, balance, settings, keep, moves, &mut first_norm) {
                 Ok((products, slope)) => {
                     solved.products += products;
-                    if slope <= 0.0 || far || keep != Keep::Exact {
+                    if slope <= 0.0 || !moves && keep != Keep::Exact {
                         break Some(slope);
                     }
                 }
                 Err(products) => solved.products += products,
             }
-            clamped = true;
             match keep.next() {
                 Some(next) => keep = next,
                 None => break None,
             }
         };
-        let Some(slope) = direction else { break };
-
-        let mut longest: f64 = 0.0;
-        for node in room.step.as_chunks::<D>().0 {
-            longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
+        let Some(mut slope) = direction else { break };
+        if keep != Keep::Exact {
+            first = Keep::Clamped;
         }
-        solved.correction = longest.sqrt();
-        if balance.sigma == 0.0 && solved.correction > LONGEST * room.extent && !far {
+
+        let plain = longest(&room.step, D);
+        solved.correction = plain;
+        if balance.sigma == 0.0 && plain > LONGEST * room.extent {
             // Without inertia a soft direction leads far.
-            let part = LONGEST * room.extent / solved.correction;
+            let part = LONGEST * room.extent / plain;
             room.step.iter_mut().for_each(|s| *s *= part);
             solved.correction *= part;
+            slope *= part;
         }
-        if far || solved.correction <= goal {
+        // What the matrix leaves out shows where corrections fall slowly.
+        if changed {
+            room.mixing.forget();
+        }
+        let mixed = mix(room, plain > SLOW * before, &mut slope);
+        before = plain;
+        let mut length = 1.0;
+        if plain <= goal {
             full_step(system, room, balance)?;
         } else {
-            let length = line_search(system, room, balance, slope)?;
+            // What is too stiff and has not far to go to obstacles may go on.
+            let stretches = keep != Keep::Exact && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
+            length = line_search(system, room, balance, slope, stretches)?;
             solved.correction *= length;
-            if length == 0.0 && !changed {
-                solved.converged = at_rounding(system, room, balance, settings, size);
-                break;
+            if length != 1.0 {
+                room.mixing.forget();
+                before = f64::INFINITY;
             }
         }
-        // Derivatives that were not positive may be so near the solution.
-        clamped = clamped && solved.correction > 1e-2 * room.extent;
+        let stuck = length == 0.0 && !changed;
+        if stuck {
+            if at_rounding(system, room, balance, settings, size) {
+                solved.converged = true;
+                break;
+            }
+            // A stiffer matrix leads less far, and more surely downhill.
+            match keep.next() {
+                _ if mixed => {}
+                Some(next) => first = next,
+                None => break,
+            }
+        } else if keep != Keep::Exact && solved.correction <= 1e-2 * room.extent {
+            // Derivatives that were not positive may be so near the solution.
+            first = Keep::Exact;
+        }
 
         // What the constraints would take says who stays held.
         if system.contacts.is_some() && solved.iterations < MOST_DECISIONS {
-            changed |= room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+            let verdict = judge(system, room, balance, settings, settings.tolerance, true);
+            if verdict.anew {
+                room.mixing.forget();
+            }
+            changed |= verdict.anew || verdict.unsettled;
         }
-        if !changed && (solved.correction <= goal || at_rounding(system, room, balance, settings, size)) {
+        if !changed && !stuck && (plain <= goal || at_rounding(system, room, balance, settings, size)) {
             solved.converged = true;
             break;
         }
@@ -169,9 +210,89 @@ pub(crate) fn solve<const D: usize>(
     Ok(solved)
 }
 
-pub(crate) fn look<const D: usize>(system: &System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
+/// Evaluates where the iteration begins: where the motion leads or, where a body would be torn there, where it is.
+fn begin<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {
+    if balance.sigma == 0.0 {
+        return evaluate(system, room, balance, false);
+    }
+    for k in 0..room.u.len() {
+        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+    }
+    let here = match evaluate(system, room, balance, true) {
+        Ok(()) => potential(system, room, balance, true).map(|(energy, _)| energy),
+        Err(_) => None,
+    };
+    let there = evaluate(system, room, balance, false);
+    let better = match (here, &there) {
+        (None, _) => return there,
+        (Some(_), Err(_)) => true,
+        (Some(here), Ok(())) => !potential(system, room, balance, false).is_some_and(|(there, _)| there <= here),
+    };
+    if better {
+        for k in 0..room.u.len() {
+            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+        }
+        evaluate(system, room, balance, false)?;
+    }
+    Ok(())
+}
+
+/// The longest way of a node.
+fn longest(step: &[f64], dimension: usize) -> f64 {
+    let mut longest: f64 = 0.0;
+    for node in step.chunks_exact(dimension) {
+        longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
+    }
+    longest.sqrt()
+}
+
+/// Notes an iteration and, where that is asked for, makes of its step the one that it and those before lead to; says whether
+/// it did.
+fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> bool {
+    room.mixing.note(&room.u, &room.step);
+    if !wanted || room.mixing.is_empty() {
+        return false;
+    }
+    let plain = room.step.clone();
+    room.mixing.mix(&mut room.step);
+    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
+    for (s, p) in room.step.iter_mut().zip(&room.prescribed) {
+        *s += p;
+    }
+    let found = slope_along(room);
+    if found < 0.0 {
+        *slope = found;
+        return true;
+    }
+    room.step = plain;
+    false
+}
+
+pub(crate) fn look<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    impacts_slide: bool,
+) -> bool {
     let Room { contacting, x0, u, extent, .. } = room;
-    contacting.look(system, x0, u, balance.theta, balance.h, *extent)
+    contacting.look(system, x0, u, balance.theta, balance.h, *extent, impacts_slide)
+}
+
+/// Decides anew who is held, and how, from what the constraints would take.
+pub(crate) fn judge<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    tolerance: f64,
+    yields: bool,
+) -> Verdict {
+    let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
+    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
+    contacting.judge(reaction, &sight, tolerance, &|node| {
+        if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
+    })
 }
 
 pub(crate) fn mixture<'a, const D: usize>(
@@ -194,8 +315,9 @@ pub(crate) fn mixture<'a, const D: usize>(
     }
 }
 
-/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take. Gives the number of
-/// products, and the slope of the incremental potential along the step.
+/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
+/// it. Gives the number of products, and the slope along the step of the incremental potential less the work of friction and
+/// of the constraints.
 fn find_direction<const D: usize>(
     system: &System<D>,
     room: &mut Room<D>,
@@ -205,10 +327,28 @@ fn find_direction<const D: usize>(
     moves: bool,
     first_norm: &mut f64,
 ) -> Result<(u32, f64), u32> {
-    let Room { linear, mass, free, projectors, residual, reaction, right, trial, step, prescribed, contacting, .. } =
-        room;
+    let Room {
+        linear,
+        mass,
+        free,
+        projectors,
+        residual,
+        reaction,
+        right,
+        trial,
+        step,
+        prescribed,
+        contacting,
+        friction,
+        u,
+        x0,
+        extent,
+        ..
+    } = room;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
+    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
     if let Keep::Raised(part) = keep {
         linear.raise(part);
     }
@@ -230,23 +370,42 @@ fn find_direction<const D: usize>(
     *first_norm = norm.larger(*first_norm);
     // Far from the solution a rough direction does (Eisenstat and Walker 1996).
     let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
-    let products =
-        linear.solve(&mixture, &filter, settings, LINEAR_TOLERANCE * share, right, step).map_err(|_| 0u32)?;
+    let tolerance = LINEAR_TOLERANCE * share;
+    let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
-    let slope = -dot(right, step);
+    let mut slope = -dot(right, step);
     if moves {
         for (s, p) in step.iter_mut().zip(&*prescribed) {
             *s += p;
         }
     }
-    // What is out of balance after the step in the directions that are held: r + A Δ.
-    if contacting.any() {
+    if !moves && !contacting.any() {
+        reaction.fill(0.0);
+        return Ok((products, slope));
+    }
+    // What is out of balance after the step in the directions that are held: r + A Δ. Friction follows it, and the step
+    // follows friction: its force depends on that along the normal.
+    friction.forget();
+    let mut rounds = 0;
+    loop {
         linear.multiply(&mixture, step, reaction);
+        slope = if moves || rounds > 0 { -dot(reaction, step) } else { slope };
         for (r, residual) in reaction.iter_mut().zip(&*residual) {
             *r += residual;
         }
+        if rounds == MOST_ROUNDS || !contacting.follow(reaction, friction, FRICTION_TOLERANCE * share, right) {
+            return Ok((products, slope));
+        }
+        rounds += 1;
+        // `right` is what the force of friction has changed by, and `trial` the change of the step.
+        filter.apply(right);
+        products +=
+            linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, trial).map_err(|_| 0u32)?;
+        filter.apply(trial);
+        for (s, t) in step.iter_mut().zip(&*trial) {
+            *s += t;
+        }
     }
-    Ok((products, slope))
 }
 
 /// The forces at x₀ + u (or at the trial), and what is out of balance.
@@ -290,10 +449,11 @@ fn line_search<const D: usize>(
     room: &mut Room<D>,
     balance: &Balance,
     slope: f64,
+    stretches: bool,
 ) -> Result<f64, StepError> {
-    // Friction and damping have no potential.
-    let conservative = !system.is_damped() && !room.contacting.any();
-    let before = if conservative { potential(system, room, balance, false) } else { None };
+    // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
+    let before = if system.is_damped() { None } else { potential(system, room, balance, false) };
+    let given = given_along(room);
     let mut length = 1.0;
     for _ in 0..MOST_TRIALS {
         for k in 0..room.u.len() {
@@ -304,12 +464,18 @@ fn line_search<const D: usize>(
         // Differences of energies are lost in rounding where the step is small.
         let risen = match before {
             Some((energy, magnitude)) if allowed => {
-                potential(system, room, balance, true).is_none_or(|(after, _)| after > energy + 1e-12 * magnitude)
+                potential(system, room, balance, true).is_none_or(|(after, size)| {
+                    let rounding = 1e-12 * (magnitude + size + (length * given).abs());
+                    !(after - length * given <= energy + rounding)
+                })
             }
             _ => false,
         };
         if allowed && now.is_finite() && now <= SLOPE_LEFT * slope.abs() && !risen {
             room.u.copy_from_slice(&room.trial);
+            if length == 1.0 && stretches && now < -STEEP * slope.abs() {
+                return stretch(system, room, balance, slope, now, before.map(|(energy, _)| (energy, given)));
+            }
             return Ok(length);
         }
         let secant = slope.abs() / (slope.abs() + now);
@@ -320,12 +486,66 @@ fn line_search<const D: usize>(
     Ok(0.0)
 }
 
-/// The slope of the incremental potential along the step in the directions that are free, friction included.
+/// Goes on along a step from whose end it is still steep downhill, as long as it is: a matrix without negative eigenvalues is
+/// too stiff where a body buckles or turns right side out. Gives how far it went, in steps.
+fn stretch<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    slope: f64,
+    now: f64,
+    before: Option<(f64, f64)>,
+) -> Result<f64, StepError> {
+    let (mut length, mut now) = (1.0, now);
+    let mut last = before.and_then(|(_, given)| Some(potential(system, room, balance, false)?.0 - given));
+    loop {
+        // The secant of the slopes, but no more than twice as far.
+        let left = slope.abs() + now;
+        let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
+        for k in 0..room.u.len() {
+            room.trial[k] = room.u[k] + (longer - length) * room.step[k];
+        }
+        let allowed = longer <= LONGEST_STRETCH && evaluate(system, room, balance, true).is_ok();
+        let beyond = if allowed { slope_along(room) } else { f64::NAN };
+        let energy = match before {
+            Some((_, given)) if allowed => potential(system, room, balance, true).map(|(e, _)| e - longer * given),
+            _ => None,
+        };
+        let falls = match (energy, last) {
+            (Some(energy), Some(last)) => energy < last,
+            _ => before.is_none(),
+        };
+        if !(falls && beyond <= STEEP * slope.abs()) {
+            evaluate(system, room, balance, false)?;
+            return Ok(length);
+        }
+        room.u.copy_from_slice(&room.trial);
+        (length, now, last) = (longer, beyond, energy);
+        if now >= -STEEP * slope.abs() {
+            return Ok(length);
+        }
+    }
+}
+
+/// The slope along the step of the incremental potential less the work of friction and of the constraints.
 fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
-    room.right.copy_from_slice(&room.residual);
-    room.contacting.subtract_friction(&mut room.right);
-    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
-    dot(&room.right, &room.step)
+    let given = given_along(room);
+    dot(&room.residual, &room.step) - given
+}
+
+/// The work along the step of friction, and of the constraints by the forces that they are expected to take.
+fn given_along<const D: usize>(room: &mut Room<D>) -> f64 {
+    // r − friction in the directions that are held.
+    let Room { right, reaction, contacting, free, projectors, step, .. } = room;
+    right.copy_from_slice(reaction);
+    contacting.subtract_friction(right);
+    let mut work = dot(right, step);
+    Filter { free, projectors }.apply(right);
+    work -= dot(right, step);
+    // Friction: what is subtracted from nothing.
+    right.fill(0.0);
+    contacting.subtract_friction(right);
+    work - dot(right, step)
 }
 
 /// The incremental potential and the size of its parts [J].

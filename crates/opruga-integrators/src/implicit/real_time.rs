@@ -7,7 +7,7 @@
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::linear::{Filter, Mixture};
-use super::newton::{Balance, Solved, evaluate, look};
+use super::newton::{Balance, Solved, evaluate, judge, look};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
@@ -239,7 +239,7 @@ pub(crate) fn solve<const D: usize>(
         // Which nodes are held, and how far they have to go.
         let mut moves = false;
         if !last {
-            undecided |= look(system, room, balance);
+            undecided |= look(system, room, balance, false);
             let Room { contacting, u, held, x0, free, projectors, prescribed, .. } = &mut *room;
             moves = contacting.hold(u, balance.theta, held, x0, free, projectors, prescribed) > 0.0;
         }
@@ -273,8 +273,11 @@ pub(crate) fn solve<const D: usize>(
             return Ok(solved);
         }
         go(system, room, &task, moves, &mut solved)?;
-        undecided = system.contacts.is_some()
-            && room.contacting.judge(&room.reaction, &room.u, balance.theta, &room.x0, room.extent);
+        undecided = false;
+        if system.contacts.is_some() {
+            let verdict = judge(system, room, balance, settings, 0.0, false);
+            undecided = verdict.anew || verdict.unsettled;
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::contact::Contacting;
 use super::kept::Kept;
 use super::linear::Linear;
+use super::mixing::Mixing;
 use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
@@ -51,6 +52,10 @@ pub(crate) struct Room<const D: usize> {
     /// Where the history of the real-time setting begins, behind that of the rule.
     pub(crate) own: HistorySize,
     pub(crate) contacting: Contacting<D>,
+    /// The last iterations, for what the matrix leaves out.
+    pub(crate) mixing: Mixing,
+    /// The same for the forces that friction goes by, within a direction.
+    pub(crate) friction: Mixing,
     /// Work from outside before the step [J].
     pub(crate) work_before: f64,
     /// The largest extent of the body [m].
@@ -85,6 +90,8 @@ impl<const D: usize> Default for Room<D> {
             kept: Kept::default(),
             own: HistorySize::default(),
             contacting: Contacting::default(),
+            mixing: Mixing::default(),
+            friction: Mixing::default(),
             work_before: 0.0,
             extent: 1.0,
         }

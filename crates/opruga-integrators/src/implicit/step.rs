@@ -1,5 +1,6 @@
 //! A step of an implicit rule from start to ledger.
 
+use super::contact::SMALL;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
 use super::room::Room;
@@ -9,6 +10,7 @@ use opruga_core::integrator::{Amplification, HistorySize, Integrator};
 use opruga_core::potential::Views;
 use opruga_core::spec::Values;
 use opruga_core::system::{Stage, System};
+use opruga_solve::blocks::nodes;
 
 /// What makes one implicit rule differ from another.
 pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
@@ -16,6 +18,11 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     const NAME: &'static str;
     /// Whether works are integrated by the trapezoidal rule over start and end, or by the value in the stage.
     const TRAPEZOID: bool;
+    /// The same rule for a step in which obstacles hold nodes: one that damps what is much faster than the step, which contact
+    /// would stir up for ever.
+    fn in_contact(self) -> Self {
+        self
+    }
     /// What it remembers from step to step.
     fn history(&self) -> HistorySize {
         HistorySize::default()
@@ -121,6 +128,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     if R::TRAPEZOID {
         system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
     }
+    let rule = if touches(system, room, h) { rule.in_contact() } else { rule };
     let balance = rule.begin(system, room, h);
     // From the motion of the last step; held axes are where they have to be.
     room.hold(system, balance.theta, h);
@@ -158,6 +166,21 @@ fn attempt<R: Rule<D>, const D: usize>(
     }
     system.end_implicit(h);
     Ok(())
+}
+
+/// The factor by which what is much faster than a step falls in a step with contact, under rules that else damp nothing.
+pub(crate) const RADIUS_IN_CONTACT: f64 = 0.8;
+
+/// Whether any node would be on an obstacle at the end of the step, or in it, by its velocity alone.
+fn touches<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> bool {
+    let Some(obstacles) = &system.contacts else { return false };
+    nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.v0)).any(|(from, velocity)| {
+        let to: [f64; D] = core::array::from_fn(|d| from[d] + h * velocity[d]);
+        let mut near = false;
+        let reach = SMALL * room.extent;
+        obstacles.touch(from, &to, system.time + h, h, reach, &mut |touch| near |= touch.gap <= touch.rounding + reach);
+        near
+    })
 }
 
 /// Enters what Newton did, and refuses what has not converged.

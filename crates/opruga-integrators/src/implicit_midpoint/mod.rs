@@ -18,7 +18,7 @@ mod tests;
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::FIELDS;
-use crate::implicit::step::{Implicit, Rule};
+use crate::implicit::step::{Implicit, RADIUS_IN_CONTACT, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
@@ -38,9 +38,17 @@ damping amplitudes stay as they are; linear and angular momentum are kept to the
 #[derive(Debug)]
 pub struct ImplicitMidpointKind;
 
-/// The implicit midpoint rule.
+/// The implicit midpoint rule, or in contact its stage a little later than in the middle.
 #[derive(Clone, Copy, Debug)]
-pub struct ImplicitMidpoint;
+pub struct ImplicitMidpoint {
+    /// Where the stage is, as a part of the step.
+    theta: f64,
+}
+
+impl ImplicitMidpoint {
+    /// The rule with its stage in the middle.
+    const MIDDLE: ImplicitMidpoint = ImplicitMidpoint { theta: 0.5 };
+}
 
 impl<const D: usize> IntegratorKind<D> for ImplicitMidpointKind {
     fn spec(&self) -> &'static Spec {
@@ -50,31 +58,36 @@ impl<const D: usize> IntegratorKind<D> for ImplicitMidpointKind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(Implicit::new(SPEC.kind, ImplicitMidpoint, values)?))
+        Ok(Box::new(Implicit::new(SPEC.kind, ImplicitMidpoint::MIDDLE, values)?))
     }
 }
 
 impl<const D: usize> Rule<D> for ImplicitMidpoint {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = false;
+    fn in_contact(self) -> Self {
+        ImplicitMidpoint { theta: 1.0 / (1.0 + RADIUS_IN_CONTACT) }
+    }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // The mean velocity w obeys w (1 + ½hc + ¼h²ω²) = v₀ − ½hω² x₀.
-        let square = omega * omega;
-        let factor = 1.0 / (1.0 + 0.5 * h * c + 0.25 * h * h * square);
-        let (of_x, of_v) = (-0.5 * h * square * factor, factor);
-        Amplification::new([[1.0 + h * of_x, h * of_v], [2.0 * of_x, 2.0 * of_v - 1.0]])
+        // The mean velocity w obeys w (1 + θhc + θ²h²ω²) = v₀ − θhω² x₀, and v₁ = v₀ + (w − v₀)/θ.
+        let (square, theta) = (omega * omega, self.theta);
+        let factor = 1.0 / (1.0 + theta * h * c + theta * theta * h * h * square);
+        let (of_x, of_v) = (-theta * h * square * factor, factor);
+        Amplification::new([[1.0 + h * of_x, h * of_v], [of_x / theta, 1.0 + (of_v - 1.0) / theta]])
     }
     fn begin(&self, _system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+        let span = self.theta * h;
         for (y, v) in room.y.iter_mut().zip(&room.v0) {
-            *y = 0.5 * h * v;
+            *y = span * v;
         }
         room.z.fill(0.0);
-        Balance { sigma: 4.0 / (h * h), beta: 2.0 / h, theta: 0.5, time: 0.5 * h, h, load: 1.0, impulse: 1.0 }
+        let sigma = 1.0 / (span * span);
+        Balance { sigma, beta: 1.0 / span, theta: self.theta, time: span, h, load: 1.0, impulse: 1.0 }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
         for k in 0..room.u.len() {
-            room.u1[k] = 2.0 * room.u[k];
-            room.v1[k] = 2.0 * (balance.beta * room.u[k]) - room.v0[k];
+            room.u1[k] = room.u[k] / self.theta;
+            room.v1[k] = room.v0[k] + (balance.beta * room.u[k] - room.v0[k]) / self.theta;
         }
     }
 }

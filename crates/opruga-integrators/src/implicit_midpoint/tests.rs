@@ -6,7 +6,7 @@ use crate::testing;
 use opruga_core::spec::Values;
 
 fn rule() -> Implicit<ImplicitMidpoint> {
-    Implicit::new(SPEC.kind, ImplicitMidpoint, &Values::defaults(&SPEC, 2)).unwrap()
+    Implicit::new(SPEC.kind, ImplicitMidpoint::MIDDLE, &Values::defaults(&SPEC, 2)).unwrap()
 }
 
 #[test]

@@ -22,7 +22,7 @@ mod tests;
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::FIELDS;
-use crate::implicit::step::{Implicit, Rule};
+use crate::implicit::step::{Implicit, RADIUS_IN_CONTACT, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
@@ -81,10 +81,13 @@ impl<const D: usize> IntegratorKind<D> for NewmarkKind {
 
 impl Newmark {
     fn new(values: &Values) -> Newmark {
-        let (alpha_m, alpha_f) = match values.number("spectral_radius") {
-            Some(rho) => ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)),
-            None => (0.0, 0.0),
-        };
+        values.number("spectral_radius").map_or(Newmark::of(0.0, 0.0), Newmark::of_radius)
+    }
+    /// The generalised-α method with a spectral radius.
+    fn of_radius(rho: f64) -> Newmark {
+        Newmark::of((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0))
+    }
+    fn of(alpha_m: f64, alpha_f: f64) -> Newmark {
         let excess = alpha_f - alpha_m;
         let beta = 0.25 * (1.0 + excess) * (1.0 + excess);
         Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess }
@@ -96,6 +99,10 @@ impl<const D: usize> Rule<D> for Newmark {
     const TRAPEZOID: bool = true;
     fn history(&self) -> HistorySize {
         HistorySize { columns: 1, numbers: 1 }
+    }
+    fn in_contact(self) -> Self {
+        // Average acceleration keeps every oscillation.
+        if self.alpha_m == 0.0 && self.alpha_f == 0.0 { Newmark::of_radius(RADIUS_IN_CONTACT) } else { self }
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;

@@ -46,11 +46,11 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
+use opruga_core::threads::each_in_column;
 use opruga_core::tile::Tile;
 use opruga_math::{ROW, Simd, WIDTH};
 use opruga_mesh::Mesh;
-use section::{Cell, NUMBERS, Part, Plan, Section, Totals, rest_gradient, total};
-use work::Nodes;
+use section::{Cell, FORCES, NUMBERS, Part, Plan, Section, rest_gradient};
 
 /// The kind `fem`.
 #[derive(Debug)]
@@ -68,6 +68,9 @@ pub struct Solid<const D: usize> {
     layout: Layout,
     nodes: usize,
     parts: Vec<Box<dyn Part<D>>>,
+    /// The shares of all parts.
+    shares: Vec<Task>,
+    sums: Sums,
     damped: bool,
 }
 
@@ -247,7 +250,17 @@ impl<'a, const D: usize> Builder<'a, D> {
 
     fn finish(self, parts: Vec<Box<dyn Part<D>>>) -> Box<Solid<D>> {
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
-        Box::new(Solid { layout, nodes, parts, damped: self.damped })
+        let mut shares = Vec::new();
+        let mut start = FORCES;
+        for (part, own) in parts.iter().enumerate() {
+            for (share, list) in own.shares().iter().enumerate() {
+                let length = own.scratch_len(list);
+                shares.push(Task { part, share, start, length });
+                start += length;
+            }
+        }
+        let sums = Sums::new(layout, nodes, &parts, &shares);
+        Box::new(Solid { layout, nodes, parts, shares, sums, damped: self.damped })
     }
 }
 
@@ -295,34 +308,55 @@ impl Model<3> for FemModel {
     }
 }
 
-/// Where the forces begin in the scratch, behind energies and powers.
-const FORCES: usize = 2 * WIDTH;
-
-/// A vector of every node in rows, for one body.
-fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: usize, rows: &mut [f64]) {
-    for (node, row) in rows.chunks_exact_mut(ROW).take(nodes).enumerate() {
-        for d in 0..D {
-            row[d] = columns[d][node];
-        }
-    }
+/// A share of one of the parts, and where its scratch lies.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    part: usize,
+    share: usize,
+    start: usize,
+    length: usize,
 }
 
-impl<const D: usize> Solid<D> {
-    /// Numbers of a vector of every node.
-    fn vectors(&self) -> usize {
-        match self.layout {
-            Layout::Single => self.nodes * ROW,
-            Layout::Batch => self.nodes * WIDTH * D,
+/// Where the forces of the nodes lie in the scratch.
+#[derive(Debug)]
+enum Sums {
+    /// All of them one after the other from here on.
+    Whole(usize),
+    /// For every node in rows of several shares: where its list begins, and the lists of places [`ROW`] by [`ROW`].
+    Listed { start: Vec<u32>, rows: Vec<u32> },
+}
+
+impl Sums {
+    fn new<const D: usize>(layout: Layout, nodes: usize, parts: &[Box<dyn Part<D>>], tasks: &[Task]) -> Sums {
+        let touched = |task: &Task| &parts[task.part].shares()[task.share].nodes;
+        if let [task] = tasks
+            && touched(task).len() == nodes
+        {
+            return Sums::Whole(task.start + FORCES);
         }
+        let row = if layout == Layout::Single { 1 } else { D * WIDTH / ROW };
+        let mut start = vec![0; nodes + 1];
+        for node in tasks.iter().flat_map(touched) {
+            start[*node as usize + 1] += 1;
+        }
+        for node in 0..nodes {
+            start[node + 1] += start[node];
+        }
+        let (mut next, mut rows) = (start.clone(), vec![0; start[nodes] as usize]);
+        for task in tasks {
+            for (k, node) in touched(task).iter().enumerate() {
+                let next = &mut next[*node as usize];
+                rows[*next as usize] = ((task.start + FORCES) / ROW + k * row) as u32;
+                *next += 1;
+            }
+        }
+        Sums::Listed { start, rows }
     }
-    /// Numbers of a copy in rows.
-    fn copy(&self) -> usize {
-        if self.layout == Layout::Single { self.nodes * ROW } else { 0 }
-    }
-    /// The positions that `prepare` has copied.
-    fn positions<'a>(&self, view: &View<'a, D>, scratch: &'a [f64]) -> Nodes<'a, D> {
-        let start = FORCES + self.vectors();
-        Nodes { rows: &scratch[start..start + self.copy()], columns: view.x }
+    fn heap_bytes(&self) -> usize {
+        match self {
+            Sums::Whole(_) => 0,
+            Sums::Listed { start, rows } => 4 * (start.capacity() + rows.capacity()),
+        }
     }
 }
 
@@ -335,61 +369,82 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     /// `prepare` has read all positions before any of them changes.
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
-    /// Energies, powers, forces, and in rows positions and velocities.
+    fn shares_threads(&self) -> bool {
+        self.shares.len() > 1
+    }
+    /// Energies and powers, and what every share leaves.
     fn scratch_len(&self) -> usize {
-        FORCES + self.vectors() + self.copy() * if self.damped { 2 } else { 1 }
+        self.shares.last().map_or(FORCES, |task| task.start + task.length)
     }
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (sums, rest) = scratch.split_at_mut(FORCES);
-        let (forces, rest) = rest.split_at_mut(self.vectors());
-        let (x, v) = rest.split_at_mut(self.copy());
-        if self.layout == Layout::Single {
-            to_rows(&view.x, self.nodes, x);
-            to_rows(&view.v, self.nodes, v);
-        }
-        let nodes = [Nodes { rows: x, columns: view.x }, Nodes { rows: v, columns: view.v }];
-        forces.fill(0.0);
-        let (mut energy, mut power) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for part in &self.parts {
-            let mut totals = Totals::default();
-            part.evaluate(simd, view, nodes, &mut totals, forces)?;
-            let (own_energy, own_power) = (total(self.layout, &totals.energy), total(self.layout, &totals.power));
-            for l in 0..WIDTH {
-                energy[l] += own_energy[l];
-                power[l] += own_power[l];
+        each_in_column(view.threads, &self.shares, rest, &|task| task.length, &|task, scratch| {
+            let part = &self.parts[task.part];
+            part.evaluate(&part.shares()[task.share], simd, view, scratch)
+        })?;
+        sums.fill(0.0);
+        for task in &self.shares {
+            let own = &rest[task.start - FORCES..][..FORCES];
+            for (sum, own) in sums.iter_mut().zip(own) {
+                *sum += own;
             }
         }
-        sums[..WIDTH].copy_from_slice(&energy);
-        sums[WIDTH..].copy_from_slice(&power);
         Ok(())
     }
     fn add_force(&self, _simd: Simd, _view: &View<D>, scratch: &[f64], tile: &mut Tile<D>) {
-        let forces = &scratch[FORCES..FORCES + self.vectors()];
-        let start = tile.range.start;
-        match self.layout {
-            Layout::Single => {
-                let end = tile.range.end.min(self.nodes);
-                for (k, row) in forces[start * ROW..end.max(start) * ROW].chunks_exact(ROW).enumerate() {
+        let range = tile.range.clone();
+        match (self.layout, &self.sums) {
+            (Layout::Single, Sums::Whole(at)) => {
+                let own = range.start..range.end.min(self.nodes).max(range.start);
+                for (k, row) in scratch[at + own.start * ROW..at + own.end * ROW].chunks_exact(ROW).enumerate() {
                     for d in 0..D {
                         tile.force[d][k] += row[d];
                     }
                 }
             }
-            Layout::Batch => {
-                let end = tile.range.end.min(self.nodes * WIDTH);
-                for (k, node) in forces[start * D..end.max(start) * D].chunks_exact(D * WIDTH).enumerate() {
+            (Layout::Single, Sums::Listed { start, rows }) => {
+                for node in range.start..range.end.min(self.nodes) {
+                    let mut sum = [0.0; ROW];
+                    for row in &rows[start[node] as usize..start[node + 1] as usize] {
+                        let row = &scratch[*row as usize * ROW..][..ROW];
+                        for d in 0..ROW {
+                            sum[d] += row[d];
+                        }
+                    }
                     for d in 0..D {
-                        let to = &mut tile.force[d][k * WIDTH..(k + 1) * WIDTH];
-                        for (to, force) in to.iter_mut().zip(&node[d * WIDTH..]) {
-                            *to += force;
+                        tile.force[d][node - range.start] += sum[d];
+                    }
+                }
+            }
+            (Layout::Batch, sums) => {
+                for node in range.start / WIDTH..(range.end / WIDTH).min(self.nodes) {
+                    let place = node * WIDTH - range.start;
+                    let mut sum = [[0.0; WIDTH]; D];
+                    let mut add = |from: usize| {
+                        for (sum, force) in sum.iter_mut().zip(scratch[from..].chunks_exact(WIDTH)) {
+                            for l in 0..WIDTH {
+                                sum[l] += force[l];
+                            }
+                        }
+                    };
+                    match sums {
+                        Sums::Whole(at) => add(at + node * D * WIDTH),
+                        Sums::Listed { start, rows } => {
+                            let own = &rows[start[node] as usize..start[node + 1] as usize];
+                            own.iter().for_each(|row| add(*row as usize * ROW));
+                        }
+                    }
+                    for d in 0..D {
+                        for (to, sum) in tile.force[d][place..place + WIDTH].iter_mut().zip(&sum[d]) {
+                            *to += sum;
                         }
                     }
                 }
             }
         }
         // The first tile reports the power of the whole body.
-        if start == 0 {
+        if range.start == 0 {
             for l in 0..WIDTH {
                 tile.power[l] += scratch[WIDTH + l];
             }
@@ -399,27 +454,30 @@ impl<const D: usize> Potential<D> for Solid<D> {
         core::array::from_fn(|l| scratch[l])
     }
     fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
-        for part in &self.parts {
-            part.hessian(self.positions(view, scratch), keep, sink);
+        for (part, scratch) in self.parts_in(scratch) {
+            part.hessian(view, scratch, keep, sink);
         }
     }
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
-        for part in &self.parts {
-            part.damping_matrix(self.positions(view, scratch), sink);
+        for (part, scratch) in self.parts_in(scratch) {
+            part.damping_matrix(view, scratch, sink);
         }
     }
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
-        let mut rows = vec![0.0; self.copy()];
-        if self.layout == Layout::Single {
-            to_rows(&view.x, self.nodes, &mut rows);
-        }
         let mut out = Vec::new();
         for part in &self.parts {
-            part.cell_states(Nodes { rows: &rows, columns: view.x }, body, &mut out);
+            part.cell_states(view, body, &mut out);
         }
         out
     }
     fn heap_bytes(&self) -> usize {
-        self.parts.iter().map(|part| part.heap_bytes()).sum()
+        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + self.sums.heap_bytes()
+    }
+}
+
+impl<const D: usize> Solid<D> {
+    /// The parts, each with its scratch.
+    fn parts_in<'a>(&'a self, scratch: &'a [f64]) -> impl Iterator<Item = (&'a dyn Part<D>, &'a [f64])> {
+        self.shares.iter().filter(|task| task.share == 0).map(|task| (&*self.parts[task.part], &scratch[task.start..]))
     }
 }

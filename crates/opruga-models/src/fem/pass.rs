@@ -6,11 +6,12 @@
 use super::contraction::{Contract, ContractPrincipal};
 use super::elements::Shape;
 use super::law::{PARAMETERS, PRINCIPAL, Points};
-use super::section::{Group, MOST_PACKS, Room, Section, Totals};
+use super::section::{Group, MOST_PACKS, Part, Room, Section, Share, Totals};
 use super::work::{Forces, Gradients, Nodes, ViscousStress, ViscousTangents, parameters_of_points};
 use core::marker::PhantomData;
+use core::ops::Range;
 use opruga_core::error::StepError;
-use opruga_core::potential::{CellState, Definiteness, Sink, StencilPack};
+use opruga_core::potential::{CellState, Definiteness, StencilPack, StencilPacks};
 use opruga_core::state::{Layout, View};
 use opruga_math::{Simd, WIDTH};
 
@@ -27,7 +28,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
 }
 
 /// What a matrix is made of: tangents at the points, or what damping adds.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Matrix {
     Hessian(Definiteness),
     Damping,
@@ -67,9 +68,10 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         Points { count: group.packs * group.points, gradient: &self.gradient.0, parameters: &self.numbers.0 }
     }
 
-    /// Adds forces and totals.
+    /// Adds forces and totals of a share.
     pub(super) fn forces(
         mut self,
+        share: &Share,
         view: &View<D>,
         [positions, velocities]: [Nodes<'_, D>; 2],
         totals: &mut Totals,
@@ -80,7 +82,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut power = Room([0.0; MOST_PACKS * WIDTH]);
-        for group in section.groups(MOST_PACKS) {
+        for group in section.groups(share, MOST_PACKS) {
             self.deform(&group, positions);
             let points = self.points(&group);
             section.law.stress(simd, points, &mut density.0, &mut stress.0);
@@ -120,22 +122,29 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         Ok(())
     }
 
-    /// Delivers ∂²U/∂x∂x.
-    pub(super) fn hessian(self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
-        self.assemble(positions, Matrix::Hessian(keep), sink);
-    }
-
-    /// Delivers −∂F/∂v.
-    pub(super) fn damping_matrix(self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
-        self.assemble(positions, Matrix::Damping, sink);
-    }
-
-    fn assemble(mut self, positions: Nodes<'_, D>, matrix: Matrix, sink: &mut dyn Sink<D>) {
+    /// Delivers the matrices of the packs of a share that have a node among some.
+    fn assemble(
+        &mut self,
+        share: &Share,
+        positions: Nodes<'_, D>,
+        matrix: Matrix,
+        rows: &Range<usize>,
+        to: &mut dyn FnMut(usize, &StencilPack<'_>),
+    ) {
         let (section, simd) = (self.section, self.simd);
         let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
         let tangent = &mut tangent.0;
         let mut blocks = vec![0.0; N * N * D * D * WIDTH];
-        for group in section.groups(TANGENTS) {
+        for group in section.groups(share, TANGENTS) {
+            let mut places = [[[0; WIDTH]; N]; TANGENTS];
+            let mut wanted = [false; TANGENTS];
+            for pack in 0..group.packs {
+                places[pack] = section.places(group.first + pack);
+                wanted[pack] = places[pack].as_flattened().iter().any(|place| rows.contains(&(*place as usize)));
+            }
+            if wanted == [false; TANGENTS] {
+                continue;
+            }
             self.deform(&group, positions);
             let points = self.points(&group);
             let principal = match matrix {
@@ -152,7 +161,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     false
                 }
             };
-            for pack in 0..group.packs {
+            for pack in (0..group.packs).filter(|pack| wanted[*pack]) {
                 let (shape, blocks) = (PhantomData, &mut blocks);
                 if principal {
                     let principal = &tangent[..points.count * PRINCIPAL * D * D * WIDTH];
@@ -160,20 +169,20 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 } else {
                     simd.run(Contract::<E, D, N> { shape, group, pack, tangent, blocks });
                 }
-                let places = section.places(group.first + pack);
                 let count = group.present(group.first + pack);
-                sink.stencils(&StencilPack { nodes: N, count, places: places.as_flattened(), blocks });
+                let places = places[pack].as_flattened();
+                to(group.first + pack, &StencilPack { nodes: N, count, places, blocks });
             }
         }
     }
 
-    /// Stress and volume ratio of the cells of a body.
-    pub(super) fn cell_states(mut self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
+    /// Stress and volume ratio of the cells of a share, of one body.
+    pub(super) fn cell_states(mut self, share: &Share, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
         let (section, simd) = (self.section, self.simd);
         let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
-        for group in section.groups(1) {
+        for group in section.groups(share, 1) {
             self.deform(&group, positions);
             let points = self.points(&group);
             // Rows of stresses as they are stored: of three axes where the law in space is asked.
@@ -212,6 +221,56 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 }
                 let stress = sum.map(|row| row.map(|s| s / now));
                 out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure });
+            }
+        }
+    }
+}
+
+/// The matrices of the elements of a section in the state that was evaluated last.
+#[derive(Debug)]
+pub(super) struct Matrices<'a, E, const D: usize, const N: usize> {
+    section: &'a Section<E, D, N>,
+    view: &'a View<'a, D>,
+    scratch: &'a [f64],
+    matrix: Matrix,
+}
+
+impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Matrices<'a, E, D, N> {
+    /// ∂²U/∂x∂x.
+    pub(super) fn hessian(
+        section: &'a Section<E, D, N>,
+        view: &'a View<'a, D>,
+        scratch: &'a [f64],
+        keep: Definiteness,
+    ) -> Self {
+        Matrices { section, view, scratch, matrix: Matrix::Hessian(keep) }
+    }
+    /// −∂F/∂v.
+    pub(super) fn damping(section: &'a Section<E, D, N>, view: &'a View<'a, D>, scratch: &'a [f64]) -> Self {
+        Matrices { section, view, scratch, matrix: Matrix::Damping }
+    }
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrices<'_, E, D, N> {
+    fn nodes(&self) -> usize {
+        N
+    }
+    fn stencils(&self) -> usize {
+        self.section.cells.len() * self.section.layout.stride()
+    }
+    fn are_at(&self, places: &[u32]) -> bool {
+        let packs = places.chunks(N * WIDTH);
+        packs.len() == self.section.packs()
+            && packs.enumerate().all(|(pack, places)| self.section.places(pack).as_flattened() == places)
+    }
+    fn deliver(&self, rows: &Range<usize>, to: &mut dyn FnMut(usize, &StencilPack<'_>)) {
+        let stride = self.section.layout.stride();
+        let mut pass = Pass::new(self.section, Simd::best());
+        for share in self.section.shares() {
+            let from = share.nodes.partition_point(|node| (*node as usize + 1) * stride <= rows.start);
+            if share.nodes.get(from).is_some_and(|node| *node as usize * stride < rows.end) {
+                let positions = self.section.positions(share, self.view, self.scratch);
+                pass.assemble(share, positions, self.matrix, rows, to);
             }
         }
     }

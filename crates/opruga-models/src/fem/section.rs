@@ -5,25 +5,34 @@
 //!            └────────────── a few kilobytes that stay in the first-level cache ──────────────┘
 //! ```
 //!
-//! Every element is evaluated once, and the nodes receive its forces in the order of the elements: the bits depend
-//! neither on tiles nor on the layout. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
+//! Every element is evaluated once. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
+//!
+//! The elements of a body are cut into *shares* that threads may work on. A share has rows of its own for the nodes that it
+//! touches, whose forces are added up in the order of its elements, and those of a node in the order of the shares. Shares
+//! are the same for every number of threads and for both layouts, and so are the bits.
 
 use super::elements::Shape;
 use super::law::Law;
-use super::pass::Pass;
+use super::pass::{Matrices, Pass};
 use super::work::Nodes;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;
 use opruga_core::potential::{CellState, Definiteness, Sink};
 use opruga_core::state::{Layout, View};
-use opruga_math::{Column, Simd, WIDTH, sum_in_fixed_order};
+use opruga_math::{Column, ROW, Simd, WIDTH, sum_in_fixed_order};
 
 /// Packs of points that are looked at together, at most.
 pub(super) const MOST_PACKS: usize = 9;
 
 /// Numbers of an element: μ, λ, the material's own, retardation time.
 pub(super) const NUMBERS: usize = 4;
+
+/// Packs of points in a share: a hundred kilobytes, half a millisecond at most.
+const SHARE: usize = 512;
+
+/// Where the forces of a share begin in its scratch, behind energies and powers.
+pub(super) const FORCES: usize = 2 * WIDTH;
 
 /// Room for some packs of points.
 #[repr(align(64))]
@@ -52,8 +61,12 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) points: usize,
     /// Whether the part of the law with λ sees the mean deformation.
     pub(super) selective: bool,
-    /// Places of the nodes: N packs for every pack of elements of one body, N places for every element of eight.
+    shares: Vec<Share>,
+    /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N places for every
+    /// element of eight.
     places: Vec<u32>,
+    /// For eight bodies the N rows of the share for every element.
+    targets: Vec<u32>,
     /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. The mean deformation has the shares
     /// of the points and the measure of the whole.
     pub(super) geometry: Column,
@@ -62,6 +75,18 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     /// Whether the parameters of the first pack hold for all.
     pub(super) uniform: bool,
     pub(super) damped: bool,
+}
+
+/// Packs of elements that are worked on by one thread at a time.
+#[derive(Debug)]
+pub(super) struct Share {
+    /// The first pack, and how many.
+    pub(super) first: usize,
+    pub(super) packs: usize,
+    /// The nodes of its elements, rising: a row each.
+    pub(super) nodes: Vec<u32>,
+    /// Where its scratch begins in that of the section.
+    pub(super) start: usize,
 }
 
 /// Sums over elements whose bits do not depend on the layout.
@@ -89,22 +114,19 @@ pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WI
 
 /// A section, whatever its elements.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// Adds forces [N] (−∂U/∂x and damping) and totals. Forces lie in rows for one body, for eight node by node, axis by
-    /// axis, the bodies innermost.
-    fn evaluate(
-        &self,
-        simd: Simd,
-        view: &View<D>,
-        nodes: [Nodes<'_, D>; 2],
-        totals: &mut Totals,
-        force: &mut [f64],
-    ) -> Result<(), StepError>;
-    /// Delivers ∂²U/∂x∂x.
-    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>);
-    /// Delivers −∂F/∂v.
-    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>);
+    /// The shares, which may be evaluated side by side.
+    fn shares(&self) -> &[Share];
+    /// Numbers that the evaluation of a share leaves: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and
+    /// damping), and copies of what it read. For one body the forces of a node are a row, for eight a pack for every axis.
+    fn scratch_len(&self, share: &Share) -> usize;
+    /// Evaluates the elements of a share.
+    fn evaluate(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]) -> Result<(), StepError>;
+    /// Delivers ∂²U/∂x∂x, after all shares were evaluated in the same state.
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>);
+    /// Delivers −∂F/∂v, likewise.
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
-    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>);
+    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);
     /// Bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
@@ -122,6 +144,7 @@ pub(super) struct Group<'a> {
     pub(super) points: usize,
     pub(super) selective: bool,
     pub(super) places: &'a [u32],
+    pub(super) targets: &'a [u32],
     pub(super) geometry: &'a [f64],
     pub(super) parameters: &'a [f64],
     /// Distance of the parameters of two packs.
@@ -194,15 +217,31 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
 
+        // As many elements in both layouts.
+        let shares = shares(&cells, packs, lanes, (SHARE / points).max(1) * WIDTH / lanes);
         let mut places = vec![0; packs * N * lanes];
+        let mut targets = vec![0; if layout == Layout::Batch { packs * N } else { 0 }];
+        for share in &shares {
+            for pack in share.first..share.first + share.packs {
+                for lane in 0..lanes {
+                    for (a, node) in cell(pack, lane).nodes.iter().enumerate() {
+                        let row = share.nodes.partition_point(|own| own < node) as u32;
+                        if layout == Layout::Batch {
+                            targets[pack * N + a] = row;
+                        }
+                        places[(pack * N + a) * lanes + lane] = match layout {
+                            Layout::Single => row,
+                            Layout::Batch => layout.place(*node as usize, 0) as u32,
+                        };
+                    }
+                }
+            }
+        }
         let mut geometry = Column::zeros(packs * points * stored * lanes);
         let mut parameters = Column::zeros(packs * NUMBERS * WIDTH);
         for pack in 0..packs {
             for lane in 0..lanes {
                 let this = cell(pack, lane);
-                for a in 0..N {
-                    places[(pack * N + a) * lanes + lane] = layout.place(this.nodes[a] as usize, 0) as u32;
-                }
                 // What fills a pack up has no measure.
                 let there = pack * lanes + lane < cells.len();
                 let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
@@ -239,7 +278,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         if uniform {
             parameters = Column::from(&parameters[..NUMBERS * WIDTH]);
         }
-        Section {
+        let mut section = Section {
             shape: PhantomData,
             layout,
             law,
@@ -247,12 +286,20 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             cells,
             points,
             selective,
+            shares,
             places,
+            targets,
             geometry,
             parameters,
             uniform,
             damped,
+        };
+        let mut start = 0;
+        for k in 0..section.shares.len() {
+            section.shares[k].start = start;
+            start += section.scratch_len(&section.shares[k]);
         }
+        section
     }
 
     pub(super) fn packs(&self) -> usize {
@@ -271,30 +318,45 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             points: self.points,
             selective: self.selective,
             places: &self.places,
+            targets: &self.targets,
             geometry: &self.geometry,
             parameters: &self.parameters,
             step: if self.uniform { 0 } else { NUMBERS * WIDTH },
         }
     }
 
-    /// All packs, as many together as have so many packs of points, or one by one.
-    pub(super) fn groups(&self, points: usize) -> impl Iterator<Item = Group<'_>> {
+    /// All packs of a share, as many together as have so many packs of points, or one by one.
+    pub(super) fn groups(&self, share: &Share, points: usize) -> impl Iterator<Item = Group<'_>> {
         let together = (points / self.points).max(1);
-        (0..self.packs()).step_by(together).map(move |first| self.group(first, together.min(self.packs() - first)))
+        let end = share.first + share.packs;
+        (share.first..end).step_by(together).map(move |first| self.group(first, together.min(end - first)))
     }
 
     /// The places of the nodes of a pack, by node and lane.
     pub(super) fn places(&self, pack: usize) -> [[u32; WIDTH]; N] {
         let mut out = [[0; WIDTH]; N];
-        for a in 0..N {
-            for l in 0..WIDTH {
-                out[a][l] = match self.layout {
-                    Layout::Single => self.places[(pack * N + a) * WIDTH + l],
-                    Layout::Batch => self.places[pack * N + a] + l as u32,
-                };
+        for l in 0..WIDTH {
+            let (element, body) = self.item(pack, l);
+            let nodes = self.cells[element.min(self.cells.len() - 1)].nodes;
+            for a in 0..N {
+                out[a][l] = self.layout.place(nodes[a] as usize, body) as u32;
             }
         }
         out
+    }
+
+    /// Numbers of the copy of a vector of every node of a share.
+    fn copy(&self, share: &Share) -> usize {
+        if self.layout == Layout::Single { share.nodes.len() * ROW } else { 0 }
+    }
+    /// Numbers of the forces of a share.
+    fn forces(&self, share: &Share) -> usize {
+        share.nodes.len() * if self.layout == Layout::Single { ROW } else { WIDTH * D }
+    }
+    /// The positions that the evaluation of a share has copied.
+    pub(super) fn positions<'a>(&self, share: &Share, view: &View<'a, D>, scratch: &'a [f64]) -> Nodes<'a, D> {
+        let start = share.start + FORCES + self.forces(share);
+        Nodes { rows: &scratch[start..start + self.copy(share)], columns: view.x }
     }
 
     /// The measure of a point of an element [m³].
@@ -333,30 +395,71 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     }
 }
 
-impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
-    fn evaluate(
-        &self,
-        simd: Simd,
-        view: &View<D>,
-        nodes: [Nodes<'_, D>; 2],
-        totals: &mut Totals,
-        force: &mut [f64],
-    ) -> Result<(), StepError> {
-        Pass::new(self, simd).forces(view, nodes, totals, force)
-    }
-    fn hessian(&self, positions: Nodes<'_, D>, keep: Definiteness, sink: &mut dyn Sink<D>) {
-        Pass::new(self, Simd::best()).hessian(positions, keep, sink);
-    }
-    fn damping_matrix(&self, positions: Nodes<'_, D>, sink: &mut dyn Sink<D>) {
-        if self.damped {
-            Pass::new(self, Simd::best()).damping_matrix(positions, sink);
+/// Cuts packs of so many cells into shares.
+fn shares<const N: usize>(cells: &[Cell<N>], packs: usize, lanes: usize, each: usize) -> Vec<Share> {
+    let firsts = (0..packs).step_by(each);
+    let share = |first: usize| {
+        let packs = each.min(packs - first);
+        let own = &cells[first * lanes..((first + packs) * lanes).min(cells.len())];
+        let mut nodes: Vec<u32> = own.iter().flat_map(|cell| cell.nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Share { first, packs, nodes, start: 0 }
+    };
+    firsts.map(share).collect()
+}
+
+/// A vector of some nodes in rows.
+fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: &[u32], rows: &mut [f64]) {
+    for (node, row) in nodes.iter().zip(rows.chunks_exact_mut(ROW)) {
+        for d in 0..D {
+            row[d] = columns[d][*node as usize];
         }
     }
-    fn cell_states(&self, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
-        Pass::new(self, Simd::best()).cell_states(positions, body, out);
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
+    fn shares(&self) -> &[Share] {
+        &self.shares
+    }
+    fn scratch_len(&self, share: &Share) -> usize {
+        FORCES + self.forces(share) + self.copy(share) * if self.damped { 2 } else { 1 }
+    }
+    fn evaluate(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]) -> Result<(), StepError> {
+        let (sums, rest) = scratch.split_at_mut(FORCES);
+        let (forces, rest) = rest.split_at_mut(self.forces(share));
+        let (x, v) = rest.split_at_mut(self.copy(share));
+        if self.layout == Layout::Single {
+            to_rows(&view.x, &share.nodes, x);
+            to_rows(&view.v, &share.nodes, v);
+        }
+        let nodes = [Nodes { rows: x, columns: view.x }, Nodes { rows: v, columns: view.v }];
+        forces.fill(0.0);
+        let mut totals = Totals::default();
+        Pass::new(self, simd).forces(share, view, nodes, &mut totals, forces)?;
+        sums[..WIDTH].copy_from_slice(&total(self.layout, &totals.energy));
+        sums[WIDTH..].copy_from_slice(&total(self.layout, &totals.power));
+        Ok(())
+    }
+    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+        sink.stencil_packs(view.threads, &Matrices::hessian(self, view, scratch, keep));
+    }
+    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
+        if self.damped {
+            sink.stencil_packs(view.threads, &Matrices::damping(self, view, scratch));
+        }
+    }
+    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>) {
+        for share in &self.shares {
+            let mut rows = vec![0.0; self.copy(share)];
+            to_rows(&view.x, &share.nodes, &mut rows);
+            Pass::new(self, Simd::best()).cell_states(share, Nodes { rows: &rows, columns: view.x }, body, out);
+        }
     }
     fn heap_bytes(&self) -> usize {
-        let places = 4 * self.places.capacity() + size_of::<Cell<N>>() * self.cells.capacity();
+        let shares: usize = self.shares.iter().map(|share| share.nodes.capacity()).sum();
+        let places = 4 * (self.places.capacity() + self.targets.capacity() + shares)
+            + size_of::<Cell<N>>() * self.cells.capacity();
         places + self.geometry.heap_bytes() + self.parameters.heap_bytes()
     }
 }

@@ -243,10 +243,10 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
                     }
                 }
                 Layout::Batch => {
-                    let places = &self.group.places[pack * N..(pack + 1) * N];
+                    let targets = &self.group.targets[pack * N..(pack + 1) * N];
                     for a in 0..N {
                         for i in 0..D {
-                            let at = &mut self.force[places[a] as usize * D + i * WIDTH..][..WIDTH];
+                            let at = &mut self.force[(targets[a] as usize * D + i) * WIDTH..][..WIDTH];
                             (P::load(at) + slots[a][i]).store(at);
                         }
                     }

@@ -2,7 +2,7 @@
 
 use super::{PACKS, Packed, Piece};
 use crate::Indefinite;
-use crate::threads::{each, each_with};
+use opruga_core::threads::{each, each_with};
 use opruga_math::{Column, Lane, Pack, ROW, Register, Simd, WIDTH, Work};
 
 /// How conjugate gradients ended.

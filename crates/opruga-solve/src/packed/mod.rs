@@ -13,7 +13,7 @@ mod gradients;
 use crate::Indefinite;
 use crate::blocks::{Block, held, inverse_of_positive, product};
 use crate::matrix::BlockMatrix;
-use crate::threads::each;
+use opruga_core::threads::each;
 use opruga_math::{Column, ROW, Simd, WIDTH};
 
 pub use gradients::Reached;

@@ -1,24 +1,26 @@
 //! The scene on the screen, and what the pointer does there.
 
+mod brush;
 mod camera;
 mod handles;
 mod look;
 mod outline;
+mod outlines;
 mod overlays;
 mod pen;
 mod pick;
 mod plane;
+mod pressing;
 mod space;
 mod tool;
-mod triangles;
 
-use crate::session::{Edit, Grip, Placed, Request};
+use crate::session::Request;
 use crate::shown::Shown;
 use crate::words::Language;
 use camera::Flat;
-use egui::{PointerButton, Pos2, Rect, Sense, Ui, Vec2};
+use egui::{Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
-use opruga::draw::{ColliderPicture, View};
+use opruga::draw::View;
 use pick::Under;
 use std::sync::Arc;
 pub use tool::Tool;
@@ -57,13 +59,17 @@ pub struct Canvas {
     space: space::Space,
     /// What draws the scene beside it.
     beside: space::Space,
-    beside_fills: triangles::Fills,
+    kept_beside: plane::Kept,
     scales: Option<View>,
+    /// Whether two scenes were shown.
+    two: bool,
     fitted: u64,
     /// The size of the window for which the scene was fitted; none once somebody has moved the view.
     fitted_size: Option<Vec2>,
     doing: Doing,
-    fills: triangles::Fills,
+    /// From where the pointer is to where it is on the side to the left.
+    offset: Vec2,
+    kept: plane::Kept,
     /// The ends of the colours.
     range: Option<[f64; 2]>,
     /// Whether a person has pulled already: then no hint is needed.
@@ -74,24 +80,17 @@ pub struct Canvas {
     pub panned: bool,
 }
 
-/// A press of the pointer.
-#[derive(Clone, Copy)]
-struct Press {
-    button: PointerButton,
-    at: Pos2,
-    /// Where the scene is.
-    rect: Rect,
-    /// Whether the space bar is held.
-    space: bool,
-    shift: bool,
-    /// Whether it is on the scene that is only looked at.
-    beside: bool,
-}
-
 impl Canvas {
     /// Whether pictures of space are still being drawn.
     pub fn is_drawing(&self) -> bool {
         self.space.is_drawing() || self.beside.is_drawing()
+    }
+
+    /// Hands all pictures over anew: what they were drawn on is gone.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget_textures(&mut self) {
+        self.space.forget_texture();
+        self.beside.forget_texture();
     }
 
     /// Shows everything again.
@@ -106,8 +105,8 @@ impl Canvas {
         let picture = opruga::draw::Picture { bodies: vec![body.clone()], ..opruga::draw::Picture::default() };
         let Ok(view) = View::fit([&opruga::draw::Picture { dimension: shown.dimension, ..picture }]) else { return };
         self.fitted_size = None;
-        self.space.look_at_all(&view);
         if let Some(rect) = self.rect {
+            self.space.look_at_all(&view, rect.size());
             self.flat.fit(&view, rect, self.tools);
         }
     }
@@ -136,6 +135,11 @@ impl Canvas {
             return Vec::new();
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
+        if self.two != other.is_some() {
+            // There is half the room, or twice as much: everything is shown as it is now.
+            self.two = other.is_some();
+            self.fit();
+        }
         self.rect = Some(rect);
         let paper = Paper::of(ui);
         let painter = ui.painter_at(rect);
@@ -156,21 +160,30 @@ impl Canvas {
         // Pictures of space are a moment behind: what is pressed is what is seen.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
         let seen = seen.unwrap_or_else(|| Arc::clone(shown));
-        let under = hover.filter(|(_, beside)| !beside).and_then(|(at, _)| self.under(&seen, rect, at));
         let beside = hover.is_some_and(|(_, beside)| beside);
-        self.press(ui, &response, shown, rect, under.as_ref(), beside, &mut asks);
+        let right = shown.beside.as_ref().map(|beside| &beside.right);
+        let seen_right = self.beside.seen().filter(|seen| shown.dimension == 3 && seen.dimension == 3).cloned();
+        let seen_right = seen_right.or(right.cloned()).filter(|_| right.is_some());
+        let hovered = if beside { seen_right.as_ref() } else { Some(&seen) };
+        let under = hover.zip(hovered).and_then(|((at, _), seen)| self.under(seen, rect, at));
+        let offset = other.filter(|_| beside).map(|other| rect.min - other.min);
+        let hovered = hovered.cloned();
+        self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
-        self.overlays(&Look { shown: &seen, ..look }, under.as_ref(), language);
+        self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), language);
         if other.is_none() {
             plane::legend(&look, self.tools, language);
         }
+        let on_right = beside;
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
             let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
             self.paint(ui, &look, &beside.right, true);
+            let seen = seen_right.as_ref().unwrap_or(&beside.right);
+            self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), language);
             plane::legend(&look, self.tools, language);
             overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
         }
@@ -188,8 +201,8 @@ impl Canvas {
             let space = if beside { &mut self.beside } else { &mut self.space };
             space.show(ui, look, shown, scales, selected);
         } else {
-            let fills = if beside { &mut self.beside_fills } else { &mut self.fills };
-            plane::paint(look, &self.flat, fills, selected);
+            let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
+            plane::paint(look, &self.flat, kept, selected);
         }
     }
 
@@ -211,6 +224,7 @@ impl Canvas {
                 && size != rect.size()
             {
                 self.flat.fit(view, rect, self.tools);
+                self.space.look_at_all(view, rect.size());
                 self.fitted_size = Some(rect.size());
             }
             return;
@@ -222,11 +236,11 @@ impl Canvas {
         self.scales = View::fit([&shown.picture].into_iter().chain(beside)).ok().map(|view| with_floors(view, shown));
         if let Some(view) = &self.scales {
             self.flat.fit(view, rect, self.tools);
-            self.space.fit(view);
+            self.space.fit(view, rect.size());
         }
         self.range = None;
-        self.fills.forget();
-        self.beside_fills.forget();
+        self.kept.forget();
+        self.kept_beside.forget();
         if first {
             self.selected = None;
         }
@@ -286,175 +300,6 @@ impl Canvas {
             Some([x, y, 0.0])
         }
     }
-
-    /// Wheel, pinch, and dragging of the view.
-    fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
-        let Some(at) = at else { return };
-        let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
-        let at = touch.map_or(at, |touch| touch.center_pos);
-        let factor = f64::from((scroll * 0.004).exp() * pinch);
-        if factor != 1.0 {
-            self.fitted_size = None;
-            if shown.dimension == 3 {
-                self.space.zoom(factor)
-            } else {
-                self.flat.zoom(factor, rect, at, shown.picture.y_down)
-            }
-        }
-        if let Some(touch) = touch {
-            self.pan(shown, rect, touch.translation_delta);
-        }
-    }
-
-    fn pan(&mut self, shown: &Shown, rect: Rect, delta: Vec2) {
-        if delta != Vec2::ZERO {
-            self.fitted_size = None;
-        }
-        if shown.dimension == 3 {
-            if let Some(scales) = &self.scales {
-                self.space.pan(scales, rect, delta);
-            }
-        } else {
-            self.flat.pan(delta, shown.picture.y_down);
-        }
-    }
-
-    #[allow(clippy::too_many_arguments, reason = "all of them describe one press")]
-    fn press(
-        &mut self,
-        ui: &Ui,
-        response: &egui::Response,
-        shown: &Shown,
-        rect: Rect,
-        under: Option<&Under>,
-        beside: bool,
-        asks: &mut Vec<Request>,
-    ) {
-        let (space_down, shift, pressed, at, down) = ui.input(|i| {
-            let buttons = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle];
-            let pressed = buttons.into_iter().find(|b| i.pointer.button_pressed(*b));
-            (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
-        });
-        let Some(at) = at else { return };
-        // Two fingers move the view: what the first of them took hold of is let go.
-        if ui.input(|i| i.multi_touch().is_some()) {
-            if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
-                asks.push(Request::Release);
-            }
-            return;
-        }
-        let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
-        if let (true, Some(button)) = (began, pressed) {
-            self.refused = None;
-            let press = Press { button, at, rect, space: space_down, shift, beside };
-            self.begin(press, shown, under, asks);
-        }
-        if response.double_clicked()
-            && let Some(under) = under
-        {
-            match pin_under(shown, under) {
-                Some((body, node, _)) => asks.push(Request::Unpin(body, node)),
-                None if shown.dimension == 3 => self.space.look_at(under.point),
-                None => {}
-            }
-        }
-        // On a slow screen a press comes together with the way to it, which does not count.
-        let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
-        match &mut self.doing {
-            Doing::Nothing => {}
-            Doing::Holding(distance) => {
-                let distance = *distance;
-                if let Some(point) = self.point(shown, rect, at, distance) {
-                    asks.push(Request::Lead(point));
-                }
-                ui.ctx().request_repaint();
-            }
-            Doing::Panning => self.pan(shown, rect, delta),
-            Doing::Turning => {
-                let up =
-                    |c: &ColliderPicture| matches!(c, ColliderPicture::HalfSpace { normal, .. } if normal[1] > 0.0);
-                self.space.turn(delta, shown.picture.colliders.iter().any(up));
-            }
-            Doing::Shifting(..) => {}
-            Doing::Handling(held) => held.lead(at),
-            Doing::Drawing(points) => {
-                let point = self.flat.to_world(rect, at, shown.picture.y_down);
-                if points.last().is_none_or(|last| *last != point) {
-                    points.push(point);
-                }
-            }
-        }
-        if !down {
-            self.end(shown, rect, at, asks);
-        }
-    }
-
-    fn begin(&mut self, press: Press, shown: &Shown, under: Option<&Under>, asks: &mut Vec<Request>) {
-        let Press { button, at, rect, space, shift, beside } = press;
-        if button == PointerButton::Middle || space {
-            self.panned = space;
-            self.doing = Doing::Panning;
-            return;
-        }
-        if self.tool == Tool::Shift
-            && button == PointerButton::Primary
-            && !beside
-            && let Some(held) = self.handles(shown, rect).and_then(|handles| handles.at(at))
-        {
-            self.doing = Doing::Handling(held);
-            return;
-        }
-        if self.tool == Tool::Draw && !beside && button == PointerButton::Primary {
-            if shown.dimension == 2 {
-                self.doing = Doing::Drawing(Vec::new());
-            } else {
-                self.refused = Some("only_plane");
-            }
-            return;
-        }
-        let Some(under) = under else {
-            // Beside all bodies the view is taken along, in space it turns.
-            self.doing = if shown.dimension == 3 { Doing::Turning } else { Doing::Panning };
-            return;
-        };
-        self.selected = Some(under.name.clone());
-        let grip = match (button, shift, self.tool) {
-            (PointerButton::Secondary, ..) => Grip::Push,
-            (_, true, _) | (_, _, Tool::Pin) => Grip::Pin,
-            (_, _, Tool::Push) => Grip::Push,
-            (_, _, Tool::Shift) => {
-                let start = self.point(shown, rect, at, under.distance).unwrap_or(under.point);
-                self.doing = Doing::Shifting(under.name.clone(), start, under.distance);
-                return;
-            }
-            _ => Grip::Pull,
-        };
-        self.pulled |= grip == Grip::Pull;
-        // What is pinned is taken by its own place, so that the same node is found again.
-        let pinned = pin_under(shown, under).map(|pin| pin.2);
-        asks.push(Request::Grab(grip, under.body, pinned.filter(|_| grip == Grip::Pin).unwrap_or(under.point)));
-        self.doing = Doing::Holding(under.distance);
-    }
-
-    fn end(&mut self, shown: &Shown, rect: Rect, at: Pos2, asks: &mut Vec<Request>) {
-        match std::mem::take(&mut self.doing) {
-            Doing::Holding(_) => asks.push(Request::Release),
-            Doing::Shifting(name, start, distance) => {
-                if let Some(end) = self.point(shown, rect, at, distance) {
-                    let moved = [0, 1, 2].map(|d| end[d] - start[d]);
-                    if moved.iter().any(|d| d.abs() > 1e-9) {
-                        asks.push(Request::Edit(Edit::Place(name, Placed { moved, turned: 0.0, scaled: 1.0 })));
-                    }
-                }
-            }
-            Doing::Handling(held) => asks.extend(held.edit(shown.dimension, shown.picture.y_down)),
-            Doing::Drawing(points) => match pen::body(&points, self.flat.metres(6.0)) {
-                Ok(table) => asks.push(Request::Edit(Edit::Add(table))),
-                Err(why) => self.refused = Some(why),
-            },
-            _ => {}
-        }
-    }
 }
 
 /// A view with the floors and walls that bodies may come to: at the start they are often far above them.
@@ -478,20 +323,6 @@ fn with_floors(mut view: View, shown: &Shown) -> View {
         (view.low[2], view.high[2]) = (0.0, 0.0);
     }
     view
-}
-
-/// The pin under the pointer, of a person or of the scene: body, node, place [m].
-fn pin_under(shown: &Shown, under: &Under) -> Option<(usize, u32, [f64; 3])> {
-    let own = shown.bodies.iter().position(|body| body.number == under.body);
-    let own = own.and_then(|place| shown.picture.bodies.get(place));
-    let of_scene = own.into_iter().flat_map(|body| {
-        let place = |node: &u32| Some((under.body, *node, *body.positions.get(*node as usize)?));
-        body.pinned.iter().filter_map(place)
-    });
-    shown.pins.iter().copied().chain(of_scene).find(|(body, _, place)| {
-        let far: f64 = under.point.iter().zip(place).map(|(a, b)| (a - b) * (a - b)).sum();
-        under.body == *body && far.sqrt() <= 3.0 * under.pixel * 6.0
-    })
 }
 
 /// The part of the scene and that of the one beside it: next to one another, on a high window one above the other.

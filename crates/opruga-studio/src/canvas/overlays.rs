@@ -81,10 +81,13 @@ impl Canvas {
             _ => {}
         }
         if !self.pulled
+            && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
+            // What is far out of sight cannot be dragged.
+            && rect.expand(0.2 * rect.width()).contains(top)
         {
             plane::hint(painter, top, rect, self.tools, language.drag_me());
         }
@@ -110,10 +113,15 @@ pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &B
     let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 12.0);
     caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
     let words = if beside.words.is_empty() { language.no_difference().into() } else { beside.words.join(", ") };
-    let far = beside.distances.map_or(String::new(), |[mean, largest]| {
-        let [mean, largest] = [mean, largest].map(format_value);
-        format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
-    });
+    let far = match (beside.distances, beside.center) {
+        (Some([mean, largest]), _) => {
+            let [mean, largest] = [mean, largest].map(format_value);
+            format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
+        }
+        // Where the nodes are others, their distances are none.
+        (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
+        (None, None) => String::new(),
+    };
     caption(low(rect), Align2::CENTER_BOTTOM, format!("{words}{far}"), paper.ink, room);
     if let Some(reason) = &beside.stopped {
         let text = format!("{}\n{reason}", language.right_stopped());

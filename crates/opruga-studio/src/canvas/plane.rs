@@ -1,11 +1,11 @@
 //! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
 
+use super::brush::Brush;
 use super::camera::Flat;
 use super::look::{Look, Paper};
-use super::triangles::Fills;
+use super::outlines::Outlines;
 use crate::shown::Shown;
 use crate::words::Language;
-use egui::epaint::Vertex;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{
     ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length, nice_ticks,
@@ -13,8 +13,11 @@ use opruga::draw::{
 
 /// The rubber line of a pull.
 pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
-/// Edges up to which lines are drawn with soft borders.
+/// Lines of a crowd up to which they are drawn with soft borders.
 const SOFT_EDGES: usize = 6_000;
+/// The opacity of what fills an outline, and of cells.
+const FILLED: f32 = 0.34;
+const FILLED_CELLS: f32 = 0.62;
 
 fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
@@ -39,92 +42,118 @@ impl Colours {
     }
 }
 
+/// What is kept from picture to picture.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    outlines: Outlines,
+    brush: Brush,
+    /// Where the nodes of a body are on the screen, and their colours.
+    at: Vec<Pos2>,
+    colours: Vec<Color32>,
+}
+
+impl Kept {
+    /// Forgets what belongs to a scene.
+    pub(crate) fn forget(&mut self) {
+        self.outlines.forget();
+    }
+}
+
 /// Draws obstacles, bodies and arrows.
-pub(crate) fn paint(look: &Look<'_>, flat: &Flat, fills: &mut Fills, selected: Option<&str>) {
-    let Look { painter, shown, rect, paper, range } = *look;
+pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Option<&str>) {
+    let Look { painter, shown, rect, paper, .. } = *look;
     let picture = &shown.picture;
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
     grid(painter, flat, rect, paper, &picture.length_unit, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
-    let edges: usize = picture.bodies.iter().map(|b| b.segments.len()).sum();
-    let soft = edges <= SOFT_EDGES;
+    // A single outline has no more points than the screen; a crowd and a lattice may.
+    let alone = matches!(&picture.bodies[..], [body] if body.segments.len() <= body.positions.len());
+    let edges = |body: &BodyPicture| match &body.facets {
+        Facets::Edges(edges) => edges.len(),
+        Facets::Triangles(_) => 0,
+    };
+    let lines: usize = picture.bodies.iter().map(|body| body.segments.len() + edges(body)).sum();
+    let crowd = lines > SOFT_EDGES && !alone;
+    kept.outlines.next_picture();
+    kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() });
     let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map), paper);
-    let (mut filled, mut lines) = (Mesh::default(), Mesh::default());
     for (place, body) in picture.bodies.iter().enumerate() {
-        let base = colour(body.colour.unwrap_or(BODIES[place % BODIES.len()]));
-        let at: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
-        let colours: Vec<Color32> = if body.scalar.is_empty() {
-            vec![base; at.len()]
-        } else {
-            body.scalar.iter().map(|s| map.at(*s, range)).collect()
-        };
-        if body.areas.iter().any(|area| area.colour.is_some()) {
-            flush_below(painter, &mut filled);
-            painter.add(Shape::mesh(drawing(body, &project)));
-            body.pinned.iter().for_each(|node| pin(painter, at[*node as usize], paper));
-            label(painter, &body.label, &at, paper);
-            continue;
+        kept.at.clear();
+        kept.at.extend(body.positions.iter().map(|p| project(*p)));
+        if Rect::from_points(&kept.at).expand(4.0).intersects(rect) {
+            let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
+            self::body(look, kept, &map, (place, body), wide, flat);
         }
-        let triangles = if body.cells.is_empty() { fills.of(place, body) } else { &body.cells };
-        let strength = if body.cells.is_empty() { 0.34 } else { 0.62 };
-        let first = filled.vertices.len() as u32;
-        filled.vertices.extend(at.iter().zip(&colours).map(|(pos, c)| Vertex {
-            pos: *pos,
-            uv: egui::epaint::WHITE_UV,
-            color: c.gamma_multiply(strength),
-        }));
-        filled.indices.extend(triangles.iter().flatten().map(|node| first + node));
-        let outline: &[[u32; 2]] = match &body.facets {
-            Facets::Edges(edges) => edges,
-            Facets::Triangles(_) => &[],
-        };
-        let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
-        let inner = if outline.is_empty() { 1.8 } else { 0.9 };
-        for (list, width) in [(body.segments.as_slice(), inner), (outline, if wide { 3.2 } else { 2.2 })] {
-            for [a, b] in list {
-                let (from, to) = (at[*a as usize], at[*b as usize]);
-                let shade = mix(colours[*a as usize], colours[*b as usize]);
-                let shade = if paper.dark { shade } else { darker(shade) };
-                if soft {
-                    painter.add(Shape::line_segment([from, to], Stroke::new(width, shade)));
-                } else {
-                    segment(&mut lines, from, to, width.min(1.4), shade);
-                }
-            }
-        }
-        if soft {
-            // The fill goes below the lines, body by body, so that bodies lie on one another as a whole.
-            flush_below(painter, &mut filled);
-        }
-        if body.nodes_drawn && at.len() <= 20_000 {
-            let radius = if at.len() > 400 { 1.6 } else { 2.6 };
-            for (pos, c) in at.iter().zip(&colours) {
-                painter.circle_filled(*pos, radius, if paper.dark { *c } else { darker(*c) });
-            }
-        }
-        for node in &body.pinned {
-            pin(painter, at[*node as usize], paper);
-        }
-        label(painter, &body.label, &at, paper);
     }
-    flush_below(painter, &mut filled);
-    if !lines.is_empty() {
-        painter.add(Shape::mesh(lines));
+    kept.brush.end(painter);
+    // What is written and marked lies over all bodies.
+    for body in picture.bodies.iter().filter(|body| !body.label.is_empty() || !body.pinned.is_empty()) {
+        body.pinned.iter().filter_map(|node| body.positions.get(*node as usize)).for_each(|p| {
+            pin(painter, project(*p), paper);
+        });
+        let spots: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
+        label(painter, &body.label, &spots, paper);
     }
     arrows(painter, shown, flat, &project);
 }
 
-/// The areas that a body carries, in their own colours, one over another.
-fn drawing(body: &BodyPicture, project: &impl Fn([f64; 3]) -> Pos2) -> Mesh {
-    let mut mesh = Mesh::default();
-    for area in &body.areas {
-        let Some([r, g, b, opacity]) = area.colour else { continue };
-        let (first, color) = (mesh.vertices.len() as u32, Color32::from_rgba_unmultiplied(r, g, b, opacity));
-        let corner = |p: &[f64; 3]| Vertex { pos: project(*p), uv: egui::epaint::WHITE_UV, color };
-        mesh.vertices.extend(area.positions.iter().map(corner));
-        mesh.indices.extend(area.triangles.iter().flatten().map(|point| first + point));
+/// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
+fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
+    let Look { rect, paper, range, shown, .. } = *look;
+    let (place, body) = number;
+    let Kept { outlines, brush, at, colours } = kept;
+    if body.areas.iter().any(|area| area.colour.is_some()) {
+        // The areas that it carries, in their own colours, one over another.
+        for area in &body.areas {
+            let Some([r, g, b, opacity]) = area.colour else { continue };
+            let colour = Color32::from_rgba_unmultiplied(r, g, b, opacity);
+            let corners = area.positions.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour));
+            brush.fill(corners, &area.triangles);
+            // A thin line of the same colour makes its border smooth.
+            let starts = std::iter::once(0).chain(area.ends.iter().copied());
+            for (start, end) in starts.zip(area.ends.iter().copied()) {
+                let Some(line) = area.positions.get(start..end) else { continue };
+                brush.ring(line.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour)), 0.5);
+            }
+        }
+        return;
     }
-    mesh
+    colours.clear();
+    if body.scalar.is_empty() {
+        colours.resize(at.len(), colour(body.colour.unwrap_or(BODIES[place % BODIES.len()])));
+    } else {
+        colours.extend(body.scalar.iter().map(|s| map.at(*s, range)));
+    }
+    let outline = outlines.of(place, body);
+    let (triangles, strength) =
+        if body.cells.is_empty() { (&outline.triangles, FILLED) } else { (&body.cells, FILLED_CELLS) };
+    if !triangles.is_empty() {
+        brush.fill(at.iter().zip(colours.iter()).map(|(pos, c)| (*pos, c.gamma_multiply(strength))), triangles);
+    }
+    if !paper.dark {
+        colours.iter_mut().for_each(|c| *c = darker(*c));
+    }
+    let of = |node: &u32| (at[*node as usize], colours[*node as usize]);
+    let edged = !(outline.closed.is_empty() && outline.open.is_empty());
+    if outline.springs {
+        let width = if edged { 0.9 } else { 1.8 };
+        for [a, b] in &body.segments {
+            let (a, b) = (of(a), of(b));
+            brush.line([a.0, b.0], width, [a.1, b.1]);
+        }
+    }
+    let width = if wide { 3.2 } else { 2.2 };
+    for line in &outline.closed {
+        brush.ring(line.iter().map(of), width);
+    }
+    for [a, b] in &outline.open {
+        let (a, b) = (of(a), of(b));
+        brush.line([a.0, b.0], width, [a.1, b.1]);
+    }
+    if body.nodes_drawn && at.len() <= 20_000 {
+        let radius = if at.len() > 400 { 1.6 } else { 2.6 };
+        at.iter().zip(colours.iter()).for_each(|(pos, c)| brush.disc(*pos, radius, *c));
+    }
 }
 
 /// The name of a body, below it.
@@ -137,32 +166,9 @@ pub(crate) fn label(painter: &Painter, text: &str, spots: &[Pos2], paper: &Paper
     painter.galley(place.min, galley, paper.ink);
 }
 
-fn flush_below(painter: &Painter, mesh: &mut Mesh) {
-    if !mesh.indices.is_empty() {
-        painter.add(Shape::mesh(std::mem::take(mesh)));
-    }
-    mesh.clear();
-}
-
-fn mix(a: Color32, b: Color32) -> Color32 {
-    let half = |x: u8, y: u8| ((u16::from(x) + u16::from(y)) / 2) as u8;
-    Color32::from_rgb(half(a.r(), b.r()), half(a.g(), b.g()), half(a.b(), b.b()))
-}
-
 fn darker(c: Color32) -> Color32 {
     let scale = |x: u8| (f32::from(x) * 0.78) as u8;
     Color32::from_rgb(scale(c.r()), scale(c.g()), scale(c.b()))
-}
-
-/// A line as two triangles, for crowds.
-fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, width: f32, c: Color32) {
-    let along = (to - from).normalized();
-    let side = Vec2::new(-along.y, along.x) * (0.5 * width);
-    let first = mesh.vertices.len() as u32;
-    for pos in [from + side, from - side, to - side, to + side] {
-        mesh.vertices.push(Vertex { pos, uv: egui::epaint::WHITE_UV, color: c });
-    }
-    mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
 }
 
 /// Squares of a round length, and that length.
@@ -363,7 +369,8 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>
 pub(crate) fn legend(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range } = *look;
     let Some(legend) = &shown.picture.legend else { return };
-    if shown.picture.bodies.iter().all(|body| body.scalar.iter().all(|s| !s.is_finite())) {
+    let drawn = |body: &BodyPicture| shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some());
+    if shown.picture.bodies.iter().all(|body| drawn(body) || body.scalar.iter().all(|s| !s.is_finite())) {
         return;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);

@@ -15,6 +15,9 @@ const OUTLINE: Color32 = Color32::from_rgb(240, 150, 30);
 /// The longest side of a picture in pixels: finer screens are served by stretching.
 const MOST_PIXELS: f64 = 1400.0;
 
+/// The share of the picture that a scene fills at most.
+const FILLED: f64 = 0.96;
+
 /// A picture and the outline of the selected body on it, in shares of its sides.
 struct Drawn {
     image: Image,
@@ -61,9 +64,16 @@ impl Space {
         self.eye.as_ref()
     }
 
-    pub(crate) fn fit(&mut self, view: &View) {
-        self.eye = Some(Eye::of(view));
+    /// Looks at all of a view in a picture of this size.
+    pub(crate) fn fit(&mut self, view: &View, size: Vec2) {
+        self.eye = Some(whole(Eye::of(view), view, size));
         (self.last, self.seen) = (None, None);
+    }
+
+    /// Draws its picture anew: what it was drawn on is gone.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn forget_texture(&mut self) {
+        (self.texture, self.last) = (None, None);
     }
 
     /// Whether a picture is being drawn or waits to be shown.
@@ -77,10 +87,9 @@ impl Space {
     }
 
     /// Looks from the same side, so that all of a view is seen.
-    pub(crate) fn look_at_all(&mut self, view: &View) {
+    pub(crate) fn look_at_all(&mut self, view: &View, size: Vec2) {
         if let Some(eye) = &mut self.eye {
-            let whole = Eye::of(view);
-            (eye.target, eye.radius) = (whole.target, whole.radius);
+            *eye = whole(Eye { azimuth: eye.azimuth, elevation: eye.elevation, ..Eye::of(view) }, view, size);
         }
     }
 
@@ -185,6 +194,29 @@ impl Space {
     }
 }
 
+/// An eye that sees the box of a view whole, however narrow the picture is: where it does not, it goes back.
+fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
+    let sides = [f64::from(size.x), f64::from(size.y)];
+    // What is nearer grows more slowly than the eye goes back: a few times get there.
+    for _ in 0..8 {
+        let lens = eye.lens(view, sides);
+        let mut most = 0.0_f64;
+        for corner in 0..8 {
+            let point = std::array::from_fn(|d| if corner >> d & 1 == 0 { view.low[d] } else { view.high[d] });
+            // Behind the camera it is twice as far outside.
+            let far = lens.see(point).map_or(2.0, |(pixel, _)| {
+                [0, 1].map(|d| (pixel[d] / sides[d] - 0.5).abs() * 2.0).into_iter().fold(0.0, f64::max)
+            });
+            most = most.max(far);
+        }
+        if most <= FILLED {
+            break;
+        }
+        eye.radius *= most / FILLED;
+    }
+    eye
+}
+
 /// The outline of the selected body in shares of the sides of the picture.
 fn outline_of(order: &Order) -> Vec<[[f32; 2]; 2]> {
     let place = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
@@ -224,4 +256,33 @@ fn drawn(order: &Order) -> Option<Drawn> {
     }
     let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
     Some(Drawn { image, outline: outline_of(order), shown: Arc::clone(&order.shown), eye: order.eye })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga::draw::{BodyPicture, Picture};
+
+    #[test]
+    fn a_scene_is_seen_whole_on_a_wide_screen_and_on_a_phone_held_upright() {
+        let corners = [[-3.0, 0.0, -1.0], [3.0, 0.5, 1.0], [-3.0, 0.0, 1.0], [3.0, 0.0, -1.0]];
+        let body = BodyPicture { positions: corners.to_vec(), ..Default::default() };
+        let view = View::fit([&Picture { dimension: 3, bodies: vec![body], ..Default::default() }]).expect("a view");
+        for size in [Vec2::new(1280.0, 600.0), Vec2::new(390.0, 600.0), Vec2::new(200.0, 700.0)] {
+            let mut space = Space::default();
+            space.fit(&view, size);
+            let rect = Rect::from_min_size(egui::Pos2::ZERO, size);
+            let lens = space.lens(&view, rect).expect("an eye");
+            let seen = corners.map(|corner| lens.see(corner).expect("before the camera").0);
+            let inside =
+                |[x, y]: &[f64; 2]| (0.0..=f64::from(size.x)).contains(x) && (0.0..=f64::from(size.y)).contains(y);
+            assert!(seen.iter().all(inside), "{size:?}: {seen:?}");
+            let wide =
+                seen.iter().map(|p| p[0]).fold(f64::MIN, f64::max) - seen.iter().map(|p| p[0]).fold(f64::MAX, f64::min);
+            let tall =
+                seen.iter().map(|p| p[1]).fold(f64::MIN, f64::max) - seen.iter().map(|p| p[1]).fold(f64::MAX, f64::min);
+            let filled = (wide / f64::from(size.x)).max(tall / f64::from(size.y));
+            assert!(filled > 0.4, "{size:?}: it fills {filled}");
+        }
+    }
 }

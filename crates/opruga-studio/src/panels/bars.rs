@@ -79,7 +79,7 @@ pub fn tools(
         for (name, key, step, ask) in
             [(words.undo(), "Ctrl Z", &shown.undo, Request::Undo), (words.redo(), "Ctrl Y", &shown.redo, Request::Redo)]
         {
-            let about = format!("{} ({key})", step.as_deref().unwrap_or_default());
+            let about = format!("{} ({key})", step.as_ref().map_or(String::new(), |step| words.done(step)));
             if ui.add_enabled(step.is_some(), egui::Button::new(name)).on_hover_text(about).clicked() {
                 asks.push(ask);
             }
@@ -223,12 +223,21 @@ pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
 }
 
 /// What the colours tell, and what else is drawn.
-pub fn view_menu(ui: &mut Ui, words: Language, now: Show, asks: &mut Vec<Request>) {
+pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &mut Vec<Request>) {
     let mut show = now;
-    let label = format!("{}: {}", words.colour(), quantity_name(words, now.quantity));
-    ui.menu_button(label, |ui| {
+    let drawn = shown.has_drawings && now.own_colours;
+    let name = if drawn { words.own_colours() } else { quantity_name(words, now.quantity) };
+    ui.menu_button(format!("{}: {name}", words.colour()), |ui| {
+        // A drawing is seen as it was drawn, until another colouring is chosen for it.
+        if shown.has_drawings {
+            let choice = ui.radio(drawn, words.own_colours()).on_hover_text(words.own_colours_hint());
+            if choice.clicked() {
+                (show.own_colours, show.quantity) = (true, Quantity::Strain);
+                ui.close();
+            }
+        }
         for quantity in Quantity::ALL {
-            let mut choice = ui.radio_value(&mut show.quantity, quantity, quantity_name(words, quantity));
+            let mut choice = ui.radio(!drawn && show.quantity == quantity, quantity_name(words, quantity));
             let about = match quantity {
                 Quantity::ElasticForce => words.elastic_force_hint(),
                 Quantity::VonMises => words.von_mises_hint(),
@@ -239,6 +248,7 @@ pub fn view_menu(ui: &mut Ui, words: Language, now: Show, asks: &mut Vec<Request
                 choice = choice.on_hover_text(about);
             }
             if choice.clicked() {
+                (show.own_colours, show.quantity) = (show.own_colours && !shown.has_drawings, quantity);
                 ui.close();
             }
         }

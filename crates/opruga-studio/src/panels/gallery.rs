@@ -31,6 +31,12 @@ impl core::fmt::Debug for Gallery {
 }
 
 impl Gallery {
+    /// Draws its pictures anew: what they were drawn on is gone.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget_textures(&mut self) {
+        (self.pictures, self.coming) = (BTreeMap::new(), None);
+    }
+
     /// Whether pictures are still to come.
     pub fn is_drawing(&self) -> bool {
         self.open && self.coming.is_some() && self.pictures.len() < opruga::scenes::names().count()

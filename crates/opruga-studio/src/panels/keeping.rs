@@ -2,6 +2,7 @@
 //! interface: what is kept is what the command line would make of it. A window writes files, a page hands them over as
 //! downloads.
 
+use crate::differences::right_of;
 use crate::document::Document;
 use crate::engine;
 use crate::pair;
@@ -113,7 +114,7 @@ async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String
     let first = hand_over(&copied.name, ending, &bytes)?;
     // Side by side there are two scenes.
     let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
-    let right = pair::right_of(&Document::new(&copied.name, &copied.text)?, differences)?;
+    let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
     let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
     Ok(format!("{first}, {second}"))
 }

@@ -128,6 +128,8 @@ fn number(
     };
     let mut x = now;
     let mut slider = Slider::new(&mut x, low..=high).clamping(SliderClamping::Never).max_decimals(6);
+    // Of a number that is typed the last digit counts, not every one on the way.
+    slider = slider.update_while_editing(false);
     if open || whole && high > 1000.0 {
         slider = slider.logarithmic(true).smallest_positive(if whole { 1.0 } else { high * 1e-6 });
     }
@@ -146,6 +148,9 @@ fn number(
     }
     changed.then_some(x)
 }
+
+/// The end of sliders of whole numbers that know none before it.
+const MOST_WHOLE: i64 = 100_000;
 
 /// The ends of a slider, and whether the upper one is open.
 fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
@@ -168,6 +173,10 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
                 Bound::None if low < 0.0 => (low, wide, false),
                 Bound::None => (low, wide, true),
             }
+        }
+        // Numbers of vertices and the like: as many as can be worked with.
+        Allowed::Integer { least, greatest } if greatest >= MOST_WHOLE => {
+            (least as f64, (MOST_WHOLE as f64).max(wide), false)
         }
         Allowed::Integer { least, greatest } => (least as f64, (greatest as f64).min(wide.max(64.0)), false),
         _ => (-wide, wide, false),

@@ -16,8 +16,9 @@ struct Moment {
     energy: [f64; 7],
     momentum: [f64; 3],
     cost: f64,
-    /// Mean and largest distance of the sides, and what the right one has more of energy.
-    beside: Option<[f64; 3]>,
+    /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
+    /// energy; not a number where the sides have it not in common.
+    beside: Option<[f64; 5]>,
     readings: Vec<(&'static str, f64)>,
 }
 
@@ -69,9 +70,11 @@ impl Plots {
             energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work, e.losses, e.error],
             momentum: shown.momentum,
             cost: 1e3 * shown.pace.frame_cost,
-            beside: shown.beside.as_ref().and_then(|beside| {
-                let [mean, largest] = beside.distances?;
-                Some([mean, largest, beside.energy?])
+            beside: shown.beside.as_ref().filter(|beside| beside.stopped.is_none()).map(|beside| {
+                let [mean, largest] = beside.distances.unwrap_or([f64::NAN; 2]);
+                let [center, volume, energy] =
+                    [beside.center, beside.volume, beside.energy].map(|x| x.unwrap_or(f64::NAN));
+                [mean, largest, center, volume, energy]
             }),
             readings: body.map_or_else(Vec::new, |body| body.readings.clone()),
         });
@@ -81,7 +84,8 @@ impl Plots {
     pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, room: egui::Vec2) {
         let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
         let beside = shown.beside.is_some();
-        let count = 3 + usize::from(gas) + 2 * usize::from(beside);
+        let volume = shown.beside.as_ref().is_some_and(|beside| beside.volume.is_some());
+        let count = 3 + usize::from(gas) + 2 * usize::from(beside) + usize::from(volume);
         let size = egui::vec2((room.x / count as f32 - 10.0).max(180.0), room.y);
         ui.horizontal(|ui| {
             let energies = [
@@ -98,11 +102,19 @@ impl Plots {
             };
             if beside {
                 let difference = |k: usize| -> Vec<[f64; 2]> {
-                    self.moments.iter().filter_map(|m| Some([m.time, m.beside?[k]])).collect()
+                    let there = |m: &Moment| Some([m.time, m.beside?[k]]).filter(|point| point[1].is_finite());
+                    self.moments.iter().filter_map(there).collect()
                 };
-                let lines = vec![(words.mean_distance(), difference(0)), (words.largest_distance(), difference(1))];
+                let names = [words.mean_distance(), words.largest_distance(), words.center_distance()];
+                let lines = names.into_iter().zip(0..).map(|(name, k)| (name, difference(k)));
+                let lines = lines.filter(|(_, points)| !points.is_empty()).collect();
                 plot(ui, "distance", words.distance_of_sides(), size, lines);
-                plot(ui, "energy beside", words.energy_of_sides(), size, vec![("", difference(2))]);
+                if volume {
+                    let unit = if shown.dimension == 3 { "m³" } else { "m²" };
+                    let title = format!("{} [{unit}]", words.volume_of_sides());
+                    plot(ui, "volume beside", &title, size, vec![("", difference(3))]);
+                }
+                plot(ui, "energy beside", words.energy_of_sides(), size, vec![("", difference(4))]);
             }
             let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
             plot(ui, "energy", words.energy(), size, lines);
@@ -120,7 +132,8 @@ impl Plots {
                     values.into_iter().map(|[t, x]| [t, if most > 0.0 { 100.0 * x / most } else { 0.0 }]).collect()
                 };
                 let lines = names.iter().take(4).map(|name| (*name, share(name))).collect();
-                let title = format!("{}: {} [% max]", words.gas(), selected.unwrap_or_default());
+                let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
+                let title = format!("{}: {} [% max]", words.gas(), body.map_or("", |body| body.title.as_str()));
                 plot(ui, "gas", &title, size, lines);
             }
             let axes = ["x", "y", "z"];

@@ -116,7 +116,7 @@ impl Properties {
 
     fn body(&mut self, ui: &mut Ui, body: &BodyShown, kinds: &Kinds, words: Language, asks: &mut Vec<Request>) {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(&body.name).strong().size(14.0));
+            ui.label(RichText::new(&body.title).strong().size(14.0));
             ui.label(RichText::new(format!("{} {}", body.nodes, words.nodes())).weak());
         });
         if !body.readings.is_empty() {

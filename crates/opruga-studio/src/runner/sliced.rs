@@ -41,6 +41,11 @@ impl Link {
         Ok(Link { inner: RefCell::new(inner), wake: Box::new(wake) })
     }
 
+    /// Calls another one from now on.
+    pub fn wake_by(&mut self, wake: impl Fn() + 'static) {
+        self.wake = Box::new(wake);
+    }
+
     /// Asks for something; it is done in the next turn.
     pub fn ask(&self, request: Request) {
         self.inner.borrow_mut().asks.push(Ask::Do(request));

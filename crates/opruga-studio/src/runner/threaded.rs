@@ -54,9 +54,6 @@ impl Link {
     pub fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))
     }
-
-    /// The turn of the simulation before a picture of the window: the thread needs none.
-    pub fn turn(&self) {}
 }
 
 fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {

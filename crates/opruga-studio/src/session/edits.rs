@@ -7,7 +7,7 @@
 use super::Session;
 use crate::document::{add_table, kind_table, numbers, toml};
 use crate::pair::{Refusal, read};
-use crate::shown::Severity;
+use crate::shown::{Said, Severity, Step};
 use opruga::core::spec::{Value, Values};
 use opruga::io::SceneError;
 use toml_edit::{InlineTable, Value as Toml};
@@ -48,14 +48,14 @@ impl Session {
         let held = self.held.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, 0)?;
         if held {
-            self.tell(Severity::Told, "the scene begins anew: pins of the pointer were let go".into(), None);
+            self.tell(Severity::Told, Said::PinsLetGo, None);
         }
         Ok(())
     }
 
     pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Refusal> {
         self.branch()?;
-        let past = self.past(path);
+        let past = self.past(Step::Set(path.into()));
         if self.at_start() && self.document.commands() == self.own_commands {
             let mut document = self.document.clone();
             if document.set(path, &value) {
@@ -82,7 +82,7 @@ impl Session {
         integrator: Option<Values>,
     ) -> Result<(), Refusal> {
         self.branch()?;
-        let past = self.past(if models.is_some() { "models" } else { "integrator" });
+        let past = self.past(if models.is_some() { Step::Models } else { Step::Integrator });
         let name = self.engine.name(body).unwrap_or_default();
         let own =
             self.document.body(&name).filter(|_| self.at_start() && self.document.commands() == self.own_commands);
@@ -104,15 +104,14 @@ impl Session {
         let given = self.engine.change(body, models, integrator).map_err(Refusal::World)?;
         self.write(given);
         self.remember(past);
-        let told = format!("`{name}` goes on as it moves: positions and velocities stay, models that it had remember");
-        self.tell(Severity::Told, told, None);
+        self.tell(Severity::Told, Said::GoesOn(name), None);
         Ok(())
     }
 
     /// Another integrator for all bodies that have none of their own.
     pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Refusal> {
         self.branch()?;
-        let past = self.past("integrator");
+        let past = self.past(Step::Integrator);
         if self.at_start() && self.document.commands() == self.own_commands {
             let mut document = self.document.clone();
             document.set_integrator(values);
@@ -138,7 +137,7 @@ impl Session {
             }
         }
         self.remember(past);
-        self.tell(Severity::Told, format!("every body goes on with `{}` from where it is", values.kind()), None);
+        self.tell(Severity::Told, Said::AllGoOn(values.kind().into()), None);
         Ok(())
     }
 
@@ -149,19 +148,19 @@ impl Session {
                 let mut table = table.clone();
                 let like = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
                 table.insert("name", self.document.free_name(&like).into());
-                self.exchange("add", None, Some(table))
+                self.exchange(Step::Add, None, Some(table))
             }
             Edit::Duplicate(name) => {
                 let mut table = self.table_of(name)?;
                 table.insert("name", self.document.free_name(name).into());
                 let (size, way) = (self.size_of(name), self.way_of(name));
                 shift(&mut table, [way[0] + 1.15 * size, way[1], way[2]], self.dimension());
-                self.exchange("duplicate", None, Some(table))
+                self.exchange(Step::Duplicate, None, Some(table))
             }
             Edit::Place(name, placed) => {
                 let mut table = self.table_of(name)?;
                 self.place(name, &mut table, placed)?;
-                self.exchange("move", Some(name), Some(table))
+                self.exchange(Step::Move, Some(name), Some(table))
             }
             Edit::Shape(name, field, value) => {
                 let mut table = self.table_of(name)?;
@@ -169,9 +168,9 @@ impl Session {
                 let shape = shape.ok_or_else(|| Refusal::Scene(format!("body `{name}` has no shape to change")))?;
                 shape.insert(*field, toml(value));
                 shift(&mut table, self.way_of(name), self.dimension());
-                self.exchange(field, Some(name), Some(table))
+                self.exchange(Step::Shape(field), Some(name), Some(table))
             }
-            Edit::Delete(name) => self.exchange("delete", Some(name), None),
+            Edit::Delete(name) => self.exchange(Step::Delete, Some(name), None),
         }
     }
 
@@ -253,8 +252,8 @@ impl Session {
     }
 
     /// Takes a body away, sets one down, or both.
-    fn exchange(&mut self, label: &str, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Refusal> {
-        let past = self.past(label);
+    fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Refusal> {
+        let past = self.past(step);
         let mut document = self.document.clone();
         if self.at_start() && document.commands() == self.own_commands {
             let written = match (old, &new) {
@@ -296,7 +295,7 @@ impl Session {
                 return Err(refusal);
             }
             if old.is_some() {
-                self.tell(Severity::Told, "the body is set down anew, at rest, in its new form".into(), None);
+                self.tell(Severity::Told, Said::SetDown, None);
             }
         }
         self.remember(past);

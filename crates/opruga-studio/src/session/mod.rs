@@ -13,16 +13,19 @@ mod travel;
 pub use edits::{Edit, Placed};
 pub use pointer::Grip;
 
+use crate::differences::{Difference, add_difference};
 use crate::document::Document;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
-use crate::pair::{self, Difference, Refusal, add_difference};
-use crate::shown::{Message, Offer, Pace, Severity, Show, Shown};
+use crate::pair::{self, Refusal};
+use crate::shown::{Message, Offer, Pace, Said, Severity, Show, Shown};
+use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::{Options, WorldError};
 use pointer::Held;
+use std::sync::Arc;
 use std::time::Duration;
 use travel::Past;
 
@@ -58,6 +61,8 @@ pub enum Request {
     Speed(f64),
     /// Take hold of a body at a point.
     Grab(Grip, usize, [f64; 3]),
+    /// Take hold of a body at a point of the scene beside it: what is done there is done to both.
+    GrabBeside(Grip, usize, [f64; 3]),
     /// The pointer has moved.
     Lead([f64; 3]),
     /// Let go.
@@ -84,6 +89,14 @@ pub enum Request {
     Compare(bool),
     /// Let the right one differ in this.
     Differ(Difference),
+}
+
+impl Request {
+    /// Whether it changes the scene.
+    fn is_edit(&self) -> bool {
+        use Request::{Compare, Differ, Edit, Integrator, Models, Redo, Set, Undo};
+        matches!(self, Set(..) | Models(..) | Integrator(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..))
+    }
 }
 
 /// A scene that runs while a person works on it.
@@ -164,6 +177,7 @@ impl Session {
     /// Does what is asked. What cannot be done is told by [`Shown::message`] and leaves everything as it was.
     pub fn handle(&mut self, request: Request) {
         let again = request.clone();
+        let (before, edits) = (self.messages, request.is_edit());
         let outcome = match request {
             Request::Open { name, text, files } => self.open_another(&name, &text, files),
             Request::Play(playing) => {
@@ -192,7 +206,8 @@ impl Session {
                 self.pacing.rest();
                 Ok(())
             }
-            Request::Grab(grip, body, point) => self.grab(grip, body, point).map_err(Refusal::World),
+            Request::Grab(grip, body, point) => self.grab(grip, body, point, false).map_err(Refusal::World),
+            Request::GrabBeside(grip, body, point) => self.grab(grip, body, point, true).map_err(Refusal::World),
             Request::Lead(point) => {
                 self.lead(point);
                 Ok(())
@@ -222,8 +237,12 @@ impl Session {
             }
         };
         match outcome {
+            // What was refused before is over where something else was accepted.
+            Ok(()) if edits && self.messages == before => {
+                self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
+            }
             Ok(()) => {}
-            Err(Refusal::Scene(text)) => self.tell(Severity::Refused, text, None),
+            Err(Refusal::Scene(text)) => self.tell(Severity::Refused, Said::Because(text), None),
             Err(Refusal::World(error)) => self.refuse(&error, Some(again)),
         }
     }
@@ -313,9 +332,10 @@ impl Session {
         }
     }
 
-    fn tell(&mut self, severity: Severity, text: String, offer: Option<Offer>) {
+    fn tell(&mut self, severity: Severity, said: Said, offer: Option<Offer>) {
         self.messages += 1;
-        self.message = Some(Message { number: self.messages, severity, text, offer });
+        let text = Language::English.said(&said);
+        self.message = Some(Message { number: self.messages, severity, said, text, offer });
     }
 
     fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
@@ -330,7 +350,7 @@ impl Session {
             }
             _ => None,
         };
-        self.tell(Severity::Refused, error.to_string(), offer);
+        self.tell(Severity::Refused, Said::Because(error.to_string()), offer);
     }
 
     /// Everything that there is to see now.
@@ -347,14 +367,65 @@ impl Session {
         shown.opened = self.opened;
         shown.recorded = self.document.commands().saturating_sub(self.own_commands);
         shown.kept_bytes = self.keyframes.bytes();
-        shown.pins = self.pins_shown();
+        let pins = self.pins_shown();
+        if let Some(right) = shown.beside.as_mut().and_then(|beside| Arc::get_mut(&mut beside.right)) {
+            let there = |(body, node, _): &(usize, u32, [f64; 3])| {
+                Some((*body, *node, self.engine.position_beside(*body, *node)?))
+            };
+            right.pins = pins.iter().filter_map(there).collect();
+            for body in right.bodies.iter_mut().take(if shown.bodies.len() <= 64 { 64 } else { 0 }) {
+                body.shape = self.shape_beside(&body.name, usize::from(shown.dimension));
+            }
+        }
+        shown.pins = pins;
         shown.renamed.clone_from(&self.renamed);
+        self.give_titles(&mut shown);
         if shown.bodies.len() <= 64 {
             for body in &mut shown.bodies {
                 body.shape = self.document.shape(&body.name, usize::from(shown.dimension));
             }
         }
         shown
+    }
+
+    /// Bodies that were set down anew keep the name of the body they were, unless there is another one of that name.
+    fn give_titles(&self, shown: &mut Shown) {
+        if self.renamed.is_empty() || shown.bodies.len() > 64 {
+            return;
+        }
+        let taken: Vec<String> = shown.bodies.iter().map(|body| body.name.clone()).collect();
+        for (place, body) in shown.bodies.iter_mut().enumerate() {
+            let mut title = &body.name;
+            // From the last that was renamed to the first: after an undo the same names may go round in a circle.
+            for (old, new) in self.renamed.iter().rev() {
+                if new == title {
+                    title = old;
+                }
+            }
+            if *title == body.name || taken.contains(title) {
+                continue;
+            }
+            body.title = title.clone();
+            let label = shown.picture.bodies.get_mut(place).map(|seen| &mut seen.label);
+            if let Some(label) = label.filter(|label| **label == body.name) {
+                label.clone_from(&body.title);
+            }
+        }
+    }
+
+    /// The shape of a body in the scene beside it, as far as its fields are plain values.
+    fn shape_beside(&self, name: &str, dimension: usize) -> Option<Values> {
+        let mut values = self.document.shape(name, dimension)?;
+        for difference in self.differences.iter().flatten() {
+            if let Difference::Shape(body, field, value) = difference
+                && body == name
+                && let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == values.kind())
+            {
+                // A value that the scene on the right was built with is allowed.
+                let _ = values.set(spec, field, value.clone(), dimension);
+            }
+        }
+        Some(values)
     }
 
     /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.

@@ -3,6 +3,7 @@
 use super::Session;
 use crate::engine::Given;
 use crate::pair::Refusal;
+use crate::shown::Step;
 use opruga::WorldError;
 
 /// The force of a push for each metre between the node and the pointer [N/m].
@@ -59,7 +60,7 @@ impl Session {
         [given.number, self.document.push_command(given.table)]
     }
 
-    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3]) -> Result<(), WorldError> {
+    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3], beside: bool) -> Result<(), WorldError> {
         self.release();
         if let Err(refusal) = self.branch() {
             return match refusal {
@@ -68,7 +69,9 @@ impl Session {
             };
         }
         let missing = || WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() };
-        let node = self.engine.nearest(body, point).ok_or_else(missing)?;
+        let engine = &self.engine;
+        let node = if beside { engine.nearest_beside(body, point) } else { engine.nearest(body, point) };
+        let node = node.ok_or_else(missing)?;
         let now = self.engine.frames();
         let mut held = Held { grip, body, node, command: None, pointer: point, moved: false, led: now + 1 };
         match grip {
@@ -109,7 +112,7 @@ impl Session {
     /// Frees a node that a person or the scene has pinned.
     pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Refusal> {
         self.branch()?;
-        let past = self.past("unpin");
+        let past = self.past(Step::Unpin);
         self.unpin(body, node).map_err(Refusal::World)?;
         self.remember(past);
         Ok(())

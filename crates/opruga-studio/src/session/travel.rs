@@ -2,17 +2,18 @@
 
 use super::pointer::Pinned;
 use super::{KEYFRAME_BYTES, Session};
+use crate::differences::Difference;
 use crate::document::Document;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
-use crate::pair::{self, Difference, Refusal};
-use crate::shown::Severity;
+use crate::pair::{self, Refusal};
+use crate::shown::{Said, Severity, Step};
 
 /// A moment that can be gone back to.
 #[derive(Clone, Debug)]
 pub(super) struct Past {
     /// What was done after it.
-    pub(super) label: String,
+    pub(super) label: Step,
     pub(super) document: Document,
     pub(super) own_commands: usize,
     pub(super) frame: u64,
@@ -55,9 +56,9 @@ impl Session {
     }
 
     /// A point to come back to.
-    pub(super) fn past(&self, label: &str) -> Past {
+    pub(super) fn past(&self, label: Step) -> Past {
         Past {
-            label: label.into(),
+            label,
             document: self.document.clone(),
             own_commands: self.own_commands,
             frame: self.engine.frames(),
@@ -91,7 +92,7 @@ impl Session {
             return Ok(());
         }
         let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
-        let past = self.past(&newest.unwrap_or_else(|| "side by side".into()));
+        let past = self.past(newest.map_or(Step::Compare, Step::Differ));
         // Where both are still on the way to a moment, that moment.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
@@ -147,26 +148,28 @@ impl Session {
 
     pub(super) fn step_back(&mut self) -> Result<(), Refusal> {
         let Some(past) = self.undo.last().cloned() else { return Ok(()) };
-        let present = Past { label: past.label.clone(), ..self.past("") };
+        let present = self.past(past.label.clone());
         self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
         self.pins = past.pins;
         self.undo.pop();
         // What is redone begins where it was done.
-        self.redo.push(Past { frame: present.frame, ..present });
-        self.tell(Severity::Told, format!("undo: {}, t = {:.2} s", past.label, self.time_of(past.frame)), None);
+        self.redo.push(present);
+        let time = self.time_of(past.frame);
+        self.tell(Severity::Told, Said::Undone(past.label, time), None);
         Ok(())
     }
 
     pub(super) fn step_forward(&mut self) -> Result<(), Refusal> {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
-        let present = Past { label: future.label.clone(), ..self.past("") };
+        let present = self.past(future.label.clone());
         self.with_differences(future.differences, |session| {
             session.take(future.document, future.own_commands, future.frame)
         })?;
         self.pins = future.pins;
         self.redo.pop();
         self.undo.push(present);
-        self.tell(Severity::Told, format!("redo: {}, t = {:.2} s", future.label, self.time_of(future.frame)), None);
+        let time = self.time_of(future.frame);
+        self.tell(Severity::Told, Said::Redone(future.label, time), None);
         Ok(())
     }
 
@@ -175,7 +178,7 @@ impl Session {
     }
 
     pub(super) fn reset(&mut self) -> Result<(), Refusal> {
-        let past = self.past("reset");
+        let past = self.past(Step::Reset);
         let mut document = self.document.clone();
         let recorded = document.commands() > self.own_commands;
         document.keep_commands(self.own_commands);

@@ -26,7 +26,7 @@ const IMPACT: Case = Case {
     over: Over::Cells("springs along the bar"),
     levels: &[25.0, 50.0, 100.0],
     expected: &[1.0],
-    check: Check::Order(1.0),
+    check: Check::Finest,
     ..BASE
 };
 
@@ -51,13 +51,19 @@ pub(super) const CASES: &[Case] = &[
         measure: stop,
         ..SLOPE
     },
-    Case { name: "bar-hits-wall-half-time", measure: |lab, n| Ok(impact(lab, n)?[0]), ..IMPACT },
+    // Changed after its first run, which claimed order 1: a chain of masses spreads a front over the third root of its number
+    // of springs.
+    Case {
+        name: "bar-hits-wall-half-time",
+        check: Check::Everywhere,
+        measure: |lab, n| Ok(impact(lab, n)?[0]),
+        ..IMPACT
+    },
     Case {
         name: "bar-hits-wall-rebound",
         quantity: "speed of the middle of mass of a bar after its impact on a wall over that before",
         source: "exact: 1, the wave returns all of it (B. de Saint-Venant 1867); no order: a chain of masses keeps some of its trembling",
         levels: &[50.0, 100.0, 200.0],
-        check: Check::Finest,
         measure: |lab, n| Ok(impact(lab, n)?[1]),
         ..IMPACT
     },

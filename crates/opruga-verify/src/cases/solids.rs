@@ -59,7 +59,10 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
+        // Changed after its first run, from 4 cells on and of pressure alone: its part of second order was most of the error,
+        // which changes its sign between 4 and 8 cells.
         name: "lame-tube-quadratic-triangles",
+        levels: &[8.0, 16.0, 32.0],
         quick: false,
         measure: |lab, n| tube(lab, n, Cells::Quadratic, false),
         ..TUBE
@@ -87,7 +90,8 @@ pub(super) const CASES: &[Case] = &[
         unit: "",
         source: "G. Lamé 1852: (2a³ + b³)/2(b³ − a³)",
         expected: &[0.714_285_714_285_714_3],
-        levels: &[4.0, 6.0, 9.0],
+        // Changed after its first run, which ended with 9 through the wall.
+        levels: &[6.0, 9.0, 14.0],
         measure: |lab, n| sphere(lab, n, Cells::Boxes, true),
         ..SPHERE
     },
@@ -156,13 +160,17 @@ fn pressed(select: &[u32], pressure: f64) -> String {
     format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {select:?} }}\nvalue = {pressure:?}")
 }
 
+/// Half the difference of pressure and suction: a pressure follows the wall, which gives a part of second order.
 fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
-    let scene = Scene::statics(2, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, SMALL));
-    let mut world = lab.plane(scene)?;
-    world.frame()?;
-    Ok(if stress { stress_at(&world, [1.0, 0.0], [1, 1])? } else { outward(&world, &inner) } / SMALL)
+    let under = |pressure: f64| -> Result<f64, Trouble> {
+        let scene = Scene::statics(2, 1e-13).body(&mesh, &solid(&symmetric(&mesh)))?.add(&pressed(&inner, pressure));
+        let mut world = lab.plane(scene)?;
+        world.frame()?;
+        if stress { stress_at(&world, [1.0, 0.0], [1, 1]) } else { Ok(outward(&world, &inner)) }
+    };
+    Ok((under(SMALL)? - under(-SMALL)?) / (2.0 * SMALL))
 }
 
 fn sphere(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {

@@ -54,7 +54,9 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-first-bending-quadrilaterals",
-        levels: &[50.0, 100.0, 200.0],
+        // Changed after its first run, which had half as many along: how much of the shear is false depends on the length of
+        // a cell over the thickness alone.
+        levels: &[100.0, 200.0, 400.0],
         measure: |lab, n| beam(lab, [n as u32, 4], Cells::Boxes, true, 0),
         ..BEAM
     },
@@ -208,7 +210,11 @@ fn bar(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
     omega(&world, number)
 }
 
-/// The mode that is most like an even swelling.
+/// Modes so near to one another in ω that a mesh mixes them.
+const NEAR: f64 = 0.03;
+
+/// The frequency of the mode that is most like an even swelling. Where a mesh mixes it with neighbours of other shapes, ω² is
+/// the mean of theirs by how much of the swelling is in each: what the swelling has in the space of these modes.
 fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trouble> {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let likeness = |shape: &[[f64; D]]| -> f64 {
@@ -225,7 +231,14 @@ fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trou
     if likeness(&most.shape) < 0.7 {
         return Err("it does not breathe".into());
     }
-    Ok(most.omega())
+    let near = modes.iter().filter(|mode| (mode.omega() / most.omega() - 1.0).abs() < NEAR);
+    let (mut square, mut whole) = (0.0, 0.0);
+    for mode in near {
+        let part = likeness(&mode.shape) * likeness(&mode.shape);
+        square += part * mode.omega() * mode.omega();
+        whole += part;
+    }
+    Ok((square / whole).sqrt())
 }
 
 fn disc(lab: &Lab, n: f64, cells: Cells, breathes: bool) -> Result<f64, Trouble> {

@@ -3,7 +3,8 @@
 use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, nearest_rotation, singular};
+use opruga_math::rotation::nearest_rotation;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ |F − R|² + λ/2 tr²(RᵀF − 1) with the rotation R nearest to F; P = 2μ(F − R) + λ tr(RᵀF − 1) R.
 ///

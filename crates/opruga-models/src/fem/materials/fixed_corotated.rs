@@ -4,7 +4,8 @@ use super::corotated::distance_from_rotation;
 use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, nearest_rotation, singular};
+use opruga_math::rotation::nearest_rotation;
+use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ |F − R|² + λ/2 (J − 1)² with the rotation R nearest to F and J = det F; P = 2μ(F − R) + λ(J − 1) cof F.
 ///

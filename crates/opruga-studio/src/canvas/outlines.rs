@@ -1,0 +1,263 @@
+//! What the edges of a body in the plane form, found once and used while it still fits: closed lines, what is drawn beside
+//! them, and the triangles that fill them.
+
+use opruga::draw::{BodyPicture, Facets};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Outlines up to which triangles are found anew where a body has folded.
+const MOST_ANEW: usize = 4_000;
+/// Bodies up to which all are looked at for folds with every picture; of more, so many with each.
+const LOOKED_AT: usize = 64;
+
+/// The outlines of every body that was seen.
+#[derive(Default)]
+pub(crate) struct Outlines {
+    known: Vec<Option<Outline>>,
+    /// The number of the picture.
+    turn: usize,
+}
+
+impl core::fmt::Debug for Outlines {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Outlines").field("bodies", &self.known.len()).finish()
+    }
+}
+
+/// The outline of a body.
+#[derive(Default)]
+pub(crate) struct Outline {
+    /// How many nodes, edges and springs it was found for.
+    counts: [usize; 3],
+    /// Its closed lines.
+    pub(crate) closed: Vec<Vec<u32>>,
+    /// Edges that belong to no closed line.
+    pub(crate) open: Vec<[u32; 2]>,
+    /// Whether there are springs that are not edges as well: those would be painted over.
+    pub(crate) springs: bool,
+    /// The triangles between the closed lines; none where the body has cells.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Outlines {
+    /// Forgets all of them.
+    pub(crate) fn forget(&mut self) {
+        self.known.clear();
+    }
+
+    /// Begins another picture.
+    pub(crate) fn next_picture(&mut self) {
+        self.turn = self.turn.wrapping_add(1);
+    }
+
+    /// The outline of a body now. In a crowd a fold may be seen some pictures later.
+    pub(crate) fn of(&mut self, place: usize, body: &BodyPicture) -> &Outline {
+        if self.known.len() <= place {
+            self.known.resize_with(place + 1, || None);
+        }
+        let edges: &[[u32; 2]] = match &body.facets {
+            Facets::Edges(edges) => edges,
+            Facets::Triangles(_) => &[],
+        };
+        let counts = [body.positions.len(), edges.len(), body.segments.len()];
+        let groups = self.known.len().div_ceil(LOOKED_AT).max(1);
+        let its_turn = place % groups == self.turn % groups;
+        let slot = &mut self.known[place];
+        if slot.as_ref().is_none_or(|outline| outline.counts != counts) {
+            *slot = None;
+        }
+        let outline = slot.get_or_insert_with(|| Outline::new(body, edges, counts));
+        let looked_at = its_turn && edges.len() <= MOST_ANEW && body.cells.is_empty();
+        if looked_at && !fits(body, &outline.triangles) {
+            outline.triangles = fill(body, &outline.closed);
+        }
+        outline
+    }
+}
+
+impl Outline {
+    fn new(body: &BodyPicture, edges: &[[u32; 2]], counts: [usize; 3]) -> Outline {
+        let (closed, open) = loops(edges);
+        let sorted =
+            |list: &[[u32; 2]]| -> BTreeSet<[u32; 2]> { list.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect() };
+        let springs = !sorted(&body.segments).is_subset(&sorted(edges));
+        let triangles = if body.cells.is_empty() { fill(body, &closed) } else { Vec::new() };
+        Outline { counts, closed, open, springs, triangles }
+    }
+}
+
+/// Whether no triangle has turned over.
+fn fits(body: &BodyPicture, triangles: &[[u32; 3]]) -> bool {
+    triangles.iter().all(|t| area(t.map(|node| body.positions[node as usize])) >= 0.0)
+}
+
+fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The closed lines of a body's edges, each in its own direction and through no node twice, and the edges that close none.
+/// Lines that touch in a node are told apart where the walk comes back to it.
+fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
+    let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));
+    let (mut closed, mut open) = (Vec::new(), Vec::new());
+    while let Some(first) = next.first_key_value().map(|(node, _)| *node) {
+        let mut way = vec![first];
+        let mut places: HashMap<u32, usize> = HashMap::from([(first, 0)]);
+        while let Some(&last) = way.last() {
+            let Some(ends) = next.get_mut(&last) else {
+                // A dead end: what leads there closes nothing.
+                places.remove(&last);
+                way.pop();
+                open.extend(way.last().map(|before| [*before, last]));
+                continue;
+            };
+            let Some(node) = ends.pop() else { break };
+            if ends.is_empty() {
+                next.remove(&last);
+            }
+            if let Some(&place) = places.get(&node) {
+                let line: Vec<u32> = way.drain(place + 1..).collect();
+                line.iter().for_each(|node| {
+                    places.remove(node);
+                });
+                let line: Vec<u32> = std::iter::once(node).chain(line).collect();
+                if line.len() >= 3 {
+                    closed.push(line);
+                } else {
+                    open.extend((0..line.len()).map(|k| [line[k], line[(k + 1) % line.len()]]));
+                }
+            } else {
+                places.insert(node, way.len());
+                way.push(node);
+            }
+        }
+    }
+    (closed, open)
+}
+
+/// Triangles within closed lines; a line that runs clockwise is a hole in the one around it.
+fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
+    let point = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
+    let twice = |line: &[u32]| -> f64 {
+        (0..line.len())
+            .map(|k| {
+                let (a, b) = (point(line[k]), point(line[(k + 1) % line.len()]));
+                a[0] * b[1] - a[1] * b[0]
+            })
+            .sum()
+    };
+    let (outer, holes): (Vec<&Vec<u32>>, Vec<&Vec<u32>>) = lines.iter().partition(|line| twice(line) > 0.0);
+    let within = |line: &[u32], p: [f64; 2]| {
+        let crosses = |k: &usize| {
+            let (a, b) = (point(line[*k]), point(line[(*k + 1) % line.len()]));
+            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        };
+        (0..line.len()).filter(crosses).count() % 2 == 1
+    };
+    // Where a hole touches the line around it, some of its points lie on neither side: most of them tell.
+    let holds = |line: &[u32], hole: &[u32]| {
+        let some = hole.iter().step_by((hole.len() / 7).max(1));
+        let inside = some.clone().filter(|node| within(line, point(**node))).count();
+        2 * inside > some.count()
+    };
+    let mut triangles = Vec::new();
+    let mut earcut = earcut::Earcut::new();
+    for line in &outer {
+        let mut nodes = (*line).clone();
+        let mut starts: Vec<u32> = Vec::new();
+        for hole in holes.iter().filter(|hole| holds(line, hole)) {
+            starts.push(nodes.len() as u32);
+            nodes.extend(*hole);
+        }
+        let mut found: Vec<u32> = Vec::new();
+        earcut.earcut(nodes.iter().map(|node| point(*node)), &starts, &mut found);
+        for corners in found.chunks_exact(3) {
+            let mut triangle = [0, 1, 2].map(|k| nodes[corners[k] as usize]);
+            if area(triangle.map(|node| body.positions[node as usize])) < 0.0 {
+                triangle.swap(1, 2);
+            }
+            triangles.push(triangle);
+        }
+    }
+    triangles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(body: &BodyPicture, triangles: &[[u32; 3]]) -> f64 {
+        triangles.iter().map(|t| 0.5 * area(t.map(|node| body.positions[node as usize]))).sum()
+    }
+
+    fn ring(points: &[[f64; 2]], first: u32) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
+        let n = points.len() as u32;
+        let edges = (0..n).map(|k| [first + k, first + (k + 1) % n]).collect();
+        (points.iter().map(|p| [p[0], p[1], 0.0]).collect(), edges)
+    }
+
+    #[test]
+    fn outlines_are_filled_around_holes_and_after_they_have_folded() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let hole = [[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5]];
+        let (mut positions, mut edges) = ring(&square, 0);
+        let (more, others) = ring(&hole, 4);
+        positions.extend(more);
+        edges.extend(others);
+        let mut body = BodyPicture { positions, facets: Facets::Edges(edges), ..Default::default() };
+        let mut fills = Outlines::default();
+        let triangles = fills.of(0, &body).triangles.clone();
+        assert!((covered(&body, &triangles) - 3.0).abs() < 1e-12);
+        // A corner is pushed in: the old triangles would overlap.
+        body.positions[2] = [0.2, 0.2, 0.0];
+        body.positions.truncate(4);
+        body.facets = Facets::Edges((0..4).map(|k| [k, (k + 1) % 4]).collect());
+        let triangles = fills.of(0, &body).triangles.clone();
+        assert!((covered(&body, &triangles) - 0.4).abs() < 1e-12, "{triangles:?}");
+    }
+
+    #[test]
+    fn rings_that_touch_in_one_point_are_filled_both_and_a_hole_may_touch_its_border() {
+        // Two triangles that share node 2, in one walk.
+        let positions = [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let body = |edges: Vec<[u32; 2]>, positions: &[[f64; 2]]| BodyPicture {
+            positions: positions.iter().map(|p| [p[0], p[1], 0.0]).collect(),
+            facets: Facets::Edges(edges),
+            ..Default::default()
+        };
+        for edges in
+            [vec![[0, 1], [1, 2], [2, 0], [2, 3], [3, 4], [4, 2]], vec![[4, 2], [2, 0], [0, 1], [3, 4], [2, 3], [1, 2]]]
+        {
+            let body = body(edges, &positions);
+            let mut outlines = Outlines::default();
+            let outline = outlines.of(0, &body);
+            assert_eq!((outline.closed.len(), outline.open.len()), (2, 0));
+            assert!((covered(&body, &outline.triangles) - 1.0).abs() < 1e-12, "{:?}", outline.triangles);
+        }
+        // A square whose triangular hole touches it in node 0.
+        let positions = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.5, 1.0], [1.0, 0.5]];
+        let body = body(vec![[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [4, 5], [5, 0]], &positions);
+        let mut outlines = Outlines::default();
+        let outline = outlines.of(0, &body);
+        assert!((covered(&body, &outline.triangles) - (4.0 - 0.375)).abs() < 1e-12, "{:?}", outline.triangles);
+    }
+
+    #[test]
+    fn open_lines_are_edges_that_close_nothing_and_springs_on_edges_are_not_drawn_twice() {
+        let (positions, mut edges) = ring(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 0);
+        let segments = edges.iter().map(|[a, b]| [*b, *a]).collect();
+        let mut body = BodyPicture { positions, facets: Facets::Edges(edges.clone()), segments, ..Default::default() };
+        assert!(!Outlines::default().of(0, &body).springs);
+        body.positions.extend([[3.0, 0.0, 0.0], [4.0, 0.0, 0.0], [5.0, 0.0, 0.0]]);
+        edges.extend([[3, 4], [4, 5]]);
+        body.facets = Facets::Edges(edges);
+        body.segments.push([0, 3]);
+        let mut outlines = Outlines::default();
+        let outline = outlines.of(0, &body);
+        assert!(outline.springs);
+        assert_eq!(outline.closed, [[0, 1, 2]]);
+        let mut open = outline.open.clone();
+        open.sort_unstable();
+        assert_eq!(open, [[3, 4], [4, 5]]);
+    }
+}

@@ -1,0 +1,230 @@
+//! What the pointer does on the scene.
+
+use super::pick::Under;
+use super::{Canvas, Doing, Tool, pen};
+use crate::session::{Edit, Grip, Placed, Request};
+use crate::shown::Shown;
+use egui::{PointerButton, Pos2, Rect, Ui, Vec2};
+use opruga::draw::ColliderPicture;
+
+/// A press of the pointer.
+#[derive(Clone, Copy)]
+struct Press {
+    button: PointerButton,
+    at: Pos2,
+    /// Where the scene is.
+    rect: Rect,
+    /// Whether the space bar is held.
+    space: bool,
+    shift: bool,
+    /// Whether it is on the scene that is only looked at.
+    beside: bool,
+}
+
+impl Canvas {
+    /// Wheel, pinch, and dragging of the view.
+    pub(super) fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
+        let Some(at) = at else { return };
+        let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
+        let at = touch.map_or(at, |touch| touch.center_pos);
+        let factor = f64::from((scroll * 0.004).exp() * pinch);
+        if factor != 1.0 {
+            self.fitted_size = None;
+            if shown.dimension == 3 {
+                self.space.zoom(factor)
+            } else {
+                self.flat.zoom(factor, rect, at, shown.picture.y_down)
+            }
+        }
+        if let Some(touch) = touch {
+            self.pan(shown, rect, touch.translation_delta);
+        }
+    }
+
+    fn pan(&mut self, shown: &Shown, rect: Rect, delta: Vec2) {
+        if delta != Vec2::ZERO {
+            self.fitted_size = None;
+        }
+        if shown.dimension == 3 {
+            if let Some(scales) = &self.scales {
+                self.space.pan(scales, rect, delta);
+            }
+        } else {
+            self.flat.pan(delta, shown.picture.y_down);
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "all of them describe one press")]
+    pub(super) fn press(
+        &mut self,
+        ui: &Ui,
+        response: &egui::Response,
+        shown: &Shown,
+        hovered: Option<&Shown>,
+        rect: Rect,
+        under: Option<&Under>,
+        offset: Option<Vec2>,
+        asks: &mut Vec<Request>,
+    ) {
+        let (space_down, shift, pressed, at, down) = ui.input(|i| {
+            let buttons = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle];
+            let pressed = buttons.into_iter().find(|b| i.pointer.button_pressed(*b));
+            (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
+        });
+        let Some(at) = at else { return };
+        // Two fingers move the view: what the first of them took hold of is let go.
+        if ui.input(|i| i.multi_touch().is_some()) {
+            if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
+                asks.push(Request::Release);
+            }
+            return;
+        }
+        let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
+        // What is done on the side to the right is done as if it were the one to the left, wherever the pointer goes.
+        if self.doing == Doing::Nothing {
+            self.offset = offset.unwrap_or_default();
+        }
+        let (at, beside) = (at + self.offset, offset.is_some());
+        let pin = under.zip(hovered).and_then(|(under, seen)| pin_under(seen, under, !beside));
+        if let (true, Some(button)) = (began, pressed) {
+            self.refused = None;
+            let press = Press { button, at, rect, space: space_down, shift, beside };
+            self.begin(press, shown, under, pin, asks);
+        }
+        if response.double_clicked()
+            && let Some(under) = under
+        {
+            match pin {
+                Some((body, node, _)) => asks.push(Request::Unpin(body, node)),
+                None if shown.dimension == 3 => self.space.look_at(under.point),
+                None => {}
+            }
+        }
+        // On a slow screen a press comes together with the way to it, which does not count.
+        let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
+        match &mut self.doing {
+            Doing::Nothing => {}
+            Doing::Holding(distance) => {
+                let distance = *distance;
+                if let Some(point) = self.point(shown, rect, at, distance) {
+                    asks.push(Request::Lead(point));
+                }
+                ui.ctx().request_repaint();
+            }
+            Doing::Panning => self.pan(shown, rect, delta),
+            Doing::Turning => {
+                let up =
+                    |c: &ColliderPicture| matches!(c, ColliderPicture::HalfSpace { normal, .. } if normal[1] > 0.0);
+                self.space.turn(delta, shown.picture.colliders.iter().any(up));
+            }
+            Doing::Shifting(..) => {}
+            Doing::Handling(held) => held.lead(at),
+            Doing::Drawing(points) => {
+                let point = self.flat.to_world(rect, at, shown.picture.y_down);
+                if points.last().is_none_or(|last| *last != point) {
+                    points.push(point);
+                }
+            }
+        }
+        if !down {
+            self.end(shown, rect, at, asks);
+        }
+    }
+
+    fn begin(
+        &mut self,
+        press: Press,
+        shown: &Shown,
+        under: Option<&Under>,
+        pin: Option<(usize, u32, [f64; 3])>,
+        asks: &mut Vec<Request>,
+    ) {
+        let Press { button, at, rect, space, shift, beside } = press;
+        if button == PointerButton::Middle || space {
+            self.panned = space;
+            self.doing = Doing::Panning;
+            return;
+        }
+        if self.tool == Tool::Shift
+            && button == PointerButton::Primary
+            && !beside
+            && let Some(held) = self.handles(shown, rect).and_then(|handles| handles.at(at))
+        {
+            self.doing = Doing::Handling(held);
+            return;
+        }
+        if self.tool == Tool::Draw && !beside && button == PointerButton::Primary {
+            if shown.dimension == 2 {
+                self.doing = Doing::Drawing(Vec::new());
+            } else {
+                self.refused = Some("only_plane");
+            }
+            return;
+        }
+        let Some(under) = under else {
+            // Beside all bodies the view is taken along, in space it turns.
+            self.doing = if shown.dimension == 3 { Doing::Turning } else { Doing::Panning };
+            return;
+        };
+        self.selected = Some(under.name.clone());
+        let grip = match (button, shift, self.tool) {
+            (PointerButton::Secondary, ..) => Grip::Push,
+            (_, true, _) | (_, _, Tool::Pin) => Grip::Pin,
+            (_, _, Tool::Push) => Grip::Push,
+            // Where bodies are is common to both scenes, and told where they are set down.
+            (_, _, Tool::Shift) if beside => return,
+            (_, _, Tool::Shift) => {
+                let start = self.point(shown, rect, at, under.distance).unwrap_or(under.point);
+                self.doing = Doing::Shifting(under.name.clone(), start, under.distance);
+                return;
+            }
+            _ => Grip::Pull,
+        };
+        self.pulled |= grip == Grip::Pull;
+        // What is pinned is taken by its own place, so that the same node is found again.
+        let pinned = pin.filter(|_| grip == Grip::Pin).map(|pin| {
+            let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
+            of_left.map_or(pin.2, |left| left.2)
+        });
+        asks.push(match (pinned, beside) {
+            (Some(place), _) => Request::Grab(grip, under.body, place),
+            (None, true) => Request::GrabBeside(grip, under.body, under.point),
+            (None, false) => Request::Grab(grip, under.body, under.point),
+        });
+        self.doing = Doing::Holding(under.distance);
+    }
+
+    fn end(&mut self, shown: &Shown, rect: Rect, at: Pos2, asks: &mut Vec<Request>) {
+        match std::mem::take(&mut self.doing) {
+            Doing::Holding(_) => asks.push(Request::Release),
+            Doing::Shifting(name, start, distance) => {
+                if let Some(end) = self.point(shown, rect, at, distance) {
+                    let moved = [0, 1, 2].map(|d| end[d] - start[d]);
+                    if moved.iter().any(|d| d.abs() > 1e-9) {
+                        asks.push(Request::Edit(Edit::Place(name, Placed { moved, turned: 0.0, scaled: 1.0 })));
+                    }
+                }
+            }
+            Doing::Handling(held) => asks.extend(held.edit(shown.dimension, shown.picture.y_down)),
+            Doing::Drawing(points) => match pen::body(&points, self.flat.metres(6.0)) {
+                Ok(table) => asks.push(Request::Edit(Edit::Add(table))),
+                Err(why) => self.refused = Some(why),
+            },
+            _ => {}
+        }
+    }
+}
+
+/// The pin under the pointer, of a person or, where its nodes are those of the world, of the scene: body, node, place [m].
+fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u32, [f64; 3])> {
+    let own = shown.bodies.iter().position(|body| body.number == under.body);
+    let own = own.and_then(|place| shown.picture.bodies.get(place));
+    let of_scene = own.into_iter().filter(|_| own_nodes).flat_map(|body| {
+        let place = |node: &u32| Some((under.body, *node, *body.positions.get(*node as usize)?));
+        body.pinned.iter().filter_map(place)
+    });
+    shown.pins.iter().copied().chain(of_scene).find(|(body, _, place)| {
+        let far: f64 = under.point.iter().zip(place).map(|(a, b)| (a - b) * (a - b)).sum();
+        under.body == *body && far.sqrt() <= 3.0 * under.pixel * 6.0
+    })
+}

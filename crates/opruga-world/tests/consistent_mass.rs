@@ -1,0 +1,229 @@
+//! Consistent and lumped masses of finite elements: bars and plates with closed forms, conserved quantities, refusals.
+
+use opruga_core::spec::{Value, Values};
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, Registry, World, WorldError};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+const MODULUS: f64 = 1e6;
+const DENSITY: f64 = 1000.0;
+
+fn text(value: &str) -> Value {
+    Value::Text(value.into())
+}
+
+/// A body of finite elements that nothing pulls at, with ν = 0.
+fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprint<D> {
+    let registry = Registry::<D>::default();
+    let spec = registry.model("fem").expect("a model").spec();
+    let mut model = Values::defaults(spec, D);
+    let set = [
+        ("youngs_modulus", Value::Number(MODULUS)),
+        ("poissons_ratio", Value::Number(0.0)),
+        ("material", text("st_venant_kirchhoff")),
+        ("mass", text(mass)),
+    ];
+    for (name, value) in set {
+        model.set(spec, name, value, D).expect("a field of the test's own");
+    }
+    let spec = registry.integrator(integrator).expect("an integrator").spec();
+    Blueprint {
+        name: "test".into(),
+        title: String::new(),
+        length_unit: "m".into(),
+        seed: 0,
+        time: Time { seconds: 1.0, frame: 0.01, substeps: 4 },
+        surroundings: Surroundings {
+            gravity: [0.0; D],
+            drag: 0.0,
+            largest_force: None,
+            largest_velocity: None,
+            largest_distance: None,
+        },
+        integrator: Values::defaults(spec, D),
+        bodies: vec![BodyBlueprint {
+            name: "body".into(),
+            mesh: Arc::new(mesh),
+            translation: [0.0; D],
+            velocity: [0.0; D],
+            angular_velocity: Vec::new(),
+            mass: Mass::Density(DENSITY),
+            thickness: 0.1,
+            integrator: None,
+            models: vec![model],
+            pins: Vec::new(),
+        }],
+        colliders: Vec::new(),
+        loads: Vec::new(),
+        commands: Vec::new(),
+        probes: Vec::new(),
+    }
+}
+
+fn world<const D: usize>(blueprint: Blueprint<D>) -> World<D> {
+    World::new(blueprint, Options::default()).expect("a world")
+}
+
+/// Lateral motion held everywhere: what is left at low frequencies is the bar, clamped at x = 0.
+fn bar<const D: usize>(mesh: Mesh<D>, mass: &str) -> Blueprint<D> {
+    let mut bar = body(mesh, mass, "implicit_midpoint");
+    let lateral = core::array::from_fn(|d| d > 0);
+    bar.bodies[0].pins = vec![
+        PinBlueprint { select: Selector::Side("left".into()), axes: [true; D], motion: Vec::new() },
+        PinBlueprint { select: Selector::All, axes: lateral, motion: Vec::new() },
+    ];
+    bar
+}
+
+/// ω of the j-th mode of n linear bar elements of the length h: (2c/h) sin(kh/2) with lumped masses, and √(3/(2 + cos kh)) of
+/// that more with consistent ones; k = (2j − 1)π/2L (Hughes, *The finite element method*, 7.3).
+fn closed_form(consistent: bool, j: usize, length: f64, cells: usize) -> f64 {
+    let (h, speed) = (length / cells as f64, (MODULUS / DENSITY).sqrt());
+    let phase = (2 * j - 1) as f64 * PI / (2.0 * length) * h;
+    let lumped = 2.0 * speed / h * (0.5 * phase).sin();
+    if consistent { lumped * (3.0 / (2.0 + phase.cos())).sqrt() } else { lumped }
+}
+
+fn bar_has_the_frequencies_of_the_closed_form<const D: usize>(mesh: Mesh<D>, length: f64, cells: usize) {
+    for mass in ["lumped", "consistent"] {
+        let modes = world(bar(mesh.clone(), mass)).modes(0, 4).expect("modes");
+        for (k, mode) in modes.iter().enumerate() {
+            let j = k + 1;
+            let wanted = closed_form(mass == "consistent", j, length, cells);
+            let wave = (MODULUS / DENSITY).sqrt() * (2 * j - 1) as f64 * PI / (2.0 * length);
+            let found = mode.omega();
+            assert!((found / wanted - 1.0).abs() < 1e-8, "{mass}, mode {j}: {found} {wanted}");
+            assert!(if mass == "lumped" { found < wave } else { found > wave }, "{mass}, mode {j}: {found} {wave}");
+        }
+    }
+}
+
+#[test]
+fn waves_in_bars_are_too_slow_with_lumped_and_too_fast_with_consistent_masses() {
+    let plane = Mesh::<2>::grid([0.0; 2], [1.0, 0.01], [10, 1]).unwrap();
+    bar_has_the_frequencies_of_the_closed_form(plane, 1.0, 10);
+    let space = Mesh::<3>::grid([0.0; 3], [2.0, 0.02, 0.02], [8, 1, 1]).unwrap();
+    bar_has_the_frequencies_of_the_closed_form(space, 2.0, 8);
+}
+
+/// A bar let go in its first mode is back after the period that this mode says; average acceleration keeps the energy.
+#[test]
+fn steps_follow_the_frequencies_of_the_same_masses() {
+    for (integrator, mass) in [("newmark", "consistent"), ("implicit_midpoint", "consistent"), ("newmark", "lumped")] {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.01], [6, 1]).unwrap();
+        let mut blueprint = bar(mesh.clone(), mass);
+        let spec = Registry::<2>::default().integrator(integrator).expect("an integrator").spec();
+        blueprint.integrator = Values::defaults(spec, 2);
+        let mode = world(blueprint.clone()).modes(0, 1).expect("a mode").remove(0);
+        let steps = 200;
+        blueprint.time = Time { seconds: 1.0, frame: 2.0 * PI / mode.omega() / f64::from(steps), substeps: 1 };
+        let mut bar = world(blueprint);
+        let size = 1e-5 / mode.shape.iter().map(|u| u[0].abs()).fold(0.0, f64::max);
+        let start: Vec<[f64; 2]> =
+            mesh.positions.iter().zip(&mode.shape).map(|(x, u)| core::array::from_fn(|d| x[d] + size * u[d])).collect();
+        for (node, x) in start.iter().enumerate() {
+            bar.place_node(0, node as u32, *x, [0.0; 2]).expect("a place");
+        }
+        let energy = bar.energy().total();
+        for _ in 0..steps {
+            bar.frame().expect("a frame");
+        }
+        for (node, x) in start.iter().enumerate() {
+            let way = (bar.position(0, node as u32)[0] - x[0]).abs();
+            // The rule's own error of phase is (hω)²/12 of a period: 5e-4 of a turn, of which the cosine sees the square.
+            assert!(way < 1e-3 * 1e-5, "{integrator}, {mass}, node {node}: {way}");
+        }
+        assert!((bar.energy().total() / energy - 1.0).abs() < 1e-6, "{integrator}, {mass}: {:?}", bar.energy());
+    }
+}
+
+/// A square plate of few cells has the moment of inertia of the plate, m (a² + b²)/12, and keeps its momenta as it turns.
+#[test]
+fn a_turning_plate_has_the_kinetic_energy_and_the_momenta_of_the_continuum() {
+    let quadratic = Mesh::<2>::grid([-0.5, -0.25], [1.0, 0.5], [2, 1]).unwrap().into_simplices().unwrap();
+    for mesh in [Mesh::<2>::grid([-0.5, -0.25], [1.0, 0.5], [2, 1]).unwrap(), quadratic.into_quadratic().unwrap()] {
+        let mut blueprint = body(mesh, "consistent", "implicit_midpoint");
+        blueprint.bodies[0].velocity = [0.3, -0.2];
+        blueprint.bodies[0].angular_velocity = vec![2.0];
+        let mut plate = world(blueprint);
+        let mass = DENSITY * 0.5 * 0.1;
+        let moment = mass * (1.0 + 0.25) / 12.0;
+        let kinetic = 0.5 * mass * (0.09 + 0.04) + 0.5 * moment * 4.0;
+        assert!((plate.energy().kinetic / kinetic - 1.0).abs() < 1e-12, "{} {kinetic}", plate.energy().kinetic);
+        let before = plate.momentum();
+        assert!((before.angular[2] / (2.0 * moment) - 1.0).abs() < 1e-12, "{before:?}");
+        assert!((before.linear.0[0] / (0.3 * mass) - 1.0).abs() < 1e-12, "{before:?}");
+        for _ in 0..20 {
+            plate.frame().expect("a frame");
+        }
+        let after = plate.momentum();
+        assert!((after.angular[2] / before.angular[2] - 1.0).abs() < 1e-7, "{before:?} {after:?}");
+        for d in 0..2 {
+            assert!((after.linear.0[d] / before.linear.0[d] - 1.0).abs() < 1e-9, "{before:?} {after:?}");
+        }
+        let (now, start) = (plate.energy().total(), kinetic);
+        assert!((now / start - 1.0).abs() < 1e-3, "{now} {start}");
+    }
+}
+
+/// Every implicit rule and every way to solve its equations uses the same masses.
+#[test]
+fn solvers_agree_on_consistent_masses() {
+    let mesh = Mesh::<3>::grid([0.0; 3], [1.0, 0.3, 0.3], [4, 2, 2]).unwrap().into_simplices().unwrap();
+    let run = |solver: &str, accuracy: &str| {
+        let mut blueprint = body(mesh.clone(), "consistent", "backward_euler");
+        blueprint.surroundings.gravity = [0.0, -9.81, 0.0];
+        blueprint.bodies[0].pins =
+            vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }];
+        let spec = Registry::<3>::default().integrator("backward_euler").expect("an integrator").spec();
+        for (name, value) in [("linear_solver", solver), ("accuracy", accuracy)] {
+            blueprint.integrator.set(spec, name, text(value), 3).expect("a field");
+        }
+        let mut beam = world(blueprint);
+        (0..10).for_each(|_| beam.frame().expect("a frame"));
+        beam.position(0, beam.node_count(0) as u32 - 1)
+    };
+    let wanted = run("cholesky", "exact");
+    for (solver, accuracy, error) in [
+        ("conjugate_gradients", "exact", 1e-8),
+        ("matrix_free", "exact", 1e-8),
+        ("conjugate_gradients", "real_time", 1e-3),
+        ("cholesky", "real_time", 1e-3),
+    ] {
+        let found = run(solver, accuracy);
+        let fallen = 0.0 - wanted[1] + 0.3;
+        for d in 0..3 {
+            assert!((found[d] - wanted[d]).abs() < error * fallen, "{solver}, {accuracy}: {found:?} {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn what_moves_nodes_by_their_own_masses_refuses_consistent_ones_and_says_what_helps() {
+    let mesh = || Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [2, 1]).unwrap();
+    let refusal = |blueprint: Blueprint<2>| match World::new(blueprint, Options::default()) {
+        Err(WorldError::Build { source, .. }) => (source.code.to_string(), source.to_string()),
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("no refusal"),
+    };
+    for integrator in ["symplectic_euler", "verlet", "runge_kutta", "heun", "explicit_euler"] {
+        let (code, message) = refusal(body(mesh(), "consistent", integrator));
+        assert_eq!(code, "integrator.mass_matrix");
+        for word in [integrator, "consistent", "lumped", "backward_euler"] {
+            assert!(message.contains(word), "{message}");
+        }
+    }
+    let mut by_node = body(mesh(), "consistent", "newmark");
+    by_node.bodies[0].mass = Mass::Node(1.0);
+    assert_eq!(refusal(by_node).0, "model.mass");
+    let mut on_a_floor = body(mesh(), "consistent", "newmark");
+    let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a floor");
+    let mut floor = Values::defaults(spec, 2);
+    for (name, numbers) in [("point", vec![0.0, -1.0]), ("normal", vec![0.0, 1.0])] {
+        floor.set(spec, name, Value::Numbers(numbers), 2).expect("a field");
+    }
+    on_a_floor.colliders.push(ColliderBlueprint { values: floor });
+    assert_eq!(refusal(on_a_floor).0, "model.mass");
+}

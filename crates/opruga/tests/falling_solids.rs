@@ -1,0 +1,167 @@
+//! Free solids of finite elements fall on floors and obstacles under every implicit rule, at steps of 1/60 s.
+#![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
+
+mod common;
+use common::{built, plane, space};
+use opruga::World;
+
+/// The rules that step through time.
+const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
+
+/// A body that falls: its shape and more lines of it, how fast, on what.
+struct Fall {
+    name: &'static str,
+    dimension: usize,
+    body: &'static str,
+    obstacles: &'static str,
+}
+
+const FLOOR: &str = "[[collider]]\nkind = \"half_space\"\nnormal = NORMAL\nfriction = 0.5\n";
+const BALL: &str = "[[collider]]\nkind = \"half_space\"\nnormal = NORMAL\nfriction = 0.5\n[[collider]]\nkind = \"ball\"\nradius = 0.3\nfriction = 0.5\n";
+
+const FALLS: &[Fall] = &[
+    Fall {
+        name: "square",
+        dimension: 2,
+        body: "shape = { kind = \"grid\", size = [1.0, 1.0], cells = [6, 6] }\nrotation = 0.3\nvelocity = [1.0, -3.0]\nposition = [0.0, 0.6]\n",
+        obstacles: FLOOR,
+    },
+    Fall {
+        name: "heart",
+        dimension: 2,
+        body: "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.1, size = 1.0, filling = \"triangles\" }\nposition = [0.0, 1.0]\nvelocity = [0.5, -4.0]\n",
+        obstacles: FLOOR,
+    },
+    Fall {
+        name: "star",
+        dimension: 2,
+        body: "shape = { kind = \"svg\", file = \"shapes/star.svg\", spacing = 0.08, size = 1.0, filling = \"triangles\" }\norder = 2\nposition = [0.0, 1.2]\nangular_velocity = 3.0\n",
+        obstacles: BALL,
+    },
+    Fall {
+        name: "cube",
+        dimension: 3,
+        body: "shape = { kind = \"grid\", size = [1.0, 1.0, 1.0], cells = [3, 3, 3] }\nrotation = [0.5, 0.3, 0.2]\nposition = [0.0, 0.8, 0.0]\nvelocity = [0.0, -4.0, 0.0]\n",
+        obstacles: FLOOR,
+    },
+    Fall {
+        name: "spot",
+        dimension: 3,
+        body: "shape = { kind = \"surface\", file = \"shapes/spot.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.12 }\nposition = [0.0, 1.0, 0.0]\nrotation = [0.0, 2.4, 0.0]\n",
+        obstacles: FLOOR,
+    },
+    Fall {
+        name: "torus",
+        dimension: 3,
+        body: "shape = { kind = \"surface\", file = \"shapes/torus.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.14 }\nposition = [0.3, 1.2, 0.0]\nrotation = [1.2, 0.0, 0.4]\n",
+        obstacles: BALL,
+    },
+];
+
+fn scene(fall: &Fall, material: &str, modulus: f64, damping: f64, rule: &str) -> String {
+    let gravity = if fall.dimension == 2 { "[0.0, -9.81]" } else { "[0.0, -9.81, 0.0]" };
+    format!(
+        "format = \"opruga-1\"\ndimension = {}\n[time]\nseconds = 1\nframe = {:?}\nsubsteps = 1\n[world]\ngravity = {gravity}\n\
+         [integrator]\nkind = \"{rule}\"\n[[body]]\nname = \"body\"\n{}density = 1000.0\nmodels = [{{ kind = \"fem\", material = \
+         \"{material}\", youngs_modulus = {modulus:?}, poissons_ratio = 0.4, damping = {damping:?} }}]\n{}",
+        fall.dimension,
+        1.0 / 60.0,
+        fall.body,
+        fall.obstacles.replace("NORMAL", if fall.dimension == 2 { "[0.0, 1.0]" } else { "[0.0, 1.0, 0.0]" }),
+    )
+}
+
+/// What Newton's method did: frames made, the most iterations of a step, their mean, or why a step was refused.
+#[derive(Debug)]
+struct Effort {
+    frames: u64,
+    most: u64,
+    mean: f64,
+    refused: Option<String>,
+}
+
+fn effort_of<const D: usize>(mut world: World<D>, frames: u64) -> Effort {
+    let mut effort = Effort { frames: 0, most: 0, mean: 0.0, refused: None };
+    let mut before = 0;
+    for _ in 0..frames {
+        if let Err(error) = world.frame() {
+            effort.refused = Some(error.to_string());
+            break;
+        }
+        effort.frames += 1;
+        let now = world.solver_work().iterations;
+        effort.most = effort.most.max(now - before);
+        before = now;
+    }
+    effort.mean = before as f64 / effort.frames.max(1) as f64;
+    effort
+}
+
+fn effort(fall: &Fall, text: &str, frames: u64) -> Effort {
+    match fall.dimension {
+        2 => effort_of(built(plane(text)), frames),
+        _ => effort_of(built(space(text)), frames),
+    }
+}
+
+/// What once ended in infinite numbers or took a hundred iterations and more.
+#[test]
+fn solids_that_fall_on_floors_and_balls_are_stepped_by_every_rule_within_a_dozen_iterations_or_so() {
+    let cases = [
+        ("heart", "neo_hookean", 1e4, 0.0),
+        ("heart", "neo_hookean", 1e5, 0.005),
+        ("star", "stable_neo_hookean", 1e6, 0.005),
+        ("square", "corotated", 1e5, 0.0),
+        ("cube", "stable_neo_hookean", 1e5, 0.0),
+        ("cube", "neo_hookean", 1e4, 0.005),
+        ("cube", "corotated", 1e7, 0.0),
+        ("spot", "stable_neo_hookean", 1e5, 0.0),
+    ];
+    for (name, material, modulus, damping) in cases {
+        let fall = FALLS.iter().find(|fall| fall.name == name).expect("a shape of the list");
+        for rule in RULES {
+            let effort = effort(fall, &scene(fall, material, modulus, damping, rule), 30);
+            println!("{name}, {material}, E = {modulus:e}, {rule}: {effort:?}");
+            assert!(
+                effort.refused.is_none() && effort.frames == 30,
+                "{name}, {material}, E = {modulus:e}, {rule}: {effort:?}"
+            );
+            assert!(effort.mean < 8.0 && effort.most <= 30, "{name}, {material}, E = {modulus:e}, {rule}: {effort:?}");
+        }
+    }
+}
+
+/// The table of shapes, materials, rules and moduli; `FALLS=spot,heart`, `RULES=`, `MATERIALS=`, `MODULI=`, `FRAMES=` choose of it.
+#[test]
+#[ignore = "a measurement"]
+fn iterations_of_falling_solids() {
+    let chosen = |name: &str, default: &str| -> Vec<String> {
+        let text = std::env::var(name).unwrap_or(default.into());
+        text.split(',').map(str::to_string).collect()
+    };
+    let frames = std::env::var("FRAMES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let falls = chosen("FALLS", "square,heart,star,cube,torus,spot");
+    for fall in FALLS.iter().filter(|fall| falls.iter().any(|name| name == fall.name)) {
+        for material in chosen("MATERIALS", "stable_neo_hookean,neo_hookean,corotated") {
+            for rule in chosen("RULES", "backward_euler,bdf2,implicit_midpoint,newmark") {
+                for modulus in chosen("MODULI", "1e4,1e5,1e6,1e7") {
+                    for damping in chosen("DAMPING", "0,0.005") {
+                        let numbers = (modulus.parse().unwrap(), damping.parse().unwrap());
+                        let text = scene(fall, &material, numbers.0, numbers.1, &rule);
+                        let start = std::time::Instant::now();
+                        let effort = effort(fall, &text, frames);
+                        println!(
+                            "{:7} {material:18} {rule:17} {modulus} {damping:5}: {:3} frames, mean {:5.1}, most {:3}, {:6.2} s {}",
+                            fall.name,
+                            effort.frames,
+                            effort.mean,
+                            effort.most,
+                            start.elapsed().as_secs_f64(),
+                            effort.refused.unwrap_or_default()
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
