@@ -26,6 +26,11 @@ pub(crate) enum Command {
         /// A scene file, or the name of a scene that comes with the program [default: ball]
         scene: Option<String>,
     },
+    /// Look at a recorded run in the window: any moment at once, and on from there by hand
+    View {
+        /// The recording, as `opruga run --record` writes it
+        recording: std::path::PathBuf,
+    },
     /// Read a scene and report all of its errors, without running it
     Check(Check),
     /// Run a scene at many values of its parameters and compare what happens
@@ -511,7 +516,7 @@ impl Command {
             Command::Bench { what: Bench::Scene(bench) } => bench.json,
             Command::Bench { what: Bench::Elements(bench) } => bench.json,
             Command::New { json, .. } => *json,
-            Command::Reference { .. } | Command::Studio { .. } => false,
+            Command::Reference { .. } | Command::Studio { .. } | Command::View { .. } => false,
         }
     }
 }

@@ -65,6 +65,7 @@ fn run_command(command: &Command) -> Result<u8, Failure> {
     match command {
         Command::Run(run) => watch::run(run),
         Command::Studio { scene } => studio::studio(scene.as_deref()),
+        Command::View { recording } => studio::view(recording),
         Command::Modes(call) => modes::modes(call),
         Command::Mesh(call) => mesh::mesh(call),
         Command::Check(check) => watch::check(check),

@@ -36,6 +36,17 @@ pub(crate) fn studio(scene: Option<&str>) -> Result<u8, Failure> {
     start(scene)
 }
 
+/// `opruga view FILE`. What is no recording is told before a window opens.
+pub(crate) fn view(path: &Path) -> Result<u8, Failure> {
+    let _ = crate::recordings::open(path)?;
+    let shown = path.display().to_string();
+    if !has_screen(|name| std::env::var_os(name)) {
+        let hint = format!("`opruga replay {}` writes its pictures", crate::source::argument(&shown));
+        return Err(Failure::Call { message: "there is no screen here to open a window on".into(), hint: Some(hint) });
+    }
+    start(Some(&shown))
+}
+
 /// Whether there is a screen to open a window on.
 fn has_screen(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     if !cfg!(target_os = "linux") {

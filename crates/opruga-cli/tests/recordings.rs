@@ -189,3 +189,25 @@ fn faults_of_recordings_are_told() {
     assert!(folder.join("full/checkpoint").exists());
     refused(&["replay", "s", "--verify"], 0, "warning[recording.open]");
 }
+
+/// What is no recording is refused before a window opens; without a screen the hint leads to `replay`.
+#[test]
+fn a_recording_is_viewed_in_a_window_only() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = ["run", "ball", "--seconds", "0.1", "--no-pictures", "--out", "o", "--record", "a.rec"];
+    assert_eq!(code(&opruga(folder.path(), &run)), 0);
+    let view = |file: &str| {
+        let mut call = program(folder.path(), &["view", file]);
+        call.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output().expect("it runs")
+    };
+    for (file, exit, text) in [("o/summary.json", 2, "error["), ("none.rec", 4, "error[read.failed]")] {
+        let output = view(file);
+        assert_eq!(code(&output), exit, "{}", said(&output));
+        assert!(said(&output).contains(text), "{}", said(&output));
+    }
+    if cfg!(target_os = "linux") {
+        let output = view("a.rec");
+        assert_eq!(code(&output), 2);
+        assert!(said(&output).contains("= hint: `opruga replay a.rec` writes its pictures"), "{}", said(&output));
+    }
+}

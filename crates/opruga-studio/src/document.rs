@@ -1,6 +1,8 @@
 //! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
 //! runs what was done here.
 
+mod overrides;
+
 use opruga::blueprint::{Action, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::io::{Files, scene};

@@ -1,6 +1,7 @@
 //! The program `opruga-studio [SCENE]`: the window of Opruga.
 
 use opruga::Options;
+use opruga::io::recording::{MAGIC, Recording};
 use opruga::io::{Files, scene};
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
@@ -18,7 +19,9 @@ fn main() -> ExitCode {
         count.unwrap_or(600)
     });
     if arguments.len() > 1 || arguments.iter().any(|word| word.starts_with('-')) {
-        println!("opruga-studio [SCENE]\n\nSCENE is a scene file, or the name of a scene that comes with the program.");
+        println!(
+            "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, or a recorded run."
+        );
         return ExitCode::SUCCESS;
     }
     let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
@@ -68,17 +71,30 @@ fn main() -> ExitCode {
     }
 }
 
-/// Opens a scene file, or a scene that comes with the program.
+/// Opens a scene file, a scene that comes with the program, or a recorded run.
 fn open(wanted: &str) -> Result<Session, String> {
     let path = Path::new(wanted);
     let options = Options { threads: threads(), ..Options::default() };
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
         return Session::open(wanted, text, opruga::scenes::files(), options);
     }
+    if is_recording(path) {
+        let refused = |error: String| format!("{wanted}: {error}");
+        let file = std::fs::File::open(path).map_err(|error| refused(error.to_string()))?;
+        let recording = Recording::open(std::io::BufReader::new(file)).map_err(|error| refused(error.to_string()))?;
+        return Session::view(recording, options).map_err(refused);
+    }
     let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| format!("{wanted}: {error}"))?;
     let text = String::from_utf8(bytes).map_err(|_| format!("{wanted} is no text in UTF-8"))?;
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
     Session::open(&name, &text, Files::beside(path), options)
+}
+
+/// Whether a file begins as recordings do.
+fn is_recording(path: &Path) -> bool {
+    use std::io::Read as _;
+    let mut head = [0; MAGIC.len()];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *MAGIC
 }
 
 /// One processor is for the interface.

@@ -4,7 +4,8 @@ use super::error::RecordingError;
 
 /// The version that is written.
 pub const VERSION: u32 = 3;
-pub(super) const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
+/// What every recording begins with.
+pub const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
 /// Bytes before the header.
 pub(super) const HEAD: usize = 24;

@@ -38,6 +38,6 @@ mod writer;
 
 pub use error::RecordingError;
 pub use file::RecordingFile;
-pub use format::{Asset, Header, VERSION};
+pub use format::{Asset, Header, MAGIC, VERSION};
 pub use reader::{Ending, Recording};
 pub use writer::Writer;

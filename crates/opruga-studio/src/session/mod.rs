@@ -8,6 +8,7 @@
 
 mod edits;
 mod pointer;
+mod recorded;
 mod travel;
 
 pub use edits::{Edit, Placed};
@@ -130,6 +131,8 @@ pub struct Session {
     opened: u64,
     /// What was refused because its step was too long.
     refused: Option<Request>,
+    /// Whether it was opened from a recording: frames whose states are there are not computed.
+    recorded: bool,
 }
 
 impl core::fmt::Debug for Session {
@@ -169,6 +172,7 @@ impl Session {
             messages: 0,
             opened: 1,
             refused: None,
+            recorded: false,
         };
         session.keep();
         Ok(session)
@@ -282,6 +286,9 @@ impl Session {
 
     /// One frame, with the pointer led before it and a keyframe behind it.
     fn frame(&mut self) -> Result<(), WorldError> {
+        if self.recorded_frame()? {
+            return Ok(());
+        }
         self.lead_held();
         self.engine.frame()?;
         self.latest = self.latest.max(self.engine.frames());

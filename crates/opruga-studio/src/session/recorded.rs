@@ -1,0 +1,71 @@
+//! A recorded run in the window: its states are there, and what a person does from one of them on is a new course.
+
+use super::{KEYFRAME_BYTES, Session};
+use crate::document::Document;
+use opruga::io::Files;
+use opruga::io::recording::{Ending, Recording};
+use opruga::{Options, WorldError};
+use std::io::{Read, Seek};
+
+impl Session {
+    /// Opens a recorded run at its first frame. As many of its states are held as the memory for keyframes takes; those
+    /// between are computed.
+    ///
+    /// # Errors
+    /// Why there is nothing to see, as one text: a run that a program has led, a scene that this version does not read, damage.
+    pub fn view<R: Read + Seek>(mut recording: Recording<R>, options: Options) -> Result<Session, String> {
+        let header = recording.header().clone();
+        if recording.inputs().next().is_some() {
+            return Err(
+                "a program has led this run, which the text of a scene cannot say: `opruga replay` shows it".into()
+            );
+        }
+        let text = core::str::from_utf8(&header.scene).map_err(|_| "the scene inside is no text in UTF-8")?;
+        let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
+        let files = Files::held(held);
+        let mut document = Document::new(&header.name, text)?;
+        for (path, value) in &header.overrides {
+            document.take_override(path, value)?;
+        }
+        let options = Options { allow_unstable: options.allow_unstable || header.allow_unstable, ..options };
+        let mut session = Session::open(&header.name, &document.text(), files, options)?;
+        let damaged = |error: opruga::io::recording::RecordingError| error.to_string();
+        let frames = recording.frames();
+        let kept: Vec<u64> = frames.clone().filter(|frame| recording.kept(*frame) == Ok(*frame)).collect();
+        let Some(first) = kept.first() else { return Err("the recording holds no frame".into()) };
+        let size = recording.read(*first).map_err(damaged)?.len();
+        let apart = (kept.len() * size).div_ceil(KEYFRAME_BYTES).max(1);
+        for frame in kept.into_iter().step_by(apart) {
+            let state = recording.read(frame).map_err(damaged)?.to_vec();
+            if frame == 0 {
+                // Where all begins, the scene inside and the states must agree: else they are of other programs.
+                let hash = session.hash();
+                session.engine.rewind(&state).map_err(|error| error.to_string())?;
+                if session.hash() != hash {
+                    return Err("its scene does not lead to its first state: another program has recorded it".into());
+                }
+                continue;
+            }
+            session.keyframes.keep(frame, state);
+        }
+        session.latest = frames.end.saturating_sub(1);
+        session.recorded = true;
+        if let Ending::Damaged(error) = recording.ending() {
+            return Err(format!("behind frame {}: {error}", session.latest));
+        }
+        session.seek(frames.start);
+        Ok(session)
+    }
+
+    /// Takes the next frame from the recording, if its state is there and nobody holds anything.
+    pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
+        let next = self.engine.frames() + 1;
+        if !self.recorded || self.held.is_some() || next > self.latest {
+            return Ok(false);
+        }
+        match self.keyframes.before(next) {
+            Some((frame, state)) if frame == next => self.engine.rewind(state).map(|()| true),
+            _ => Ok(false),
+        }
+    }
+}

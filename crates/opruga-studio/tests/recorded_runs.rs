@@ -1,0 +1,119 @@
+//! Recorded runs in the window.
+#![allow(missing_docs)]
+#![allow(clippy::disallowed_methods)]
+
+use opruga::blueprint::AnyBlueprint;
+use opruga::io::recording::{Header, Recording};
+use opruga::io::scene;
+use opruga::recordings::Tape;
+use opruga::{Options, World, catalogue};
+use opruga_studio::session::{Grip, Request, Session};
+use std::io::Cursor;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+/// Records the ball with overrides, a state in so many frames; the bytes, and the hash of every frame.
+fn record(every: u64, led: bool) -> (Vec<u8>, Vec<u64>) {
+    let text = opruga::scenes::find("ball").expect("it comes with the program");
+    let overrides: Vec<(String, String)> =
+        [("time.seconds", "1.5"), ("body.ball.models.pressure.nRT", "80")].map(|(p, v)| (p.into(), v.into())).into();
+    let options = scene::Options { overrides: overrides.clone(), ..scene::Options::default() };
+    let Ok((AnyBlueprint::Plane(blueprint), _)) = scene::read(text.as_bytes(), "ball.toml", &catalogue(), &options)
+    else {
+        panic!("a scene of the plane")
+    };
+    static NUMBER: AtomicU32 = AtomicU32::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let file = std::env::temp_dir().join(format!("opruga-view-{}-{number}.rec", std::process::id()));
+    let header = Header {
+        name: "ball".into(),
+        scene: text.into(),
+        frame: blueprint.time.frame,
+        every,
+        overrides,
+        ..Header::default()
+    };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    let mut tape = Tape::begin(&file, true, &header, &mut world).expect("a recording");
+    let mut hashes = vec![world.state_hash()];
+    for frame in 0..90 {
+        if led && frame == 30 {
+            world
+                .set("body.ball.models.mass_spring.stiffness", opruga::core::spec::Value::Number(900.0))
+                .expect("allowed");
+        }
+        tape.step(&mut world).expect("a frame");
+        hashes.push(world.state_hash());
+    }
+    tape.finish(&mut world).expect("an end");
+    let bytes = std::fs::read(&file).expect("the recording");
+    std::fs::remove_file(file).expect("the recording");
+    (bytes, hashes)
+}
+
+fn view(bytes: &[u8]) -> Result<Session, String> {
+    Session::view(Recording::open(Cursor::new(bytes)).map_err(|error| error.to_string())?, Options::default())
+}
+
+fn arrive(session: &mut Session) {
+    while session.is_seeking() {
+        session.tick(Duration::from_millis(16), Duration::from_millis(12), &|| Duration::ZERO);
+    }
+}
+
+/// Any moment of a recorded run is that of the run, wherever one comes from.
+#[test]
+fn every_frame_of_a_recording_is_seen_as_it_was() {
+    for every in [1, 7, 32] {
+        let (bytes, hashes) = record(every, false);
+        let mut session = view(&bytes).expect("a recording");
+        assert_eq!((session.frames(), session.latest()), (0, 90));
+        for frame in [0, 1, 45, 90, 13, 14, 89, 32] {
+            session.handle(Request::Seek(frame));
+            arrive(&mut session);
+            assert_eq!((session.frames(), session.hash()), (frame, hashes[frame as usize]), "every {every}");
+        }
+        // Played, it comes by the same frames, and goes on behind its end.
+        for frame in 33..=90 {
+            session.handle(Request::Step);
+            assert_eq!(session.hash(), hashes[frame], "every {every}, frame {frame}");
+        }
+        session.handle(Request::Step);
+        assert_eq!(session.frames(), 91);
+    }
+}
+
+/// What a person does within a recording is a new course, which the command line repeats from the saved scene.
+#[test]
+fn a_recording_goes_on_by_hand() {
+    let (bytes, hashes) = record(1, false);
+    let mut session = view(&bytes).expect("a recording");
+    session.handle(Request::Seek(40));
+    arrive(&mut session);
+    session.handle(Request::Grab(Grip::Pull, 0, [0.4, 1.0, 0.0]));
+    for k in 0..20 {
+        session.handle(Request::Lead([0.4 + 0.02 * f64::from(k), 1.2, 0.0]));
+        session.handle(Request::Step);
+    }
+    session.handle(Request::Release);
+    assert_eq!((session.frames(), session.latest()), (60, 60), "the rest of the recording is another future");
+    assert_ne!(session.hash(), hashes[60]);
+    let text = session.saved();
+    let read = scene::read(text.as_bytes(), "saved.toml", &catalogue(), &scene::Options::default());
+    let Ok((AnyBlueprint::Plane(blueprint), _)) = read else { panic!("a scene of the plane: {text}") };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    (0..60).for_each(|_| world.frame().expect("a frame"));
+    assert_eq!(world.state_hash(), session.hash());
+}
+
+#[test]
+fn what_cannot_be_viewed_says_why() {
+    let (led, _) = record(1, true);
+    assert!(view(&led).expect_err("a program has led it").contains("a program has led this run"));
+    let (bytes, _) = record(1, false);
+    assert!(view(&bytes[..100]).is_err());
+    let mut other = bytes.clone();
+    let place = other.windows(9).position(|bytes| bytes == b"nRT = 55.").expect("it is in the scene");
+    other[place + 6] = b'6';
+    assert!(view(&other).is_err(), "a scene that was changed inside");
+}
