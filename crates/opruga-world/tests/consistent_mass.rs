@@ -116,6 +116,7 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
         let mut blueprint = bar(mesh.clone(), mass);
         let spec = Registry::<2>::default().integrator(integrator).expect("an integrator").spec();
         blueprint.integrator = Values::defaults(spec, 2);
+        blueprint.integrator.set(spec, "tolerance", Value::Number(1e-14), 2).expect("a field");
         let mode = world(blueprint.clone()).modes(0, 1).expect("a mode").remove(0);
         let steps = 200;
         blueprint.time = Time { seconds: 1.0, frame: 2.0 * PI / mode.omega() / f64::from(steps), substeps: 1 };
@@ -135,7 +136,7 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
             // The rule's own error of phase is (hω)²/12 of a period: 5e-4 of a turn, of which the cosine sees the square.
             assert!(way < 1e-3 * 1e-5, "{integrator}, {mass}, node {node}: {way}");
         }
-        assert!((bar.energy().total() / energy - 1.0).abs() < 1e-6, "{integrator}, {mass}: {:?}", bar.energy());
+        assert!((bar.energy().total() / energy - 1.0).abs() < 1e-5, "{integrator}, {mass}: {:?}", bar.energy());
     }
 }
 
