@@ -31,10 +31,10 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
 /// λ₀ = 1 − Σ ξ, λᵢ = ξᵢ of a simplex with C corners.
 fn barycentric<const C: usize>(xi: [f64; 3]) -> [f64; C] {
     let mut out = [1.0; C];
-    for k in 1..C {
-        out[k] = xi[k - 1];
-        out[0] -= xi[k - 1];
+    for (own, x) in out[1..].iter_mut().zip(xi) {
+        *own = x;
     }
+    out[0] -= out[1..].iter().sum::<f64>();
     out
 }
 

@@ -81,6 +81,12 @@ fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
     BuildError::new(SPEC.kind, code, message)
 }
 
+/// What a solid is built of.
+struct Built<const D: usize> {
+    parts: Vec<Box<dyn Part<D>>>,
+    inertia: Vec<(u32, u32, f64)>,
+}
+
 /// What is the same for all cells while a solid is built.
 struct Builder<'a, const D: usize> {
     ingredients: &'a Ingredients<'a, D>,
@@ -184,7 +190,7 @@ impl<'a, const D: usize> Builder<'a, D> {
     /// The section of one kind of cells, the first of which has the number `first` in the mesh.
     fn add<E: Shape<D, N>, const N: usize>(
         &self,
-        (parts, inertia): (&mut Vec<Box<dyn Part<D>>>, &mut Vec<(u32, u32, f64)>),
+        built: &mut Built<D>,
         list: &[[u32; N]],
         first: usize,
         law: fn() -> Box<dyn Law<D>>,
@@ -203,7 +209,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         if let Some(density) = self.density {
             for cell in &cells {
                 let rest = cell.nodes.map(|n| positions[n as usize]);
-                mass::entries::<E, D, N>(&cell.nodes, &rest, density, inertia);
+                mass::entries::<E, D, N>(&cell.nodes, &rest, density, &mut built.inertia);
             }
         }
         if E::SIMPLEX && !self.stress {
@@ -230,7 +236,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             selective: !self.stress,
             damped: self.damped,
         };
-        parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
+        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
         Ok(())
     }
 
@@ -260,7 +266,8 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    fn finish(self, parts: Vec<Box<dyn Part<D>>>, inertia: Vec<(u32, u32, f64)>) -> Box<Solid<D>> {
+    fn finish(self, built: Built<D>) -> Box<Solid<D>> {
+        let Built { parts, inertia } = built;
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
         let mut shares = Vec::new();
         let mut start = FORCES;
@@ -299,19 +306,13 @@ impl Model<2> for FemModel {
         let (law, space) =
             if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
         let cells = &ingredients.mesh.cells;
-        let (mut parts, mut inertia) = (Vec::new(), Vec::new());
-        builder.add::<Triangle, 3>((&mut parts, &mut inertia), &cells.triangles, 0, law, space)?;
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
         let mut first = cells.triangles.len();
-        builder.add::<Quadrilateral, 4>((&mut parts, &mut inertia), &cells.quadrilaterals, first, law, space)?;
+        builder.add::<Quadrilateral, 4>(&mut built, &cells.quadrilaterals, first, law, space)?;
         first += cells.quadrilaterals.len();
-        builder.add::<QuadraticTriangle, 6>(
-            (&mut parts, &mut inertia),
-            &cells.quadratic_triangles,
-            first,
-            law,
-            space,
-        )?;
-        Ok(builder.finish(parts, inertia))
+        builder.add::<QuadraticTriangle, 6>(&mut built, &cells.quadratic_triangles, first, law, space)?;
+        Ok(builder.finish(built))
     }
 }
 
@@ -323,19 +324,13 @@ impl Model<3> for FemModel {
         let builder = Builder::new(ingredients)?;
         let law = builder.entry()?.space;
         let cells = &ingredients.mesh.cells;
-        let (mut parts, mut inertia) = (Vec::new(), Vec::new());
-        builder.add::<Tetrahedron, 4>((&mut parts, &mut inertia), &cells.tetrahedra, 0, law, None)?;
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;
         let mut first = cells.tetrahedra.len();
-        builder.add::<Hexahedron, 8>((&mut parts, &mut inertia), &cells.hexahedra, first, law, None)?;
+        builder.add::<Hexahedron, 8>(&mut built, &cells.hexahedra, first, law, None)?;
         first += cells.hexahedra.len();
-        builder.add::<QuadraticTetrahedron, 10>(
-            (&mut parts, &mut inertia),
-            &cells.quadratic_tetrahedra,
-            first,
-            law,
-            None,
-        )?;
-        Ok(builder.finish(parts, inertia))
+        builder.add::<QuadraticTetrahedron, 10>(&mut built, &cells.quadratic_tetrahedra, first, law, None)?;
+        Ok(builder.finish(built))
     }
 }
 
