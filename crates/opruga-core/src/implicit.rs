@@ -85,7 +85,13 @@ impl<const D: usize> System<D> {
                 parts[place % WIDTH] += 0.5 * self.mass.at(place) * v * v;
             }
         }
-        sum_in_fixed_order(&parts)
+        let coupled = self.inertia.as_ref().map(|inertia| 0.5 * inertia.square::<D>(&self.node_by_node(&self.state.v)));
+        sum_in_fixed_order(&parts) + coupled.unwrap_or(0.0)
+    }
+
+    /// The vectors of one body, the coordinates of one node after the other.
+    pub fn node_by_node(&self, columns: &Columns<D>) -> Vec<f64> {
+        (0..self.nodes).flat_map(|node| columns.at(node)).collect()
     }
 
     /// The part of the forces that comes from outside, weight and loads, after [`System::evaluate`] of the same state [N].

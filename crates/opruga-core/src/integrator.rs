@@ -48,6 +48,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn shares_threads(&self) -> bool {
         false
     }
+    /// Whether it solves with a mass matrix that couples nodes ([`System::inertia`]).
+    fn takes_mass_matrix(&self) -> bool {
+        false
+    }
     /// Makes one substep of h [s].
     ///
     /// # Errors

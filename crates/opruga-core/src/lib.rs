@@ -5,6 +5,7 @@ pub mod check;
 pub mod contacts;
 pub mod error;
 mod implicit;
+pub mod inertia;
 pub mod integrator;
 pub mod pair;
 mod pins;

@@ -147,6 +147,11 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn bonds(&self) -> &[[u32; 2]] {
         &[]
     }
+    /// What its consistent mass matrix adds to the lumped masses of pairs of nodes, (row, column, mass [kg]); nothing where
+    /// masses are lumped.
+    fn inertia(&self) -> &[(u32, u32, f64)] {
+        &[]
+    }
     /// What is remembered at the start.
     fn initial_memory(&self) -> Vec<f64> {
         Vec::new()

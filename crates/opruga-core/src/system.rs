@@ -2,6 +2,7 @@
 
 use crate::contacts::{Contacts, Moved};
 use crate::error::StepError;
+use crate::inertia::Inertia;
 use crate::pins::Held;
 use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
@@ -206,6 +207,8 @@ pub struct System<const D: usize> {
     pub mass: Parameter,
     /// 1 / mass [1/kg].
     pub inverse_mass: Parameter,
+    /// What a consistent mass matrix adds to the masses of the nodes; none: masses are lumped.
+    pub inertia: Option<Inertia>,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
     /// The models.
@@ -260,6 +263,7 @@ impl<const D: usize> System<D> {
             state: State { x, v, work: Vec::new() },
             mass,
             inverse_mass: one_mass,
+            inertia: None,
             gravity: [0.0; D],
             members: Vec::new(),
             pins: Vec::new(),
@@ -278,6 +282,11 @@ impl<const D: usize> System<D> {
     }
     /// Adds a model.
     pub fn add(&mut self, potential: Box<dyn Potential<D>>) {
+        let coupled = potential.inertia();
+        if !coupled.is_empty() {
+            let before = self.inertia.take().unwrap_or_else(|| Inertia::new(self.nodes, Vec::new()));
+            self.inertia = Some(before.with(coupled.to_vec()));
+        }
         let memory = potential.initial_memory();
         let scratch = Column::zeros(potential.scratch_len());
         self.members.push(Member { potential, memory, scratch });
@@ -528,7 +537,8 @@ impl<const D: usize> System<D> {
             .iter()
             .map(|m| m.potential.heap_bytes() + m.memory.capacity() * 8 + m.scratch.heap_bytes())
             .sum();
-        state + models + self.mass.heap_bytes() + self.inverse_mass.heap_bytes()
+        let masses = self.mass.heap_bytes() + self.inverse_mass.heap_bytes();
+        state + models + masses + self.inertia.as_ref().map_or(0, Inertia::heap_bytes)
     }
 
     /// The force of the models of one account on every node in the current state [N], laid out in columns.

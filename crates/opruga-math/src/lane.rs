@@ -154,6 +154,8 @@ pub trait Register: Lane {
             self.write(to[..Self::NUMBERS].as_mut_ptr());
         }
     }
+    /// Reads numbers of single precision from the start of a slice.
+    fn load_single(from: &[f32]) -> Self;
     /// Reads the numbers from so many places of a slice.
     fn gather(from: &[f64], places: &[u32]) -> Self;
     /// Reads so many rows of [`ROW`] numbers; the first register has the first numbers of all rows.

@@ -19,6 +19,10 @@ impl Register for f64 {
         unsafe { to.write(self) }
     }
     #[inline(always)]
+    fn load_single(from: &[f32]) -> f64 {
+        f64::from(from[0])
+    }
+    #[inline(always)]
     fn gather(from: &[f64], places: &[u32]) -> f64 {
         from[places[0] as usize]
     }

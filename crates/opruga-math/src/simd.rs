@@ -158,6 +158,15 @@ mod tests {
                     columns[k].set_part(part, own[k]);
                 }
             }
+            // Single precision, from a place on no border.
+            let single: Vec<f32> = (0..=WIDTH).map(|k| k as f32 / 3.0).collect();
+            let mut wide = P::zero();
+            for part in 0..P::PARTS {
+                wide.set_part(part, P::Part::load_single(&single[1 + part * P::Part::NUMBERS..]));
+            }
+            for (number, single) in wide.to_array().into_iter().zip(&single[1..]) {
+                assert_eq!(number.to_bits(), f64::from(*single).to_bits());
+            }
             // And back.
             let mut back = [0.0; ROW * WIDTH];
             for part in 0..P::PARTS {

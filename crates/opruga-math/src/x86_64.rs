@@ -17,7 +17,7 @@ macro_rules! register {
     ($(#[$note:meta])* $type:ident($register:ty), $count:literal numbers, masks $mask:ty,
      $add:ident $sub:ident $mul:ident $div:ident $set:ident $sqrt:ident $load:ident $store:ident $min:ident $max:ident,
      abs $abs:expr, less $less:expr, less_or_equal $less_or_equal:expr, select $select:expr, both $both:expr, any $any:expr,
-     after $after:expr, first $first:expr, gather $gather:expr, split $split:expr, rows $rows:expr, to_rows $to_rows:expr) => {
+     after $after:expr, first $first:expr, single $single:expr, gather $gather:expr, split $split:expr, rows $rows:expr, to_rows $to_rows:expr) => {
         $(#[$note])*
         #[derive(Clone, Copy)]
         #[repr(transparent)]
@@ -121,6 +121,8 @@ macro_rules! register {
             #[inline(always)]
             fn first(count: usize) -> $mask { unsafe { $first(count) } }
             #[inline(always)]
+            fn load_single(from: &[f32]) -> Self { $type(unsafe { $single(from[..$count].as_ptr()) }) }
+            #[inline(always)]
             fn gather(from: &[f64], places: &[u32]) -> Self { $type(unsafe { $gather(from, &places[..$count]) }) }
             #[inline(always)]
             fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW] {
@@ -169,6 +171,7 @@ register! {
     both |a, b| _mm_and_pd(a, b), any |m| _mm_movemask_pd(m) != 0,
     after |a, before| _mm_shuffle_pd::<0b01>(before, a),
     first |count| _mm_cmplt_pd(_mm_loadu_pd(PLACES.as_ptr()), _mm_set1_pd(few(count))),
+    single |from: *const f32| _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(from.cast()))),
     gather |from: &[f64], at: &[u32]| _mm_setr_pd(from[at[0] as usize], from[at[1] as usize]),
     split |x: __m128d| {
         let bits = _mm_add_epi64(_mm_castpd_si128(x), _mm_set1_epi64x(SHIFT));
@@ -199,6 +202,7 @@ register! {
     both |a, b| _mm256_and_pd(a, b), any |m| _mm256_movemask_pd(m) != 0,
     after |a, before| _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(before, a), a),
     first |count| _mm256_cmp_pd::<_CMP_LT_OQ>(_mm256_loadu_pd(PLACES.as_ptr()), _mm256_set1_pd(few(count))),
+    single |from: *const f32| _mm256_cvtps_pd(_mm_loadu_ps(from)),
     gather |from: &[f64], at: &[u32]| {
         _mm256_setr_pd(from[at[0] as usize], from[at[1] as usize], from[at[2] as usize], from[at[3] as usize])
     },
@@ -217,6 +221,7 @@ register! {
         _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(_mm512_castpd_si512(a), _mm512_castpd_si512(before)))
     },
     first |count| if count >= 8 { 0xff } else { ((1u32 << count) - 1) as u8 },
+    single |from: *const f32| _mm512_cvtps_pd(_mm256_loadu_ps(from)),
     gather |from: &[f64], at: &[u32]| gather_avx512(from, at),
     split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
 }

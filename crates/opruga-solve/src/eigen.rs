@@ -1,4 +1,4 @@
-//! The lowest natural frequencies: K φ = ω² M φ with a diagonal M.
+//! The lowest natural frequencies: K φ = ω² M φ.
 //!
 //! A block Lanczos recurrence on (K + s M)⁻¹ M, whose largest eigenvalues 1/(ω² + s) belong to the lowest frequencies. A
 //! block of several vectors finds frequencies that occur more than once, as those of round bodies do; every vector is made
@@ -17,8 +17,14 @@ pub struct Mode {
     pub square: f64,
     /// The shape φ with φᵀMφ = 1.
     pub shape: Vec<f64>,
-    /// |K φ − ω² M φ| in the norm of M⁻¹ [1/s²].
+    /// |K φ − ω² M φ| in the norm of the inverse lumped masses [1/s²].
     pub residual: f64,
+}
+
+/// A vector, and M times it.
+struct Weighed {
+    vector: Vec<f64>,
+    momentum: Vec<f64>,
 }
 
 /// Vectors of a block.
@@ -26,20 +32,27 @@ const BLOCK: usize = 6;
 
 /// The lowest `count` modes, those in `skip` (M-orthonormal shapes that are already known) left out.
 ///
-/// `mass` holds the diagonal of M, zero where a coordinate is held. `solve` makes (K + s M)⁻¹ b of b in place, `stiffness`
-/// makes K x. The search ends when every residual is below 10⁻¹⁰ (ω² + s), or when the space is exhausted.
+/// `mass` holds lumped masses, zero where a coordinate is held: sizes of residuals are told by them. `weigh` makes M x, `solve`
+/// makes (K + s M)⁻¹ b of b in place, `stiffness` makes K x; M has neither rows nor columns of what is held. The search ends when every residual is below 10⁻¹⁰ (ω² + s), or when the space is exhausted.
 pub fn lowest_modes(
     count: usize,
     mass: &[f64],
     shift: f64,
     skip: &[Vec<f64>],
+    weigh: impl Fn(&[f64], &mut [f64]),
     mut solve: impl FnMut(&mut [f64]),
     mut stiffness: impl FnMut(&[f64], &mut [f64]),
 ) -> Vec<Mode> {
     let freedom = mass.iter().filter(|m| **m > 0.0).count().saturating_sub(skip.len());
     let count = count.min(freedom);
     let most = (3 * count + 60).min(freedom);
-    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let weighed = |x: &[f64]| {
+        let mut out = vec![0.0; x.len()];
+        weigh(x, &mut out);
+        out
+    };
+    let skip: Vec<Weighed> = skip.iter().map(|x| Weighed { momentum: weighed(x), vector: x.clone() }).collect();
+    let mut basis: Vec<Weighed> = Vec::new();
     // (K + s M)⁻¹ M of each vector of the basis.
     let mut images: Vec<Vec<f64>> = Vec::new();
     let mut block: Vec<Vec<f64>> = (0..BLOCK.min(freedom)).map(|k| start(mass, k)).collect();
@@ -53,7 +66,7 @@ pub fn lowest_modes(
             }
             // A vector that is spent is replaced by a new one.
             let mut attempts = 0;
-            while !orthonormalise(&mut vector, mass, skip, &basis) && attempts < 4 {
+            while !orthonormalise(&mut vector, &weighed, &skip, &basis) && attempts < 4 {
                 vector = start(mass, seed);
                 seed += 1;
                 attempts += 1;
@@ -61,13 +74,14 @@ pub fn lowest_modes(
             if attempts == 4 {
                 continue;
             }
-            let mut image: Vec<f64> = vector.iter().zip(mass).map(|(v, m)| v * m).collect();
+            let momentum = weighed(&vector);
+            let mut image = momentum.clone();
             solve(&mut image);
             for (entry, m) in image.iter_mut().zip(mass) {
                 *entry = if *m > 0.0 { *entry } else { 0.0 };
             }
             block.push(image.clone());
-            basis.push(vector);
+            basis.push(Weighed { vector, momentum });
             images.push(image);
             fresh += 1;
         }
@@ -75,7 +89,7 @@ pub fn lowest_modes(
             break;
         }
         if basis.len() >= count {
-            best = ritz(count, mass, &basis, &images, &mut stiffness);
+            best = ritz(count, mass, &basis, &images, &weighed, &mut stiffness);
             if best.iter().all(|mode| mode.residual <= 1e-10 * (mode.square.abs() + shift)) {
                 break;
             }
@@ -88,16 +102,16 @@ pub fn lowest_modes(
 fn ritz(
     count: usize,
     mass: &[f64],
-    basis: &[Vec<f64>],
+    basis: &[Weighed],
     images: &[Vec<f64>],
+    weighed: &impl Fn(&[f64]) -> Vec<f64>,
     stiffness: &mut impl FnMut(&[f64], &mut [f64]),
 ) -> Vec<Mode> {
     let n = basis.len();
     let mut projected = vec![0.0; n * n];
     for i in 0..n {
-        let weighted: Vec<f64> = basis[i].iter().zip(mass).map(|(v, m)| v * m).collect();
         for j in 0..n {
-            projected[i * n + j] = dot(&weighted, &images[j]);
+            projected[i * n + j] = dot(&basis[i].momentum, &images[j]);
         }
     }
     for i in 0..n {
@@ -112,7 +126,7 @@ fn ritz(
         let weights = &vectors[n - 1 - k];
         let mut shape = vec![0.0; mass.len()];
         for (weight, vector) in weights.iter().zip(basis) {
-            for (out, v) in shape.iter_mut().zip(vector) {
+            for (out, v) in shape.iter_mut().zip(&vector.vector) {
                 *out += weight * v;
             }
         }
@@ -121,9 +135,9 @@ fn ritz(
         // Rayleigh's quotient, which does not lose the digits that 1/θ − s would.
         let square = dot(&shape, &force);
         let mut residual = 0.0;
-        for ((f, x), m) in force.iter().zip(&shape).zip(mass) {
+        for ((f, x), m) in force.iter().zip(&weighed(&shape)).zip(mass) {
             if *m > 0.0 {
-                let rest = f - square * m * x;
+                let rest = f - square * x;
                 residual += rest * rest / m;
             }
         }
@@ -134,8 +148,13 @@ fn ritz(
 }
 
 /// Makes a vector orthogonal to others and of length one, in the scalar product of M; false if nothing is left of it.
-fn orthonormalise(vector: &mut [f64], mass: &[f64], skip: &[Vec<f64>], basis: &[Vec<f64>]) -> bool {
-    let norm = |v: &[f64]| v.iter().zip(mass).map(|(v, m)| v * v * m).sum::<f64>().sqrt();
+fn orthonormalise(
+    vector: &mut [f64],
+    weighed: &impl Fn(&[f64]) -> Vec<f64>,
+    skip: &[Weighed],
+    basis: &[Weighed],
+) -> bool {
+    let norm = |v: &[f64]| dot(v, &weighed(v)).sqrt();
     let before = norm(vector);
     if !(before > 0.0 && before.is_finite()) {
         return false;
@@ -143,8 +162,8 @@ fn orthonormalise(vector: &mut [f64], mass: &[f64], skip: &[Vec<f64>], basis: &[
     vector.iter_mut().for_each(|v| *v /= before);
     for _ in 0..2 {
         for other in skip.iter().chain(basis) {
-            let along: f64 = vector.iter().zip(other).zip(mass).map(|((v, o), m)| v * o * m).sum();
-            for (v, o) in vector.iter_mut().zip(other) {
+            let along = dot(vector, &other.momentum);
+            for (v, o) in vector.iter_mut().zip(&other.vector) {
                 *v -= along * o;
             }
         }

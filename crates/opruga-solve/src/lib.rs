@@ -9,6 +9,7 @@ mod cholesky;
 mod conjugate_gradients;
 pub mod dense;
 pub mod eigen;
+mod landing;
 mod lu;
 mod matrix;
 mod one_model;

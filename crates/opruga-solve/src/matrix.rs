@@ -2,9 +2,10 @@
 
 use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 
+use crate::landing::{Landing, is_known};
 use opruga_core::potential::{Sink, StencilPack, StencilPacks};
 use opruga_core::threads::each_part;
-use opruga_math::WIDTH;
+use opruga_math::{Column, Simd, WIDTH};
 
 /// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
 ///
@@ -30,6 +31,8 @@ pub struct BlockMatrix<const D: usize> {
     factor: f64,
     rank_one: Vec<RankOne<D>>,
     ranks: usize,
+    /// Room of [`Landing`].
+    turned: Column,
 }
 
 /// How many orders of calls are remembered.
@@ -73,68 +76,6 @@ impl Script {
 pub(crate) struct RankOne<const D: usize> {
     pub(crate) factor: f64,
     pub(crate) entries: Vec<(u32, [f64; D])>,
-}
-
-/// Whether packs of stencils of so many nodes are remembered as a whole.
-fn is_replayed(nodes: usize) -> bool {
-    matches!(nodes, 3 | 4 | 6 | 8 | 10)
-}
-
-/// The blocks of some rows, in which matrices of stencils land; what belongs to other rows is left to others.
-struct Landing<'a, const D: usize> {
-    values: &'a mut [Block<D>],
-    /// The place of the first of them in the matrix.
-    first: usize,
-    factor: f64,
-}
-
-impl<const D: usize> Landing<'_, D> {
-    /// Adds the blocks of a pack of stencils at the places that are known.
-    fn add(&mut self, pack: &StencilPack<'_>, slots: &[u32]) {
-        match pack.nodes {
-            3 => self.add_all::<3>(pack, slots),
-            4 => self.add_all::<4>(pack, slots),
-            6 => self.add_all::<6>(pack, slots),
-            8 => self.add_all::<8>(pack, slots),
-            10 => self.add_all::<10>(pack, slots),
-            _ => unreachable!("`is_replayed` has told"),
-        }
-    }
-
-    #[inline(always)]
-    fn add_all<const N: usize>(&mut self, pack: &StencilPack<'_>, slots: &[u32]) {
-        let blocks = &pack.blocks[..N * N * D * D * WIDTH];
-        for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
-            for a in 0..N {
-                for b in a..N {
-                    let stored = &blocks[(a * N + b) * D * D * WIDTH..][..D * D * WIDTH];
-                    let mut block = [[0.0; D]; D];
-                    for i in 0..D {
-                        for j in 0..D {
-                            block[i][j] = self.factor * stored[(i * D + j) * WIDTH + lane % WIDTH];
-                        }
-                    }
-                    if let Some(upper) = self.values.get_mut((slots[a][b] as usize).wrapping_sub(self.first)) {
-                        for i in 0..D {
-                            for j in 0..D {
-                                upper[i][j] += block[i][j];
-                            }
-                        }
-                    }
-                    if a == b {
-                        continue;
-                    }
-                    if let Some(lower) = self.values.get_mut((slots[b][a] as usize).wrapping_sub(self.first)) {
-                        for i in 0..D {
-                            for j in 0..D {
-                                lower[i][j] += block[j][i];
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
 }
 
 /// How far ahead a call is looked for that comes out of turn.
@@ -278,7 +219,8 @@ impl<const D: usize> BlockMatrix<D> {
     fn replay(&mut self, pack: &StencilPack<'_>) -> usize {
         let count = pack.count * pack.nodes * pack.nodes;
         let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..count];
-        Landing { values: &mut self.values, first: 0, factor: self.factor }.add(pack, slots);
+        let Self { values, factor, turned, .. } = self;
+        Landing { values, first: 0, factor: *factor, turned }.add(Simd::best(), pack, slots);
         count
     }
 
@@ -306,10 +248,11 @@ impl<const D: usize> BlockMatrix<D> {
         let factor = self.factor;
         each_part(&mut self.values, &starts, |part, values| {
             let rows = rows[part]..rows.get(part + 1).map_or(usize::MAX, |row| *row);
-            let mut landing = Landing { values, first: starts[part], factor };
+            let mut turned = Column::default();
+            let mut landing = Landing { values, first: starts[part], factor, turned: &mut turned };
             packs.deliver(&rows, &mut |number, pack| {
                 let from = number * WIDTH * nodes * nodes;
-                landing.add(pack, &slots[from..from + pack.count * nodes * nodes]);
+                landing.add(Simd::best(), pack, &slots[from..from + pack.count * nodes * nodes]);
             });
         });
         self.packs.places += places;
@@ -459,7 +402,7 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
     }
     fn stencils(&mut self, pack: &StencilPack<'_>) {
         let (places, slots) = (pack.places.len(), pack.count * pack.nodes * pack.nodes);
-        if !is_replayed(pack.nodes) {
+        if !is_known(pack.nodes) {
             return self.block_by_block(pack);
         }
         if self.recording {
@@ -481,7 +424,7 @@ impl<const D: usize> Sink<D> for BlockMatrix<D> {
         self.packs.slots += slots;
     }
     fn stencil_packs(&mut self, threads: usize, packs: &dyn StencilPacks<D>) {
-        let known = threads > 1 && !self.recording && is_replayed(packs.nodes());
+        let known = threads > 1 && !self.recording && is_known(packs.nodes());
         if !(known && self.replay_in_rows(threads, packs)) {
             packs.deliver(&(0..usize::MAX), &mut |_, pack| self.stencils(pack));
         }

@@ -279,12 +279,42 @@ impl<const D: usize> Builder<'_, D> {
                 return Err(refuse(no_view(member.potential.name(), integrator.name())));
             }
         }
+        if system.inertia.is_some() {
+            self.check_mass_matrix(first, &*integrator).map_err(refuse)?;
+        }
         system.equip(&*integrator);
         for (l, state) in states.iter().enumerate() {
             state.history.restore(&mut system, l);
         }
         integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
         Ok(Island::new(system, integrator, bodies.to_vec()))
+    }
+
+    /// Refuses what cannot go with a mass matrix that couples nodes.
+    fn check_mass_matrix(&self, body: &BodyBlueprint<D>, integrator: &dyn Integrator<D>) -> Result<(), BuildError> {
+        let refuse = |code, message: String| Err(BuildError::new("fem", code, message));
+        if !integrator.takes_mass_matrix() {
+            let message = format!(
+                "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by \
+                 its own mass; allowed with it: `mass = \"lumped\"`. Consistent masses go with backward_euler, bdf2, \
+                 implicit_midpoint and newmark",
+                integrator.name()
+            );
+            return refuse("integrator.mass_matrix", message);
+        }
+        if !self.blueprint.colliders.is_empty() {
+            let message = "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed \
+                           with obstacles: `mass = \"lumped\"`";
+            return refuse("model.mass", message.into());
+        }
+        if let Mass::Node(mass) = body.mass {
+            let message = format!(
+                "`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells; allowed \
+                 with consistent masses: `mass` or `density` of the body"
+            );
+            return refuse("model.mass", message);
+        }
+        Ok(())
     }
 
     fn add_drag(

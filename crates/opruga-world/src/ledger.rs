@@ -8,7 +8,7 @@ use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes, sum_in_fixed_order};
 /// Energy of the world and what entered and left it since the start [J]; every channel is measured by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Kinetic energy ½ Σ m v².
+    /// Kinetic energy ½ v·M v, with lumped masses ½ Σ m v².
     pub kinetic: f64,
     /// Elastic energy of the models.
     pub elastic: f64,
@@ -133,14 +133,34 @@ pub(crate) fn survey<const D: usize>(system: &System<D>) -> Survey<D> {
     }
     let least = |lanes: &[[f64; WIDTH]; D]| lanes.map(|l| l.into_iter().fold(f64::INFINITY, Lane::smaller));
     let most = |lanes: &[[f64; WIDTH]; D]| lanes.map(|l| l.into_iter().fold(f64::NEG_INFINITY, Lane::larger));
+    let coupled = coupled_motion(system, &mut momentum);
     Survey {
-        kinetic: total_of(system, &sums.kinetic),
+        kinetic: total_of(system, &sums.kinetic) + coupled,
         gravity,
         momentum,
         position: [least(&sums.position[0]), most(&sums.position[1])],
         velocity: [least(&sums.velocity[0]), most(&sums.velocity[1])],
         finite: sums.finite.iter().all(|x| *x == 0.0),
     }
+}
+
+/// What a mass matrix that couples nodes adds to the momentum, and to the kinetic energy [J].
+fn coupled_motion<const D: usize>(system: &System<D>, momentum: &mut Momentum<D>) -> f64 {
+    let Some(inertia) = &system.inertia else { return 0.0 };
+    let v = system.node_by_node(&system.state.v);
+    for node in 0..system.nodes {
+        let (x, own) = (system.state.x.at(node), inertia.product::<D>(node, &v));
+        for d in 0..D {
+            momentum.linear.0[d] += own[d];
+        }
+        momentum.angular[2] += x[0] * own[1] - x[1] * own[0];
+        if D == 3 {
+            let z = D - 1;
+            momentum.angular[0] += x[1] * own[z] - x[z] * own[1];
+            momentum.angular[1] += x[z] * own[0] - x[0] * own[z];
+        }
+    }
+    0.5 * inertia.square::<D>(&v)
 }
 
 /// What [`survey`] finds, eight partial results each.

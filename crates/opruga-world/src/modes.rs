@@ -1,17 +1,18 @@
 //! Natural frequencies: small oscillations of a body about its present state.
 //!
-//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all models and loads as they act now and the lumped masses of the nodes: q = φ cos ωt
-//! with K φ = ω² M φ. Damping is left out. The state should be an equilibrium; about any other state the frequencies are
+//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all models and loads as they act now and the masses of the nodes, lumped or consistent
+//! as the models say: q = φ cos ωt with K φ = ω² M φ. Damping is left out. The state should be an equilibrium; about any other state the frequencies are
 //! those of the springs' and the gas's stiffness there. A negative ω² is told as it is: the state is unstable, as a body is
 //! that is about to buckle.
 
 use crate::error::WorldError;
 use crate::world::World;
 use opruga_core::error::BuildError;
-use opruga_core::potential::Definiteness;
+use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::state::Columns;
-use opruga_core::system::Stage;
+use opruga_core::system::{Stage, System};
 use opruga_integrators::equilibrium::rigid::{shape_of, unheld_motions};
+use opruga_solve::blocks::isotropic;
 use opruga_solve::eigen::lowest_modes;
 use opruga_solve::{BlockMatrix, Cholesky, dot};
 use std::collections::BTreeMap;
@@ -21,9 +22,9 @@ use std::collections::BTreeMap;
 pub struct Mode<const D: usize> {
     /// ω² [1/s²]; zero for rigid modes, negative where the state is unstable.
     pub square: f64,
-    /// Displacement of every node, with Σ m |φ|² = 1 kg·m² [m].
+    /// Displacement of every node, with φᵀMφ = 1 kg·m² [m].
     pub shape: Vec<[f64; D]>,
-    /// How far K φ = ω² M φ holds, |K φ − ω² M φ| in the norm of M⁻¹ [1/s²].
+    /// How far K φ = ω² M φ holds, |K φ − ω² M φ| in the norm of the inverse lumped masses [1/s²].
     pub residual: f64,
     /// The name of a motion of the whole body that nothing holds, such as `translation along x`.
     pub rigid: Option<String>,
@@ -93,7 +94,7 @@ impl<const D: usize> World<D> {
         let mut known: Vec<Vec<f64>> = Vec::new();
         for motion in unheld_motions(&system) {
             let mut shape = shape_of(&system, &motion);
-            if !orthonormalise(&mut shape, &mass, &known) {
+            if !orthonormalise(&mut shape, &|x, y| weigh(&system, &mass, x, y), &known) {
                 continue;
             }
             let mut strained = vec![0.0; shape.len()];
@@ -115,6 +116,9 @@ impl<const D: usize> World<D> {
             shifted.assemble(system.nodes, 0, |matrix| {
                 system.hessian(Stage::Current, 0.0, Definiteness::Exact, matrix);
                 for node in 0..system.nodes {
+                    for (other, mass) in system.inertia.iter().flat_map(|inertia| inertia.row(node)) {
+                        matrix.block(node, other, isotropic(shift * mass));
+                    }
                     matrix.add_diagonal(node, shift * system.mass.at(node));
                 }
             });
@@ -131,7 +135,9 @@ impl<const D: usize> World<D> {
             }
         }
         let wanted = count.saturating_sub(rigid.len());
-        let found = lowest_modes(wanted, &mass, shift, &known, |x| factor.solve(x), |x, y| stiffness.multiply(x, y));
+        let by_mass = |x: &[f64], y: &mut [f64]| weigh(&system, &mass, x, y);
+        let by_stiffness = |x: &[f64], y: &mut [f64]| stiffness.multiply(x, y);
+        let found = lowest_modes(wanted, &mass, shift, &known, by_mass, |x| factor.solve(x), by_stiffness);
         rigid.truncate(count);
         rigid.extend(found.into_iter().map(|mode| Mode {
             square: mode.square,
@@ -147,15 +153,33 @@ fn vectors<const D: usize>(shape: &[f64]) -> Vec<[f64; D]> {
     shape.as_chunks::<D>().0.to_vec()
 }
 
+/// M x, without rows and columns of coordinates that have no mass.
+fn weigh<const D: usize>(system: &System<D>, mass: &[f64], x: &[f64], y: &mut [f64]) {
+    let Some(inertia) = &system.inertia else {
+        return y.iter_mut().zip(x).zip(mass).for_each(|((y, x), m)| *y = m * x);
+    };
+    let x: Vec<f64> = x.iter().zip(mass).map(|(x, m)| if *m > 0.0 { *x } else { 0.0 }).collect();
+    for node in 0..system.nodes {
+        let coupled = inertia.product::<D>(node, &x);
+        for d in 0..D {
+            let k = node * D + d;
+            y[k] = if mass[k] > 0.0 { mass[k] * x[k] + coupled[d] } else { 0.0 };
+        }
+    }
+}
+
 /// Makes a shape orthogonal to others and gives it unit length in the scalar product of the masses.
-fn orthonormalise(shape: &mut [f64], mass: &[f64], known: &[Vec<f64>]) -> bool {
+fn orthonormalise(shape: &mut [f64], weigh: &impl Fn(&[f64], &mut [f64]), known: &[Vec<f64>]) -> bool {
+    let mut momentum = vec![0.0; shape.len()];
     for _ in 0..2 {
         for other in known {
-            let along: f64 = shape.iter().zip(other).zip(mass).map(|((s, o), m)| s * o * m).sum();
+            weigh(other, &mut momentum);
+            let along = dot(shape, &momentum);
             shape.iter_mut().zip(other).for_each(|(s, o)| *s -= along * o);
         }
     }
-    let square: f64 = shape.iter().zip(mass).map(|(s, m)| s * s * m).sum();
+    weigh(shape, &mut momentum);
+    let square = dot(shape, &momentum);
     if square.is_nan() || square <= 0.0 {
         return false;
     }

@@ -1,6 +1,7 @@
 //! Consistent and lumped masses of finite elements: bars and plates with closed forms, conserved quantities, refusals.
 
 use opruga_core::spec::{Value, Values};
+use opruga_math::Lane;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, Registry, World, WorldError};
@@ -82,8 +83,8 @@ fn bar<const D: usize>(mesh: Mesh<D>, mass: &str) -> Blueprint<D> {
 fn closed_form(consistent: bool, j: usize, length: f64, cells: usize) -> f64 {
     let (h, speed) = (length / cells as f64, (MODULUS / DENSITY).sqrt());
     let phase = (2 * j - 1) as f64 * PI / (2.0 * length) * h;
-    let lumped = 2.0 * speed / h * (0.5 * phase).sin();
-    if consistent { lumped * (3.0 / (2.0 + phase.cos())).sqrt() } else { lumped }
+    let lumped = 2.0 * speed / h * libm::sin(0.5 * phase);
+    if consistent { lumped * (3.0 / (2.0 + libm::cos(phase))).sqrt() } else { lumped }
 }
 
 fn bar_has_the_frequencies_of_the_closed_form<const D: usize>(mesh: Mesh<D>, length: f64, cells: usize) {
@@ -116,11 +117,12 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
         let mut blueprint = bar(mesh.clone(), mass);
         let spec = Registry::<2>::default().integrator(integrator).expect("an integrator").spec();
         blueprint.integrator = Values::defaults(spec, 2);
+        blueprint.integrator.set(spec, "tolerance", Value::Number(1e-14), 2).expect("a field");
         let mode = world(blueprint.clone()).modes(0, 1).expect("a mode").remove(0);
         let steps = 200;
         blueprint.time = Time { seconds: 1.0, frame: 2.0 * PI / mode.omega() / f64::from(steps), substeps: 1 };
         let mut bar = world(blueprint);
-        let size = 1e-5 / mode.shape.iter().map(|u| u[0].abs()).fold(0.0, f64::max);
+        let size = 1e-5 / mode.shape.iter().map(|u| u[0].abs()).fold(0.0, Lane::larger);
         let start: Vec<[f64; 2]> =
             mesh.positions.iter().zip(&mode.shape).map(|(x, u)| core::array::from_fn(|d| x[d] + size * u[d])).collect();
         for (node, x) in start.iter().enumerate() {
@@ -135,7 +137,7 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
             // The rule's own error of phase is (hω)²/12 of a period: 5e-4 of a turn, of which the cosine sees the square.
             assert!(way < 1e-3 * 1e-5, "{integrator}, {mass}, node {node}: {way}");
         }
-        assert!((bar.energy().total() / energy - 1.0).abs() < 1e-6, "{integrator}, {mass}: {:?}", bar.energy());
+        assert!((bar.energy().total() / energy - 1.0).abs() < 1e-5, "{integrator}, {mass}: {:?}", bar.energy());
     }
 }
 

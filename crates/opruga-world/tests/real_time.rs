@@ -30,7 +30,8 @@ fn clamped(mesh: Mesh<3>, rule: &str, accuracy: &str, modulus: f64, more: &[(&st
     set.extend_from_slice(more);
     let material = fields(Values::defaults(spec, 3), &set, spec);
     let spec = registry.integrator(rule).expect("an integrator").spec();
-    let set: &[(&str, Value)] = if rule == "equilibrium" { &[] } else { &[("accuracy", text(accuracy))] };
+    let set: &[(&str, Value)] =
+        if rule == "equilibrium" || accuracy.is_empty() { &[] } else { &[("accuracy", text(accuracy))] };
     let integrator = fields(Values::defaults(spec, 3), set, spec);
     Blueprint {
         name: "test".into(),
@@ -142,7 +143,7 @@ fn neither_threads_nor_interruptions_nor_instructions_leave_a_trace() {
             }
             whole.frame().unwrap();
         }
-        for threads in [1, 2, 3] {
+        for threads in [1, 2, 3, 8] {
             let mut other = world(blueprint(), threads);
             other.restore(snapshot.as_ref().unwrap()).unwrap();
             (0..7).for_each(|_| other.frame().unwrap());
@@ -154,6 +155,39 @@ fn neither_threads_nor_interruptions_nor_instructions_leave_a_trace() {
             let mut other = World::new(blueprint(), options).unwrap();
             (0..14).for_each(|_| other.frame().unwrap());
             assert_eq!(other.state_hash(), whole.state_hash(), "{rule}, {simd:?}");
+        }
+    }
+}
+
+/// Forces of one solid are shared by threads, also in explicit steps and in exact ones, with several parts and damping.
+#[test]
+fn one_large_solid_has_the_same_bits_on_any_number_of_threads() {
+    let quadratic = Mesh::grid([0.0; 3], [1.0; 3], [5; 3]).unwrap().into_simplices().unwrap().into_quadratic().unwrap();
+    let boxes = Mesh::grid([0.0; 3], [1.0; 3], [10; 3]).unwrap();
+    for (mesh, rule, accuracy, frames) in [
+        (cube(10), "symplectic_euler", "", 6),
+        (boxes, "verlet", "", 6),
+        (quadratic, "backward_euler", "exact", 1),
+        (cube(10), "newmark", "exact", 1),
+    ] {
+        assert!(mesh.nodes() >= 1000, "{} nodes are not shared", mesh.nodes());
+        let more = [("damping", Value::Number(1e-3)), ("material", text("fixed_corotated"))];
+        let mut blueprint = clamped(mesh, rule, accuracy, 1e4, &more);
+        let spec = Registry::<3>::default().integrator(rule).expect("an integrator").spec();
+        if accuracy.is_empty() {
+            blueprint.time.substeps = 40;
+        } else {
+            blueprint.integrator.set(spec, "linear_solver", text("conjugate_gradients"), 3).expect("a field");
+        }
+        let run = |threads: usize| {
+            let mut world = world(blueprint.clone(), threads);
+            (0..frames).for_each(|_| world.frame().unwrap());
+            let ledger = world.energy();
+            (world.state_hash(), [ledger.kinetic, ledger.elastic, ledger.loss_damping].map(f64::to_bits))
+        };
+        let alone = run(1);
+        for threads in [2, 3, 8] {
+            assert_eq!(run(threads), alone, "{rule}, {threads} threads");
         }
     }
 }

@@ -252,6 +252,9 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
     }
+    fn takes_mass_matrix(&self) -> bool {
+        true
+    }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();
         let (work, velocities) = (system.work, system.state.v.clone());

@@ -69,14 +69,20 @@ impl<const D: usize> Kept<D> {
     }
 
     /// Makes it ready to be solved with in the free directions.
-    pub(crate) fn hold(&mut self, linear: &mut Linear<D>, filter: &Filter<D>, direct: bool) -> Result<(), Indefinite> {
+    pub(crate) fn hold(
+        &mut self,
+        threads: usize,
+        linear: &mut Linear<D>,
+        filter: &Filter<D>,
+        direct: bool,
+    ) -> Result<(), Indefinite> {
         let same = self.ready && self.free == filter.free;
         let held = |node: usize| filter.free[node] || self.projectors[node] == filter.projectors[node];
         if same && (0..filter.free.len()).all(held) {
             return Ok(());
         }
         self.ready = false;
-        self.packed.hold(linear.whole(), filter.free, filter.projectors)?;
+        self.packed.hold(threads, linear.whole(), filter.free, filter.projectors)?;
         if direct {
             linear.constrain(filter);
             self.cholesky.update(linear.constrained())?;

@@ -119,7 +119,7 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
 }
 
 impl<const D: usize> Mixture<'_, D> {
-    /// Delivers K, then C after `scale` was told its factor.
+    /// Delivers K, C after `scale` was told its factor, and what a consistent mass matrix adds to the masses of the nodes.
     fn deliver<S: Sink<D>>(&self, sink: &mut S, scale: impl Fn(&mut S, f64)) {
         self.system.hessian(self.stage, self.time, self.keep, sink);
         if self.load != 1.0 {
@@ -131,6 +131,15 @@ impl<const D: usize> Mixture<'_, D> {
             scale(sink, self.beta);
             self.system.damping_matrix(self.stage, self.time, sink);
             scale(sink, 1.0);
+        }
+        if self.sigma != 0.0
+            && let Some(inertia) = &self.system.inertia
+        {
+            for node in 0..inertia.nodes() {
+                for (other, mass) in inertia.row(node) {
+                    sink.block(node, other, isotropic(self.sigma * mass));
+                }
+            }
         }
     }
 }

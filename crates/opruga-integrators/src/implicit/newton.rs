@@ -424,6 +424,18 @@ pub(crate) fn evaluate<const D: usize>(
             room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
         }
     }
+    if balance.sigma != 0.0
+        && let Some(inertia) = &system.inertia
+    {
+        room.way.clear();
+        room.way.extend(u.iter().zip(&room.y).map(|(u, y)| u - y));
+        for node in 0..system.nodes {
+            let product = inertia.product::<D>(node, &room.way);
+            for d in 0..D {
+                room.residual[node * D + d] += balance.sigma * product[d];
+            }
+        }
+    }
     if balance.load != 1.0 {
         system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
         for node in 0..system.nodes {
@@ -558,6 +570,10 @@ fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balan
             let way = u[k] - room.y[k];
             inertia += mass * way * way;
         }
+    }
+    if let Some(coupled) = &system.inertia {
+        // The forces were evaluated last, and with them the way.
+        inertia += coupled.square::<D>(&room.way);
     }
     inertia *= 0.5 * balance.sigma;
     let mut lifted = 0.0;

@@ -177,7 +177,7 @@ impl Task<'_> {
         }
         let filter = Filter { free, projectors };
         filter.apply(right);
-        kept.hold(linear, &filter, self.direct)?;
+        kept.hold(system.threads, linear, &filter, self.direct)?;
         Ok(kept.begin(system, right))
     }
 

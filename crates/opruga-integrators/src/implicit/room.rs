@@ -36,6 +36,8 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) trial: Vec<f64>,
     pub(crate) step: Vec<f64>,
     pub(crate) right: Vec<f64>,
+    /// The displacement from y, where a mass matrix couples nodes.
+    pub(crate) way: Vec<f64>,
     /// What held directions take of the force [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
@@ -80,6 +82,7 @@ impl<const D: usize> Default for Room<D> {
             trial: Vec::new(),
             step: Vec::new(),
             right: Vec::new(),
+            way: Vec::new(),
             reaction: Vec::new(),
             struck: Vec::new(),
             prescribed: Vec::new(),

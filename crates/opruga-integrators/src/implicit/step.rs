@@ -78,6 +78,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn shares_threads(&self) -> bool {
         self.settings.real_time
     }
+    fn takes_mass_matrix(&self) -> bool {
+        true
+    }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();
         room.own = self.rule.history();

@@ -27,7 +27,8 @@ use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
-use opruga_solve::blocks::times;
+use opruga_solve::blocks::{Block, isotropic, times};
+use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
 
 /// The parameters.
 pub const SPEC: Spec = Spec {
@@ -126,12 +127,11 @@ impl<const D: usize> Rule<D> for Newmark {
         let begun = system.history.numbers[0] > 0.0;
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
-        room.a0.resize(room.u.len(), 0.0);
+        first_acceleration(system, room);
         for node in 0..system.nodes {
-            let inverse = system.inverse_mass.at(node);
             for d in 0..D {
                 let k = node * D + d;
-                let a = if begun { system.history.columns[0].0[d][node] } else { room.force.0[d][node] * inverse };
+                let a = if begun { system.history.columns[0].0[d][node] } else { room.a0[k] };
                 let v = room.v0[k];
                 room.a0[k] = a;
                 let way = h * v + h * h * (0.5 - beta) * a;
@@ -172,6 +172,40 @@ impl<const D: usize> Rule<D> for Newmark {
             system.history.columns[0].set(node, [0.0; D]);
         }
         system.history.numbers[0] = 1.0;
+    }
+}
+
+/// M a₀ = F at the start; where nodes are coupled, those that are held do not accelerate.
+fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
+    let Room { a0, force, held, mass, step, right, .. } = room;
+    a0.resize(step.len(), 0.0);
+    for node in 0..system.nodes {
+        let inverse = system.inverse_mass.at(node);
+        for d in 0..D {
+            a0[node * D + d] = force.0[d][node] * inverse;
+        }
+    }
+    let Some(inertia) = system.inertia.as_ref().filter(|_| system.history.numbers[0] <= 0.0) else { return };
+    for (k, b) in right.iter_mut().enumerate() {
+        *b = if held[k].is_nan() { force.0[k % D][k / D] } else { 0.0 };
+    }
+    let multiply = |x: &[f64], y: &mut [f64]| {
+        for node in 0..system.nodes {
+            let coupled = inertia.product::<D>(node, x);
+            for d in 0..D {
+                let k = node * D + d;
+                y[k] = if held[k].is_nan() { mass[node] * x[k] + coupled[d] } else { x[k] };
+            }
+        }
+    };
+    let blocks: Vec<Block<D>> = mass.iter().map(|mass| isotropic(*mass)).collect();
+    let mut lumped = BlockJacobi::default();
+    // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
+    let solved = lumped
+        .update(blocks.iter())
+        .and_then(|()| conjugate_gradients(multiply, &lumped, right, step, 1e-14, 1000, &mut Directions::default()));
+    if solved.is_ok() {
+        a0.copy_from_slice(step);
     }
 }
 

@@ -4,7 +4,7 @@
 //! unit vectors; reference boxes are [−1, 1]ᴰ.
 
 use core::fmt::Debug;
-use opruga_mesh::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
+use opruga_mesh::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES};
 
 /// A kind of element with N nodes in D dimensions.
 pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sync + 'static {
@@ -14,10 +14,41 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];
+    /// Corners: D + 1 are those of a simplex.
+    const CORNERS: usize;
+    /// The shape functions and ∂Nₐ/∂ξ at a point of the reference cell.
+    fn at(xi: [f64; 3]) -> ([f64; N], [[f64; D]; N]);
+    /// The shares of the nodes in the lumped mass of a cell, as [`opruga_mesh::Mesh::lumped_measures`] gives them.
+    fn lumped() -> [f64; N] {
+        [1.0 / N as f64; N]
+    }
     /// Whether ∂x/∂ξ is made of differences to the first node.
     const SIMPLEX: bool;
     /// Whether the part of a law with λ sees the mean deformation of the cell, lest it locks.
     const SELECTIVE: bool = false;
+}
+
+/// λ₀ = 1 − Σ ξ, λᵢ = ξᵢ of a simplex with C corners.
+fn barycentric<const C: usize>(xi: [f64; 3]) -> [f64; C] {
+    let mut out = [1.0; C];
+    for (own, x) in out[1..].iter_mut().zip(xi) {
+        *own = x;
+    }
+    out[0] -= out[1..].iter().sum::<f64>();
+    out
+}
+
+/// Shape functions of quadratic simplices.
+fn quadratic_values<const N: usize, const C: usize>(at: [f64; C], sides: &[[usize; 2]]) -> [f64; N] {
+    core::array::from_fn(|a| match a.checked_sub(C) {
+        None => at[a] * (2.0 * at[a] - 1.0),
+        Some(side) => 4.0 * at[sides[side][0]] * at[sides[side][1]],
+    })
+}
+
+/// Π ½(1 + ξₐξ) at a point.
+fn box_values<const D: usize, const N: usize>(at: [f64; 3]) -> [f64; N] {
+    core::array::from_fn(|a| (0..D).map(|d| 0.5 * (1.0 + CORNERS[a][d] * at[d])).product())
 }
 
 /// Triangle of three nodes, one point.
@@ -28,6 +59,10 @@ impl Shape<2, 3> for Triangle {
     const WEIGHTS: &'static [f64] = &[0.5];
     const SLOPES: &'static [[[f64; 2]; 3]] = &[[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]];
     const SIMPLEX: bool = true;
+    const CORNERS: usize = 3;
+    fn at(xi: [f64; 3]) -> ([f64; 3], [[f64; 2]; 3]) {
+        (barycentric(xi), Self::SLOPES[0])
+    }
 }
 
 /// Tetrahedron of four nodes, one point.
@@ -38,6 +73,10 @@ impl Shape<3, 4> for Tetrahedron {
     const WEIGHTS: &'static [f64] = &[1.0 / 6.0];
     const SLOPES: &'static [[[f64; 3]; 4]] = &[[[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]];
     const SIMPLEX: bool = true;
+    const CORNERS: usize = 4;
+    fn at(xi: [f64; 3]) -> ([f64; 4], [[f64; 3]; 4]) {
+        (barycentric(xi), Self::SLOPES[0])
+    }
 }
 
 /// ∂λᵢ/∂ξⱼ of barycentric coordinates.
@@ -89,6 +128,14 @@ impl Shape<2, 6> for QuadraticTriangle {
         ]
     };
     const SIMPLEX: bool = false;
+    const CORNERS: usize = 3;
+    fn at(xi: [f64; 3]) -> ([f64; 6], [[f64; 2]; 6]) {
+        let at = barycentric::<3>(xi);
+        (quadratic_values(at, &TRIANGLE_SIDES), quadratic_slopes(at, &TRIANGLE_SIDES))
+    }
+    fn lumped() -> [f64; 6] {
+        TRIANGLE_SHARES
+    }
 }
 
 /// Tetrahedron of ten nodes, four points (degree 2; Keast 1986).
@@ -108,10 +155,18 @@ impl Shape<3, 10> for QuadraticTetrahedron {
         ]
     };
     const SIMPLEX: bool = false;
+    const CORNERS: usize = 4;
+    fn at(xi: [f64; 3]) -> ([f64; 10], [[f64; 3]; 10]) {
+        let at = barycentric::<4>(xi);
+        (quadratic_values(at, &TETRAHEDRON_EDGES), quadratic_slopes(at, &TETRAHEDRON_EDGES))
+    }
+    fn lumped() -> [f64; 10] {
+        TETRAHEDRON_SHARES
+    }
 }
 
 /// The corners of the reference boxes.
-const CORNERS: [[f64; 3]; 8] = [
+pub(super) const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -165,6 +220,10 @@ impl Shape<2, 4> for Quadrilateral {
     const WEIGHTS: &'static [f64] = &[1.0; 4];
     const SLOPES: &'static [[[f64; 2]; 4]] = &gauss_slopes::<2, 4>();
     const SIMPLEX: bool = false;
+    const CORNERS: usize = 4;
+    fn at(xi: [f64; 3]) -> ([f64; 4], [[f64; 2]; 4]) {
+        (box_values::<2, 4>(xi), box_slopes(xi))
+    }
     const SELECTIVE: bool = true;
 }
 
@@ -176,6 +235,10 @@ impl Shape<3, 8> for Hexahedron {
     const WEIGHTS: &'static [f64] = &[1.0; 8];
     const SLOPES: &'static [[[f64; 3]; 8]] = &gauss_slopes::<3, 8>();
     const SIMPLEX: bool = false;
+    const CORNERS: usize = 8;
+    fn at(xi: [f64; 3]) -> ([f64; 8], [[f64; 3]; 8]) {
+        (box_values::<3, 8>(xi), box_slopes(xi))
+    }
     const SELECTIVE: bool = true;
 }
 

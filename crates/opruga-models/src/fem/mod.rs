@@ -30,6 +30,7 @@
 mod contraction;
 mod elements;
 mod law;
+mod mass;
 pub mod material;
 pub mod materials;
 mod pass;
@@ -71,11 +72,19 @@ pub struct Solid<const D: usize> {
     /// The shares of all parts.
     shares: Vec<Task>,
     sums: Sums,
+    /// What the consistent mass matrix has more than the lumped masses.
+    inertia: Vec<(u32, u32, f64)>,
     damped: bool,
 }
 
 fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
     BuildError::new(SPEC.kind, code, message)
+}
+
+/// What a solid is built of.
+struct Built<const D: usize> {
+    parts: Vec<Box<dyn Part<D>>>,
+    inertia: Vec<(u32, u32, f64)>,
 }
 
 /// What is the same for all cells while a solid is built.
@@ -87,6 +96,8 @@ struct Builder<'a, const D: usize> {
     moduli: Option<&'a [f64]>,
     stress: bool,
     damped: bool,
+    /// The density [kg/m³, in the plane per area] where the mass matrix is consistent.
+    density: Option<f64>,
 }
 
 impl<'a, const D: usize> Builder<'a, D> {
@@ -155,6 +166,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             moduli,
             stress: D == 2 && first.text("plane") == Some("stress"),
             damped: ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0),
+            density: (first.text("mass") == Some("consistent")).then(|| density(ingredients)).transpose()?,
         })
     }
 
@@ -178,7 +190,7 @@ impl<'a, const D: usize> Builder<'a, D> {
     /// The section of one kind of cells, the first of which has the number `first` in the mesh.
     fn add<E: Shape<D, N>, const N: usize>(
         &self,
-        parts: &mut Vec<Box<dyn Part<D>>>,
+        built: &mut Built<D>,
         list: &[[u32; N]],
         first: usize,
         law: fn() -> Box<dyn Law<D>>,
@@ -193,6 +205,12 @@ impl<'a, const D: usize> Builder<'a, D> {
         let positions = &self.ingredients.mesh.positions;
         for cell in &cells {
             self.check::<E, N>(cell, positions)?;
+        }
+        if let Some(density) = self.density {
+            for cell in &cells {
+                let rest = cell.nodes.map(|n| positions[n as usize]);
+                mass::entries::<E, D, N>(&cell.nodes, &rest, density, &mut built.inertia);
+            }
         }
         if E::SIMPLEX && !self.stress {
             for values in self.ingredients.values {
@@ -218,7 +236,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             selective: !self.stress,
             damped: self.damped,
         };
-        parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
+        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
         Ok(())
     }
 
@@ -248,7 +266,8 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    fn finish(self, parts: Vec<Box<dyn Part<D>>>) -> Box<Solid<D>> {
+    fn finish(self, built: Built<D>) -> Box<Solid<D>> {
+        let Built { parts, inertia } = built;
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
         let mut shares = Vec::new();
         let mut start = FORCES;
@@ -260,8 +279,15 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Box::new(Solid { layout, nodes, parts, shares, sums, damped: self.damped })
+        Box::new(Solid { layout, nodes, parts, shares, sums, inertia, damped: self.damped })
     }
+}
+
+/// The density of a body [kg/m³, in the plane per area], from the masses of its nodes.
+fn density<const D: usize>(ingredients: &Ingredients<D>) -> Result<f64, BuildError> {
+    let measure = ingredients.mesh.measure().map_err(|e| refuse("model.mass", e.to_string()))?.value();
+    let nodes = 0..ingredients.mesh.nodes();
+    Ok(nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure)
 }
 
 /// The names of the groups of cells of a mesh.
@@ -280,13 +306,13 @@ impl Model<2> for FemModel {
         let (law, space) =
             if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
         let cells = &ingredients.mesh.cells;
-        let mut parts = Vec::new();
-        builder.add::<Triangle, 3>(&mut parts, &cells.triangles, 0, law, space)?;
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
         let mut first = cells.triangles.len();
-        builder.add::<Quadrilateral, 4>(&mut parts, &cells.quadrilaterals, first, law, space)?;
+        builder.add::<Quadrilateral, 4>(&mut built, &cells.quadrilaterals, first, law, space)?;
         first += cells.quadrilaterals.len();
-        builder.add::<QuadraticTriangle, 6>(&mut parts, &cells.quadratic_triangles, first, law, space)?;
-        Ok(builder.finish(parts))
+        builder.add::<QuadraticTriangle, 6>(&mut built, &cells.quadratic_triangles, first, law, space)?;
+        Ok(builder.finish(built))
     }
 }
 
@@ -298,13 +324,13 @@ impl Model<3> for FemModel {
         let builder = Builder::new(ingredients)?;
         let law = builder.entry()?.space;
         let cells = &ingredients.mesh.cells;
-        let mut parts = Vec::new();
-        builder.add::<Tetrahedron, 4>(&mut parts, &cells.tetrahedra, 0, law, None)?;
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;
         let mut first = cells.tetrahedra.len();
-        builder.add::<Hexahedron, 8>(&mut parts, &cells.hexahedra, first, law, None)?;
+        builder.add::<Hexahedron, 8>(&mut built, &cells.hexahedra, first, law, None)?;
         first += cells.hexahedra.len();
-        builder.add::<QuadraticTetrahedron, 10>(&mut parts, &cells.quadratic_tetrahedra, first, law, None)?;
-        Ok(builder.finish(parts))
+        builder.add::<QuadraticTetrahedron, 10>(&mut built, &cells.quadratic_tetrahedra, first, law, None)?;
+        Ok(builder.finish(built))
     }
 }
 
@@ -366,6 +392,9 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     fn views(&self) -> Views {
         Views { energy: true, hessian: true, damping: self.damped }
+    }
+    fn inertia(&self) -> &[(u32, u32, f64)] {
+        &self.inertia
     }
     /// `prepare` has read all positions before any of them changes.
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}

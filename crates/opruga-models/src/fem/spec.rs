@@ -51,6 +51,14 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             "Retardation time τ of the Kelvin–Voigt solid; a mode of angular frequency ω loses its energy at the rate τω².",
         ),
         Field::new(
+            "mass",
+            Allowed::Choice(&["lumped", "consistent"]),
+            "",
+            Default::Text("lumped"),
+            "Whether every node has a mass of its own, or the mass is that of the shape functions, ρ∫NₐNᵦ, which couples the nodes of a \
+cell: waves are then too fast where lumped masses make them too slow. For implicit integrators and natural frequencies.",
+        ),
+        Field::new(
             "plane",
             Allowed::Choice(&["strain", "stress"]),
             "",

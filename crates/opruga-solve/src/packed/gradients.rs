@@ -39,9 +39,9 @@ impl<const D: usize> Work for Multiply<'_, D> {
                 for (columns, block) in columns.zip(blocks) {
                     let x = P::Part::gather_rows(self.rows, &columns[offset..offset + P::Part::NUMBERS]);
                     for i in 0..D {
-                        let mut share = P::Part::load(&block[i * D * WIDTH + offset..]) * x[0];
+                        let mut share = P::Part::load_single(&block[i * D * WIDTH + offset..]) * x[0];
                         for j in 1..D {
-                            share += P::Part::load(&block[(i * D + j) * WIDTH + offset..]) * x[j];
+                            share += P::Part::load_single(&block[(i * D + j) * WIDTH + offset..]) * x[j];
                         }
                         sum[i] += share;
                     }

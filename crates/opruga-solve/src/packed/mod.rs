@@ -28,6 +28,9 @@ const WINDOW: usize = 512;
 const NONE: u32 = u32::MAX;
 
 /// A matrix in packs, and conjugate gradients on it with the inverses of the diagonal blocks.
+///
+/// Its entries are rounded to single precision (parts of rank one and sums are not): it is for corrections whose balance is
+/// looked at afterwards.
 #[derive(Debug, Default)]
 pub struct Packed<const D: usize> {
     generation: u64,
@@ -62,7 +65,8 @@ struct Piece<const D: usize> {
     column: Vec<u32>,
     /// Their places in the matrix.
     source: Vec<u32>,
-    values: Column,
+    /// In single precision: half the memory to pass over, and [`Packed`] solves for corrections.
+    values: Vec<f32>,
     /// The approximate inverse of the diagonal blocks: D² packs each, the held directions taken out.
     inverse: Column,
     residual: Column,
@@ -72,6 +76,12 @@ struct Piece<const D: usize> {
     solution: Column,
     /// The part of a scalar product.
     sum: f64,
+    /// The number of its first pack.
+    first: usize,
+    /// The part of the stiffness.
+    stiffness: f64,
+    /// Whether all of its diagonal blocks have an inverse.
+    definite: bool,
 }
 
 impl<const D: usize> Packed<D> {
@@ -87,7 +97,7 @@ impl<const D: usize> Packed<D> {
                     let block = &values[*source as usize];
                     for i in 0..D {
                         for j in 0..D {
-                            packs[(i * D + j) * WIDTH + l] = block[i][j];
+                            packs[(i * D + j) * WIDTH + l] = block[i][j] as f32;
                         }
                     }
                 }
@@ -123,6 +133,7 @@ impl<const D: usize> Packed<D> {
             let count = PACKS.min(packs - first);
             let zeros = |times: usize| Column::zeros(count * times * WIDTH);
             let mut piece = Piece {
+                first,
                 start: vec![0],
                 inverse: zeros(D * D),
                 residual: zeros(D),
@@ -144,7 +155,7 @@ impl<const D: usize> Packed<D> {
                 }
                 piece.start.push((piece.source.len() / WIDTH) as u32);
             }
-            piece.values = Column::zeros(piece.source.len() * D * D);
+            piece.values = vec![0.0; piece.source.len() * D * D];
             self.pieces.push(piece);
         }
     }
@@ -154,30 +165,43 @@ impl<const D: usize> Packed<D> {
     ///
     /// # Errors
     /// [`Indefinite`] where a block is not positive definite.
-    pub fn hold(&mut self, matrix: &BlockMatrix<D>, free: &[bool], projectors: &[Block<D>]) -> Result<(), Indefinite> {
-        self.stiffness = 0.0;
-        for (seat, node) in self.node.iter().map(|node| *node as usize).enumerate() {
-            let own = matrix.diagonal_block(node);
-            for d in 0..D {
-                self.stiffness += own[d][d].abs() / D as f64;
-            }
-            let projector = &projectors[node];
-            let inverse = if free[node] {
-                inverse_of_positive(own).ok_or(Indefinite)?
-            } else {
-                let inverse = inverse_of_positive(&held(own, projector)).ok_or(Indefinite)?;
-                product(projector, &product(&inverse, projector))
-            };
-            let (pack, lane) = (seat / WIDTH, seat % WIDTH);
-            let piece = &mut self.pieces[pack / PACKS];
-            let to = &mut piece.inverse[(pack % PACKS) * D * D * WIDTH..];
-            for i in 0..D {
-                for j in 0..D {
-                    to[(i * D + j) * WIDTH + lane] = inverse[i][j];
+    pub fn hold(
+        &mut self,
+        threads: usize,
+        matrix: &BlockMatrix<D>,
+        free: &[bool],
+        projectors: &[Block<D>],
+    ) -> Result<(), Indefinite> {
+        let nodes = &self.node;
+        each(threads, &mut self.pieces, |piece| {
+            (piece.stiffness, piece.definite) = (0.0, true);
+            let seats = piece.first * WIDTH..((piece.first + piece.start.len() - 1) * WIDTH).min(nodes.len());
+            for (k, node) in nodes[seats].iter().map(|node| *node as usize).enumerate() {
+                let own = matrix.diagonal_block(node);
+                for d in 0..D {
+                    piece.stiffness += own[d][d].abs() / D as f64;
+                }
+                let projector = &projectors[node];
+                let inverse = if free[node] {
+                    inverse_of_positive(own)
+                } else {
+                    let inverse = inverse_of_positive(&held(own, projector));
+                    inverse.map(|inverse| product(projector, &product(&inverse, projector)))
+                };
+                let Some(inverse) = inverse else {
+                    piece.definite = false;
+                    return;
+                };
+                let to = &mut piece.inverse[(k / WIDTH) * D * D * WIDTH..];
+                for i in 0..D {
+                    for j in 0..D {
+                        to[(i * D + j) * WIDTH + k % WIDTH] = inverse[i][j];
+                    }
                 }
             }
-        }
-        Ok(())
+        });
+        self.stiffness = self.pieces.iter().map(|piece| piece.stiffness).sum();
+        if self.pieces.iter().all(|piece| piece.definite) { Ok(()) } else { Err(Indefinite) }
     }
 
     /// The sum over the nodes of the mean diagonal of their blocks, held directions included.
@@ -185,7 +209,7 @@ impl<const D: usize> Packed<D> {
         self.stiffness
     }
 
-    /// y = A x, with nothing taken out.
+    /// y = A x of the rounded entries, with nothing taken out.
     pub fn multiply(&mut self, simd: Simd, threads: usize, x: &[f64], y: &mut [f64]) {
         self.load(x, |piece| &mut piece.direction);
         self.spread(threads);
@@ -216,8 +240,8 @@ impl<const D: usize> Packed<D> {
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let of_piece = |p: &Piece<D>| {
-            let vectors = [&p.residual, &p.improved, &p.direction, &p.product, &p.solution, &p.inverse, &p.values];
-            4 * (p.column.capacity() + p.source.capacity() + p.start.capacity())
+            let vectors = [&p.residual, &p.improved, &p.direction, &p.product, &p.solution, &p.inverse];
+            4 * (p.column.capacity() + p.source.capacity() + p.start.capacity() + p.values.capacity())
                 + vectors.into_iter().map(Column::heap_bytes).sum::<usize>()
         };
         self.pieces.iter().map(of_piece).sum::<usize>() + self.rows.heap_bytes() + 8 * self.seat.capacity()
