@@ -83,7 +83,7 @@ impl Brush {
     pub(crate) fn line(&mut self, [from, to]: [Pos2; 2], width: f32, [a, b]: [Color32; 2]) {
         let way = to - from;
         let long = way.length();
-        if !(long > 1e-3) {
+        if long <= 1e-3 {
             return;
         }
         let side = Vec2::new(-way.y, way.x) / long;

@@ -39,14 +39,10 @@ impl Trial {
         self.click("Redo")?;
         self.until("and done again", |state| models(state) == 4)?;
         self.keep_picture("web-after-loss")?;
-        for _ in 0..3 {
+        for loss in 2..=4 {
             self.browser.value(LOSE)?;
-            self.until_value(
-                "document.querySelector('#cover').className === '' || !!document.querySelector('button')",
-            )?;
-            self.until_value(
-                "document.querySelector('#cover').className === 'gone' || !!document.querySelector('button')",
-            )?;
+            let over = "(document.querySelector('#cover').className === 'gone' || !!document.querySelector('button'))";
+            self.until_value(&format!("opruga_losses.length === {loss} && {over}"))?;
         }
         let said = self.browser.value("document.querySelector('#about').innerText")?;
         let said = said.as_str().unwrap_or_default();
@@ -70,7 +66,7 @@ impl Trial {
         self.browser.call("Browser.crashGpuProcess", json!({}))?;
         let frames = before["frames"].as_u64().unwrap_or(0);
         self.until("it goes on", |state| state["frames"].as_u64() > Some(frames + 30))?;
-        self.until_value("document.querySelector('#cover').className === 'gone'")?;
+        self.until_value("opruga_losses.length > 0 && document.querySelector('#cover').className === 'gone'")?;
         self.drawn("after the process that draws has ended")?;
         println!("it draws by WebGPU, and goes on when the process that draws ends");
         Ok(())
