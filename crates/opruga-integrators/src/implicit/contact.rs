@@ -208,6 +208,20 @@ impl<const D: usize> Contacting<D> {
             self.found.clear();
             let found = &mut self.found;
             obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
+            // Where a fast node crossed a surface says how it was met first. From then on it is held where it is near it.
+            for contact in old {
+                let beside: [f64; D] = core::array::from_fn(|d| to[d] + reach * contact.touch.normal[d]);
+                obstacles.touch(&beside, &to, time, h, reach, &mut |touch| {
+                    if touch.surface != contact.touch.surface {
+                        return;
+                    }
+                    let Touch { gap_before, carried, .. } = contact.touch;
+                    match found.iter_mut().find(|met| met.surface == touch.surface) {
+                        Some(met) => *met = Touch { gap_before, carried, ..touch },
+                        None => found.push(Touch { gap_before, carried, ..touch }),
+                    }
+                });
+            }
             for touch in &self.found {
                 let depth = small + touch.rounding;
                 match old.iter().find(|contact| contact.touch.surface == touch.surface) {
