@@ -427,8 +427,7 @@ impl<const D: usize> Contacting<D> {
                     _ => {
                         let slide = contact.slide(u, theta, x0);
                         let size = dot(&slide, &slide).sqrt();
-                        let along = dot(&slide, &contact.push);
-                        if along > 0.0 && size > small {
+                        if dot(&slide, &contact.push) > 0.0 && size > small {
                             // Friction would push it along.
                             if contact.changes < MOST_CHANGES {
                                 contact.hold = Hold::Stick;
@@ -438,10 +437,8 @@ impl<const D: usize> Contacting<D> {
                         } else if size > small {
                             let push = slide.map(|s| -s / size);
                             let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
-                            if contact.changes < MOST_CHANGES {
-                                verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
-                                (contact.push, contact.turn) = (push, turn);
-                            }
+                            verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
+                            (contact.push, contact.turn) = (push, turn);
                         }
                         let change = (normal_force - contact.normal_force).abs();
                         let settled =

@@ -79,6 +79,9 @@ const SLOPE_LEFT: f64 = 0.8;
 const STEEP: f64 = 0.3;
 const LONGEST_STRETCH: f64 = 16.0;
 
+/// Corrections above this part of the extent are far from the solution.
+const ROUGH: f64 = 1e-3;
+
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
 
@@ -169,7 +172,8 @@ pub(crate) fn solve<const D: usize>(
             full_step(system, room, balance)?;
         } else {
             // What is too stiff and has not far to go to obstacles may go on.
-            let stretches = keep != Keep::Exact && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
+            let rough = keep != Keep::Exact && plain > ROUGH * room.extent;
+            let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
             length = line_search(system, room, balance, slope, stretches)?;
             solved.correction *= length;
             if length != 1.0 {
