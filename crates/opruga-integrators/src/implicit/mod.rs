@@ -12,11 +12,14 @@
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
+//! | `line_search` | how far a step is gone |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
+//! | `contact_derivatives` | what the forces of contacts change by with positions |
+//! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
 //! each element's block without its negative eigenvalues, for which every direction leads downhill. What the damping force
@@ -33,7 +36,10 @@
 //! brings along the normal is lost or returned by the restitution.
 
 pub(crate) mod contact;
+mod contact_derivatives;
+mod impact;
 mod kept;
+mod line_search;
 pub(crate) mod linear;
 mod mixing;
 pub(crate) mod newton;
