@@ -4,13 +4,14 @@ use crate::arguments::Modes;
 use crate::failure::{Failure, print_data};
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::{Source, Whole, overrides};
-use opruga::blueprint::AnyBlueprint;
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::core::spec::Values;
 use opruga::draw;
 use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::scene;
 use opruga::pictures::Scenery;
 use opruga::world::modes::Mode;
-use opruga::{Options, World};
+use opruga::{Options, Registry, World};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -27,12 +28,8 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }
     let source = Source::find(&call.scene)?;
-    let mut set = overrides(&call.set)?;
-    if call.equilibrium {
-        set.push(("integrator.kind".into(), "equilibrium".into()));
-    }
     let reading = scene::Options {
-        overrides: set,
+        overrides: overrides(&call.set)?,
         files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
@@ -42,8 +39,32 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
         notices.iter().for_each(|notice| eprintln!("{notice}"));
     }
     match blueprint {
-        AnyBlueprint::Plane(blueprint) => of_world(call, &source, source.build(blueprint, &reading, &options)?),
-        AnyBlueprint::Space(blueprint) => of_world(call, &source, source.build(blueprint, &reading, &options)?),
+        AnyBlueprint::Plane(mut blueprint) => {
+            look_for_equilibrium(call, &mut blueprint);
+            of_world(call, &source, source.build(blueprint, &reading, &options)?)
+        }
+        AnyBlueprint::Space(mut blueprint) => {
+            look_for_equilibrium(call, &mut blueprint);
+            of_world(call, &source, source.build(blueprint, &reading, &options)?)
+        }
+    }
+}
+
+/// Gives every body the integrator `equilibrium` where that is asked for, with what it understands of the parameters of the
+/// one that it had: the tolerance, the number of iterations, the linear solver.
+fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
+    let registry = Registry::<D>::default();
+    let Some(spec) = registry.integrator("equilibrium").map(|kind| kind.spec()).filter(|_| call.equilibrium) else {
+        return;
+    };
+    let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
+    for values in own.chain([&mut blueprint.integrator]) {
+        let mut statics = Values::defaults(spec, D);
+        for (name, value) in values.iter() {
+            // What means nothing to it is left out.
+            let _ = statics.set(spec, name, value.clone(), D);
+        }
+        *values = statics;
     }
 }
 

@@ -287,3 +287,26 @@ fn bodies_that_commands_add_have_columns_of_their_own() {
         assert!(!there || (cells[place] - 3.0).abs() < 1.0, "an area of nearly 3 m²");
     }
 }
+
+/// The fields of the scene's integrator that statics does not have are left out, the others are kept.
+#[test]
+fn modes_about_the_equilibrium_keep_what_statics_understands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"bdf2\"\naccuracy = \"real_time\"\n\
+        iterations = 1\nwhen_not_converged = \"halve\"\n[[body]]\nname = \"bar\"\nmass = 1.0\n\
+        shape = { kind = \"line\", from = [0.0, 0.0], to = [1.0, 0.0], segments = 4 }\n\
+        models = [{ kind = \"mass_spring\", stiffness = 100.0 }]\npin = [{ select = { nodes = [0, 4] } }]\n\
+        [world]\ngravity = [0.0, -9.81]\n";
+    std::fs::write(folder.path().join("bar.toml"), scene).expect("a file");
+    let call = |set: &str| {
+        opruga(
+            folder.path(),
+            &["modes", "bar.toml", "-n", "2", "--equilibrium", "--json", "--force", "--out", "o", "--set", set],
+        )
+    };
+    // One iteration does not lead from the line to the chain that hangs.
+    let refused = call("integrator.iterations=1");
+    assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iterations"), "{}", said(&refused));
+    let output = call("integrator.iterations=200");
+    assert_eq!(code(&output), 0, "{}", said(&output));
+}

@@ -1,69 +1,27 @@
 //! The real-time setting of implicit rules: how far it is from the exact one, that threads and interruptions leave no trace
 //! in it, and (`-- --ignored --nocapture`) how long it takes.
 
-use opruga_core::spec::{Value, Values};
+mod common;
+
+use common::{clamp, solid, text};
+use opruga_core::spec::Value;
 use opruga_math::Lane;
 use opruga_mesh::{Cut, Mesh};
-use opruga_world::blueprint::*;
+use opruga_world::blueprint::Blueprint;
 use opruga_world::{Options, Registry, World};
-use std::sync::Arc;
 use std::time::Instant;
-
-fn fields(defaults: Values, set: &[(&str, Value)], spec: &'static opruga_core::spec::Spec) -> Values {
-    let mut values = defaults;
-    for (name, value) in set {
-        values.set(spec, name, value.clone(), 3).expect("a field of the test's own");
-    }
-    values
-}
-
-fn text(value: &str) -> Value {
-    Value::Text(value.into())
-}
 
 /// A body of one material that is clamped at x = 0 and let go.
 fn clamped(mesh: Mesh<3>, rule: &str, accuracy: &str, modulus: f64, more: &[(&str, Value)]) -> Blueprint<3> {
-    let registry = Registry::<3>::default();
-    let spec = registry.model("fem").expect("a model").spec();
-    let mut set = vec![("youngs_modulus", Value::Number(modulus)), ("poissons_ratio", Value::Number(0.4))];
-    set.push(("material", text("corotated")));
-    set.extend_from_slice(more);
-    let material = fields(Values::defaults(spec, 3), &set, spec);
-    let spec = registry.integrator(rule).expect("an integrator").spec();
-    let set: &[(&str, Value)] =
+    let mut material = vec![("youngs_modulus", Value::Number(modulus)), ("poissons_ratio", Value::Number(0.4))];
+    material.push(("material", text("corotated")));
+    material.extend_from_slice(more);
+    let of_rule: &[(&str, Value)] =
         if rule == "equilibrium" || accuracy.is_empty() { &[] } else { &[("accuracy", text(accuracy))] };
-    let integrator = fields(Values::defaults(spec, 3), set, spec);
-    Blueprint {
-        name: "test".into(),
-        title: String::new(),
-        length_unit: "m".into(),
-        seed: 0,
-        time: Time { seconds: 10.0, frame: 1.0 / 60.0, substeps: 1 },
-        surroundings: Surroundings {
-            gravity: [0.0, -9.81, 0.0],
-            drag: 0.0,
-            largest_force: None,
-            largest_velocity: None,
-            largest_distance: None,
-        },
-        integrator,
-        bodies: vec![BodyBlueprint {
-            name: "body".into(),
-            mesh: Arc::new(mesh),
-            translation: [0.0; 3],
-            velocity: [0.0; 3],
-            angular_velocity: Vec::new(),
-            mass: Mass::Density(1000.0),
-            thickness: 1.0,
-            integrator: None,
-            models: vec![material],
-            pins: vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }],
-        }],
-        colliders: Vec::new(),
-        loads: Vec::new(),
-        commands: Vec::new(),
-        probes: Vec::new(),
-    }
+    let mut blueprint = solid(mesh, rule, of_rule, &material);
+    blueprint.surroundings.gravity = [0.0, -9.81, 0.0];
+    blueprint.bodies[0].pins = clamp();
+    blueprint
 }
 
 fn cube(n: u32) -> Mesh<3> {

@@ -1,62 +1,32 @@
 //! Implicit steps from shapes that no body has: every one comes back to its volume, or is refused with a reason.
 
-use opruga_core::spec::{Value, Values};
+mod common;
+
+use common::{clamp, solid, text};
+use opruga_core::spec::Value;
 use opruga_math::matrix::determinant;
 use opruga_mesh::Mesh;
-use opruga_world::blueprint::*;
-use opruga_world::{Options, Registry, World};
-use std::sync::Arc;
+use opruga_world::blueprint::{Blueprint, PinBlueprint};
+use opruga_world::{Options, World};
 
 const MATERIALS: [&str; 2] = ["stable_neo_hookean", "fixed_corotated"];
 
-/// A free cube of 1 m without weight, and a step.
+/// A cube of 1 m without weight, and a step.
 fn body(mesh: Mesh<3>, material: &str, frame: f64, pins: Vec<PinBlueprint<3>>) -> Blueprint<3> {
-    let registry = Registry::<3>::default();
-    let text = |text: &str| Value::Text(text.into());
-    let spec = registry.model("fem").expect("a model").spec();
-    let mut model = Values::defaults(spec, 3);
-    for (name, value) in [
-        ("material", text(material)),
-        ("youngs_modulus", Value::Number(1e5)),
-        ("poissons_ratio", Value::Number(0.4)),
-        ("damping", Value::Number(0.05)),
-    ] {
-        model.set(spec, name, value, 3).expect("a field of the test's own");
-    }
-    let spec = registry.integrator("backward_euler").expect("an integrator").spec();
-    let mut integrator = Values::defaults(spec, 3);
-    integrator.set(spec, "when_not_converged", text("halve"), 3).expect("a field of the test's own");
-    Blueprint {
-        name: "test".into(),
-        title: String::new(),
-        length_unit: "m".into(),
-        seed: 0,
-        time: Time { seconds: 1e3, frame, substeps: 1 },
-        surroundings: Surroundings {
-            gravity: [0.0; 3],
-            drag: 0.0,
-            largest_force: None,
-            largest_velocity: None,
-            largest_distance: None,
-        },
-        integrator,
-        bodies: vec![BodyBlueprint {
-            name: "body".into(),
-            mesh: Arc::new(mesh),
-            translation: [0.0; 3],
-            velocity: [0.0; 3],
-            angular_velocity: Vec::new(),
-            mass: Mass::Density(1000.0),
-            thickness: 1.0,
-            integrator: None,
-            models: vec![model],
-            pins,
-        }],
-        colliders: Vec::new(),
-        loads: Vec::new(),
-        commands: Vec::new(),
-        probes: Vec::new(),
-    }
+    let mut blueprint = solid(
+        mesh,
+        "backward_euler",
+        &[("when_not_converged", text("halve"))],
+        &[
+            ("material", text(material)),
+            ("youngs_modulus", Value::Number(1e5)),
+            ("poissons_ratio", Value::Number(0.4)),
+            ("damping", Value::Number(0.05)),
+        ],
+    );
+    blueprint.time.frame = frame;
+    blueprint.bodies[0].pins = pins;
+    blueprint
 }
 
 fn cube(n: u32) -> Mesh<3> {
@@ -161,7 +131,6 @@ fn collapsed_mirrored_and_scattered_bodies_come_back_or_are_refused_with_a_reaso
 #[test]
 fn steps_from_ten_microseconds_to_two_seconds_are_made() {
     let mesh = cube(3);
-    let clamp = || vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }];
     for material in MATERIALS {
         for h in [1e-5, 1e-3, 0.1, 2.0] {
             let mut world = World::new(body(mesh.clone(), material, h, clamp()), Options::default()).unwrap();

@@ -225,6 +225,13 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     assert_eq!(error.code(), "static.rigid_modes");
     assert!(error.to_string().contains("translation along x, translation along y, rotation: 3 rigid modes"), "{error}");
 
+    let arc = head(0.1, 1, -9.81, "equilibrium")
+        .replace("kind = \"equilibrium\"\n", "kind = \"equilibrium\"\narc_length = 0.1\n");
+    let pinned = format!("{arc}{BLOCK}pin = [ {{ select = {{ node = 0 }} }} ]\n");
+    let error = refused(&(pinned + &floor(-5.0, 0.0, 0.0)));
+    assert_eq!(error.code(), "static.arc_length_and_obstacles");
+    assert!(error.to_string().contains("allowed with obstacles: the whole load at once"), "{error}");
+
     let published = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 100.0, vertices = 20 }\nnode_mass = 1.0\n\
         models = [ { kind = \"as_published\" } ]\n";
     let error = refused(&(head(0.01, 1, 0.0, "backward_euler") + published));

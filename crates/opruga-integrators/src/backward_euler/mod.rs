@@ -17,7 +17,7 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::FIELDS;
+use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
@@ -33,7 +33,7 @@ oscillation falls by 1/√(1 + h²ω²) in a step, which is an error of the rule
 `tolerance`; with \"real_time\" the step has a fixed budget. Obstacles hold nodes within the solution: bodies come to rest on \
 them and stick or slip by Coulomb's law. One body an island: bodies are not stepped side by side.",
     dimensions: &[2, 3],
-    fields: FIELDS,
+    fields: fields!(of_time),
 };
 
 /// The kind `backward_euler`.

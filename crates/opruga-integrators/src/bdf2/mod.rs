@@ -20,7 +20,7 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::FIELDS;
+use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
@@ -35,7 +35,7 @@ pub const SPEC: Spec = Spec {
 oscillation falls by (hω)⁴/4 in a step where hω is small. It remembers the step before; its first step is one of backward \
 Euler. One body an island.",
     dimensions: &[2, 3],
-    fields: FIELDS,
+    fields: fields!(of_time),
 };
 
 /// The kind `bdf2`.

@@ -4,6 +4,7 @@ use super::{COMPLETE, Equilibrium, SPEC};
 use crate::implicit::linear::Filter;
 use crate::implicit::newton::{Balance, Solved, evaluate, mixture};
 use crate::implicit::room::Room;
+use crate::implicit::step::report;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -25,10 +26,6 @@ pub(super) fn follow<const D: usize>(
     load: f64,
     h: f64,
 ) -> Result<f64, StepError> {
-    if system.contacts.is_some() {
-        let message = "`arc_length` knows no obstacles, and the body may meet one".into();
-        return Err(StepError::Model { model: SPEC.kind, message });
-    }
     let start = room.u.clone();
     room.contacting.hold(
         &room.u,
@@ -57,7 +54,7 @@ pub(super) fn follow<const D: usize>(
         }
         way *= 0.5;
     }
-    rule.report(system, room, &Solved { converged: false, ..solved })?;
+    report(SPEC.kind, &rule.settings, system, room, &Solved { converged: false, ..solved })?;
     Ok(load)
 }
 

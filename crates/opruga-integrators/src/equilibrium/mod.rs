@@ -18,6 +18,8 @@
 //!       └────────────────▶ way
 //! ```
 //!
+//! A scene with obstacles has no `arc_length`: the curve knows nothing of them.
+//!
 //! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free.
 //! Obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
 //! within the iteration only.
@@ -29,10 +31,10 @@ pub mod rigid;
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::newton::{Balance, Solved, solve};
+use crate::implicit::newton::{Balance, solve};
 use crate::implicit::room::Room;
-use crate::implicit::settings::{STATIC_FIELDS, Settings, Solver};
-use crate::implicit::step::{commit, same_bits_everywhere};
+use crate::implicit::settings::{Settings, Solver, fields};
+use crate::implicit::step::{commit, report, same_bits_everywhere};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::potential::Views;
@@ -48,7 +50,8 @@ pub const SPEC: Spec = Spec {
 rigid modes. With `arc_length` every step goes so far along the curve of equilibria, through its limits, until the whole load \
 is on; `load_factor` in diagnostics.csv is the part that is on.",
     dimensions: &[2, 3],
-    fields: &[
+    fields: fields!(
+        of_statics,
         Field::new(
             "load_steps",
             Allowed::Integer { least: 1, greatest: 10_000 },
@@ -63,11 +66,8 @@ is on; `load_factor` in diagnostics.csv is the part that is on.",
             Default::Absent,
             "The way of a step along the curve of equilibria, as the root of the mean square of the displacements of all nodes. \
 Absent: the whole load at once.",
-        ),
-        STATIC_FIELDS[0],
-        STATIC_FIELDS[1],
-        STATIC_FIELDS[2],
-    ],
+        )
+    ),
 };
 
 /// The kind `equilibrium`.
@@ -122,27 +122,7 @@ impl Equilibrium {
     ) -> Result<(), StepError> {
         let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load, impulse: 1.0 };
         let solved = solve(system, room, &balance, &self.settings)?;
-        self.report(system, room, &solved)
-    }
-
-    fn report<const D: usize>(&self, system: &mut System<D>, room: &Room<D>, solved: &Solved) -> Result<(), StepError> {
-        let residual = room.largest_residual();
-        let work = &mut system.work.solver;
-        work.steps += 1;
-        work.iterations += u64::from(solved.iterations);
-        work.linear_iterations += u64::from(solved.products);
-        work.residual = if residual > work.residual { residual } else { work.residual };
-        if solved.converged {
-            return Ok(());
-        }
-        Err(StepError::NotConverged {
-            integrator: SPEC.kind,
-            iterations: solved.iterations,
-            residual,
-            correction: solved.correction,
-            tolerance: self.settings.tolerance * room.extent,
-            time: system.time,
-        })
+        report(SPEC.kind, &self.settings, system, room, &solved)
     }
 
     fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
@@ -244,6 +224,11 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         Amplification::new([[kept, 0.0], [0.0, 0.0]])
     }
     fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
+        if obstacles && self.arc_length.is_some() {
+            let message = "`arc_length` is given, and the scene has obstacles, of which the curve of equilibria knows nothing; \
+                           allowed with obstacles: the whole load at once, in as many `load_steps` as it takes";
+            return Err(BuildError::new(SPEC.kind, "static.arc_length_and_obstacles", message));
+        }
         if obstacles { Ok(()) } else { rigid::refuse_free_motions(system) }
     }
     fn readings(&self, system: &System<D>) -> Vec<(&'static str, f64)> {

@@ -10,11 +10,10 @@
 //! force that the constraint would take. A contact that changes sides too often slips, or is released, for the rest of the
 //! step: no force leaves Coulomb's cone, and the last word is that no node may be inside.
 
+use super::contact_derivatives::Sight;
 use super::mixing::Mixing;
-use super::newton::Balance;
 use opruga_core::contacts::Touch;
-use opruga_core::system::System;
-use opruga_math::{Lane, WIDTH};
+use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, nodes};
 
 /// The nodes that obstacles hold.
@@ -31,13 +30,13 @@ pub(crate) struct Contacting<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<const D: usize> {
     pub(crate) node: usize,
-    touch: Touch<D>,
-    hold: Hold,
+    pub(super) touch: Touch<D>,
+    pub(super) hold: Hold,
     /// The force along the normal in the last iteration [N].
-    normal_force: f64,
+    pub(super) normal_force: f64,
     /// The direction of the force of friction, and by how much it turned in the last iteration.
-    push: [f64; D],
-    turn: f64,
+    pub(super) push: [f64; D],
+    pub(super) turn: f64,
     /// How often it changed between hold and release, or between stick and slip.
     changes: u8,
 }
@@ -53,7 +52,7 @@ pub(crate) struct Verdict {
 
 /// How a node is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Hold {
+pub(super) enum Hold {
     /// Not at all: the surface would have to pull.
     Released,
     /// It may go along the surface, against friction.
@@ -71,13 +70,7 @@ pub(crate) const SMALL: f64 = 1e-9;
 /// A slipping contact is settled when its force changes by no more than this part of itself.
 const SETTLED: f64 = 1e-7;
 
-/// A direction of friction that turns by less than this in an iteration is followed by the next.
-const FOLLOWED: f64 = 0.1;
-
-/// A slide of more than this part of the extent has a direction anyhow.
-const SLIDING: f64 = 1e-4;
-
-fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
     for d in 0..D {
         sum += a[d] * b[d];
@@ -86,70 +79,22 @@ fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 }
 
 impl<const D: usize> Contact<D> {
-    fn is_held(&self) -> bool {
+    pub(super) fn is_held(&self) -> bool {
         self.hold != Hold::Released
     }
     /// Whether it slips against friction.
-    fn rubs(&self) -> bool {
+    pub(super) fn rubs(&self) -> bool {
         self.hold == Hold::Slip && self.touch.friction > 0.0
     }
     /// The way along the surface in the stage, less that of the surface.
-    fn slide(&self, u: &[f64], theta: f64, x0: &[f64]) -> [f64; D] {
+    pub(super) fn slide(&self, u: &[f64], theta: f64, x0: &[f64]) -> [f64; D] {
         let (at, carried) = (self.node * D, &self.touch.carried);
         self.along(&core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d])))
     }
     /// What is left of a vector along the surface.
-    fn along(&self, vector: &[f64; D]) -> [f64; D] {
+    pub(super) fn along(&self, vector: &[f64; D]) -> [f64; D] {
         let normal = dot(vector, &self.touch.normal);
         core::array::from_fn(|d| vector[d] - normal * self.touch.normal[d])
-    }
-}
-
-/// Where nodes are within a step, and what they may meet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight<'a, const D: usize> {
-    pub(crate) system: &'a System<D>,
-    pub(crate) x0: &'a [f64],
-    pub(crate) u: &'a [f64],
-    pub(crate) theta: f64,
-    pub(crate) h: f64,
-    pub(crate) extent: f64,
-}
-
-/// How far from a node its surface is looked at, in extents of the body.
-const BESIDE: f64 = 1e-5;
-
-/// Normals that turn by more than this within that distance belong to an edge.
-const EDGE: f64 = 1e-2;
-
-impl<const D: usize> Sight<'_, D> {
-    /// ∂n/∂x along the surface, by differences; nothing at edges.
-    fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
-        let obstacles = self.system.contacts.as_ref()?;
-        let (at, step) = (contact.node * D, BESIDE * self.extent);
-        let from: [f64; D] = core::array::from_fn(|d| self.x0[at + d]);
-        let mut turn = isotropic::<D>(0.0);
-        for axis in 0..D {
-            let mut unit = [0.0; D];
-            unit[axis] = 1.0;
-            let aside = contact.along(&unit);
-            let to: [f64; D] = core::array::from_fn(|d| from[d] + self.u[at + d] / self.theta + step * aside[d]);
-            let mut beside = None;
-            obstacles.touch(&from, &to, self.system.time + self.h, self.h, 0.1 * self.extent, &mut |touch| {
-                if touch.surface == contact.touch.surface {
-                    beside = Some(touch.normal);
-                }
-            });
-            let beside = beside?;
-            let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
-            if dot(&difference, &difference) > EDGE * EDGE {
-                return None;
-            }
-            // Row by row: the derivative along the axis, of what lies along the surface.
-            turn[axis] = contact.along(&difference.map(|x| x / step));
-        }
-        let half = |i: usize, j: usize| 0.5 * (turn[i][j] + turn[j][i]);
-        Some(core::array::from_fn(|i| core::array::from_fn(|j| half(i, j))))
     }
 }
 
@@ -171,18 +116,10 @@ impl<const D: usize> Contacting<D> {
         self.contacts.iter().any(Contact::is_held)
     }
 
-    /// Looks where nodes are that start at `x0` and end displaced by `u / theta`; nodes that are inside are held from now
-    /// on. Depths below a billionth of `extent` [m] do not count. Nodes that impact are first thought to stick, or to slide.
-    pub(crate) fn look(
-        &mut self,
-        system: &System<D>,
-        x0: &[f64],
-        u: &[f64],
-        theta: f64,
-        h: f64,
-        extent: f64,
-        impacts_slide: bool,
-    ) -> bool {
+    /// Looks where nodes are that start at x₀ and end displaced by u/θ; nodes that are inside are held from now
+    /// on. Depths below a billionth of the extent do not count. Nodes that impact are first thought to stick, or to slide.
+    pub(crate) fn look(&mut self, sight: &Sight<'_, D>, impacts_slide: bool) -> bool {
+        let Sight { system, x0, u, theta, h, extent } = *sight;
         let Some(obstacles) = &system.contacts else {
             self.contacts.clear();
             return false;
@@ -208,6 +145,20 @@ impl<const D: usize> Contacting<D> {
             self.found.clear();
             let found = &mut self.found;
             obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
+            // Where a fast node crossed a surface says how it was met first. From then on it is held where it is near it.
+            for contact in old {
+                let beside: [f64; D] = core::array::from_fn(|d| to[d] + reach * contact.touch.normal[d]);
+                obstacles.touch(&beside, &to, time, h, reach, &mut |touch| {
+                    if touch.surface != contact.touch.surface {
+                        return;
+                    }
+                    let Touch { gap_before, carried, .. } = contact.touch;
+                    match found.iter_mut().find(|met| met.surface == touch.surface) {
+                        Some(met) => *met = Touch { gap_before, carried, ..touch },
+                        None => found.push(Touch { gap_before, carried, ..touch }),
+                    }
+                });
+            }
             for touch in &self.found {
                 let depth = small + touch.rounding;
                 match old.iter().find(|contact| contact.touch.surface == touch.surface) {
@@ -413,8 +364,7 @@ impl<const D: usize> Contacting<D> {
                     _ => {
                         let slide = contact.slide(u, theta, x0);
                         let size = dot(&slide, &slide).sqrt();
-                        let along = dot(&slide, &contact.push);
-                        if along > 0.0 && size > small {
+                        if dot(&slide, &contact.push) > 0.0 && size > small {
                             // Friction would push it along.
                             if contact.changes < MOST_CHANGES {
                                 contact.hold = Hold::Stick;
@@ -424,10 +374,8 @@ impl<const D: usize> Contacting<D> {
                         } else if size > small {
                             let push = slide.map(|s| -s / size);
                             let turn: f64 = (0..D).map(|d| (push[d] - contact.push[d]).abs()).sum();
-                            if contact.changes < MOST_CHANGES {
-                                verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
-                                (contact.push, contact.turn) = (push, turn);
-                            }
+                            verdict.unsettled |= turn > SETTLED && turn * most > moves(node);
+                            (contact.push, contact.turn) = (push, turn);
                         }
                         let change = (normal_force - contact.normal_force).abs();
                         let settled =
@@ -465,7 +413,7 @@ impl<const D: usize> Contacting<D> {
         let plain = change.clone();
         mixing.mix(&mut change);
         // Where friction and the force along the normal nearly feed each other, mixing leads anywhere.
-        if state.iter().zip(&change).any(|(force, change)| !((force + change).abs() <= 4.0 * most)) {
+        if !state.iter().zip(&change).all(|(force, change)| (force + change).abs() <= 4.0 * most) {
             change = plain;
         }
         right.fill(0.0);
@@ -479,154 +427,10 @@ impl<const D: usize> Contacting<D> {
         }
         true
     }
-
-    /// Calls back with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
-    /// across it, and of the constraint, whose direction follows the surface, −λ ∂n/∂x. Where `clamped`, only blocks without
-    /// negative eigenvalues.
-    pub(crate) fn derivatives(&self, sight: &Sight<'_, D>, clamped: bool, visit: &mut dyn FnMut(usize, Block<D>)) {
-        for contact in self.contacts.iter().filter(|contact| contact.normal_force > 0.0) {
-            let normal = &contact.touch.normal;
-            if contact.rubs() && D > 2 {
-                let slide = contact.slide(sight.u, sight.theta, sight.x0);
-                // A slide that turns far has no direction yet that could be followed.
-                let size = dot(&slide, &slide).sqrt();
-                let strength = contact.touch.friction * contact.normal_force / size;
-                if dot(&slide, &contact.push) < 0.0
-                    && size > SMALL * sight.extent
-                    && (contact.turn < FOLLOWED || size > SLIDING * sight.extent)
-                {
-                    let mut block = isotropic::<D>(strength);
-                    for i in 0..D {
-                        for j in 0..D {
-                            block[i][j] -= strength * (normal[i] * normal[j] + contact.push[i] * contact.push[j]);
-                        }
-                    }
-                    visit(contact.node, block);
-                }
-            }
-            if let Some(turn) = sight.turn_of_normal(contact) {
-                let factor = -contact.normal_force / sight.theta;
-                let trace: f64 = (0..D).map(|d| turn[d][d]).sum();
-                if trace != 0.0 && !(clamped && factor * trace < 0.0) {
-                    visit(contact.node, turn.map(|row| row.map(|entry| factor * entry)));
-                }
-            }
-        }
-    }
-
-    /// Puts nodes that are nevertheless inside onto the surface; `reaction` is what was out of balance without them.
-    pub(crate) fn expel(
-        &self,
-        system: &mut System<D>,
-        x0: &[f64],
-        u1: &mut [f64],
-        reaction: &[f64],
-        h: f64,
-        extent: f64,
-    ) {
-        let Some(obstacles) = system.contacts.clone() else { return };
-        let time = system.time + h;
-        for (node, from) in nodes::<D>(x0).iter().enumerate() {
-            let at = node * D;
-            let to: [f64; D] = core::array::from_fn(|d| from[d] + u1[at + d]);
-            let mut deepest: Option<Touch<D>> = None;
-            obstacles.touch(from, &to, time, h, 0.0, &mut |touch| {
-                let deep = touch.gap < -(SMALL * extent + touch.rounding);
-                if deep && deepest.is_none_or(|other| touch.gap < other.gap) {
-                    deepest = Some(touch);
-                }
-            });
-            if let Some(touch) = deepest {
-                for d in 0..D {
-                    u1[at + d] -= touch.gap * touch.normal[d];
-                    system.work.correction[node % WIDTH] -= reaction[at + d] * touch.gap * touch.normal[d];
-                }
-            }
-        }
-    }
-
-    /// Ends a step: enters the work of the forces that held nodes (`reaction`), and deals with velocities; `v0` and
-    /// `v1` are those at its ends. Returns through `struck` the nodes that met a surface in this step.
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn end(
-        &mut self,
-        system: &mut System<D>,
-        mass: &[f64],
-        reaction: &[f64],
-        x0: &[f64],
-        v0: &[f64],
-        balance: &Balance,
-        v1: &mut [f64],
-        struck: &mut Vec<usize>,
-    ) {
-        struck.clear();
-        let mut first = 0;
-        while first < self.contacts.len() {
-            let node = self.contacts[first].node;
-            let mut last = first;
-            while last < self.contacts.len() && self.contacts[last].node == node {
-                last += 1;
-            }
-            let at = node * D;
-            let force: [f64; D] = core::array::from_fn(|d| reaction[at + d]);
-            let normal_forces = split(&self.contacts[first..last], &force);
-            let (lane, mass) = (node % WIDTH, mass[node]);
-            let mut rest = force;
-            let mut carrier = None;
-            let before: [f64; D] = core::array::from_fn(|d| v1[at + d]);
-            for (k, contact) in self.contacts[first..last].iter().enumerate().filter(|(_, c)| c.is_held()) {
-                let touch = &contact.touch;
-                let ride: [f64; D] = core::array::from_fn(|d| touch.carried[d] - x0[at + d]);
-                // The work of a force that is the same through the step, by the mean velocity: what it changes of the motion.
-                let mean: [f64; D] = core::array::from_fn(|d| 0.5 * balance.h * (v0[at + d] + before[d]));
-                let own: [f64; D] = core::array::from_fn(|d| mean[d] - ride[d]);
-                // The force of an impact acts in this step alone.
-                let share = if touch.gap_before > touch.rounding { balance.impulse } else { 1.0 };
-                let normal_force = share * normal_forces[k.min(D - 1)];
-                for d in 0..D {
-                    rest[d] -= normal_forces[k.min(D - 1)] * touch.normal[d];
-                }
-                system.work.user[lane] += normal_force * dot(&touch.normal, &ride);
-                system.work.contact[lane] -= normal_force * dot(&touch.normal, &own);
-                carrier = carrier.or(Some((ride, own, share)));
-
-                // What the node brings along the normal is lost, or a part of it returns.
-                let velocity: [f64; D] = core::array::from_fn(|d| v1[at + d] - touch.velocity[d]);
-                let coming: [f64; D] = core::array::from_fn(|d| v0[at + d] - touch.velocity[d]);
-                let (speed, came) = (dot(&velocity, &touch.normal), -dot(&coming, &touch.normal));
-                let bounces = came > touch.rest_speed && touch.gap_before > touch.rounding;
-                let back = if bounces { touch.restitution * came } else { 0.0 };
-                let mut gained: [f64; D] = core::array::from_fn(|d| (back - speed) * touch.normal[d]);
-                let lost = 0.5 * mass * (speed * speed - back * back);
-                let mut rubbed = 0.0;
-                if contact.hold == Hold::Stick {
-                    let slide = contact.along(&velocity);
-                    rubbed = 0.5 * mass * dot(&slide, &slide);
-                    for d in 0..D {
-                        gained[d] -= slide[d];
-                    }
-                }
-                system.work.contact[lane] += lost;
-                system.work.friction[lane] += rubbed;
-                system.work.user[lane] += mass * dot(&gained, &touch.velocity);
-                for d in 0..D {
-                    v1[at + d] += gained[d];
-                }
-                if touch.gap_before > touch.rounding && struck.last() != Some(&node) {
-                    struck.push(node);
-                }
-            }
-            if let Some((ride, own, share)) = carrier {
-                system.work.user[lane] += share * dot(&rest, &ride);
-                system.work.friction[lane] -= share * dot(&rest, &own);
-            }
-            first = last;
-        }
-    }
 }
 
 /// The forces along the normals of the held contacts of one node that together make up what is normal in a force.
-fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
+pub(super) fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     let is_held = |k: &usize| contacts[*k].is_held();
     let mut all = (0..contacts.len().min(D)).filter(is_held);

@@ -84,7 +84,7 @@ impl Mixing {
                 subtract(&mut way, part, its_way);
             }
             let left = dot(&across, &across);
-            if !(left > NOTHING_NEW * NOTHING_NEW * whole) {
+            if left.is_nan() || left <= NOTHING_NEW * NOTHING_NEW * whole {
                 continue;
             }
             let size = left.sqrt();

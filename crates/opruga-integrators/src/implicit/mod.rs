@@ -12,26 +12,34 @@
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
+//! | `line_search` | how far a step is gone |
+//! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
+//! | `contact_derivatives` | what the forces of contacts change by with positions |
+//! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
 //! each element's block without its negative eigenvalues, for which every direction leads downhill. What the damping force
-//! changes with position is left out: with damping, convergence is fast but linear. The line search accepts a step when the
-//! slope of Φ along it has fallen (Hager and Zhang 2005, approximate Wolfe condition) and, where Φ is known, when Φ has not
-//! risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
+//! changes with position is left out of the matrix, and made up for by mixing iterations. The line search accepts a step when the
+//! slope of Φ along it, less the work of friction and of the constraints, has fallen (Hager and Zhang 2005, approximate Wolfe
+//! condition) and, where Φ is known, when Φ less that work has not risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is put onto the surface
 //! within the iteration, all others follow as the elasticity wants, and the force of the constraint comes out of the
 //! balance. A node is released when that force pulls; it sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n
 //! and slips against a friction of µ f_n beyond. This is the primal–dual active set, a semi-smooth Newton method
-//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Velocities are
-//! dealt with at the end of the step: what a node brings along the normal is lost or returned by the restitution.
+//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Friction goes by the
+//! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
+//! brings along the normal is lost or returned by the restitution.
 
 pub(crate) mod contact;
+mod contact_derivatives;
+mod impact;
 mod kept;
+mod line_search;
 pub(crate) mod linear;
 mod mixing;
 pub(crate) mod newton;

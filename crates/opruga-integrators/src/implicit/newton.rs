@@ -1,6 +1,8 @@
 //! Newton's method on the balance of forces of a stage.
 
-use super::contact::{Sight, Verdict};
+use super::contact::Verdict;
+use super::contact_derivatives::Sight;
+use super::line_search::{line_search, potential, slope_along};
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -72,15 +74,8 @@ const SLOW: f64 = 0.03;
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
-/// The part of the slope that may be left after a step of the line search.
-const SLOPE_LEFT: f64 = 0.8;
-
-/// A step whose end is steeper than this part of its beginning is gone on with, up to so many times its length.
-const STEEP: f64 = 0.3;
-const LONGEST_STRETCH: f64 = 16.0;
-
-/// The most halvings, or thereabouts, of a step.
-const MOST_TRIALS: usize = 14;
+/// Corrections above this part of the extent are far from the solution.
+const ROUGH: f64 = 1e-3;
 
 /// The part of the residual that the linear solver may leave, in the first iteration.
 const LINEAR_TOLERANCE: f64 = 1e-2;
@@ -169,7 +164,8 @@ pub(crate) fn solve<const D: usize>(
             full_step(system, room, balance)?;
         } else {
             // What is too stiff and has not far to go to obstacles may go on.
-            let stretches = keep != Keep::Exact && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
+            let rough = keep != Keep::Exact && plain > ROUGH * room.extent;
+            let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
             length = line_search(system, room, balance, slope, stretches)?;
             solved.correction *= length;
             if length != 1.0 {
@@ -275,7 +271,8 @@ pub(crate) fn look<const D: usize>(
     impacts_slide: bool,
 ) -> bool {
     let Room { contacting, x0, u, extent, .. } = room;
-    contacting.look(system, x0, u, balance.theta, balance.h, *extent, impacts_slide)
+    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    contacting.look(&sight, impacts_slide)
 }
 
 /// Decides anew who is held, and how, from what the constraints would take.
@@ -452,140 +449,6 @@ fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance
         *u += s;
     }
     evaluate(system, room, balance, false)
-}
-
-/// Goes along the step so far that the slope of the incremental potential has fallen and, where that potential is known, it
-/// has not risen; gives the part of the step that was gone.
-fn line_search<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    slope: f64,
-    stretches: bool,
-) -> Result<f64, StepError> {
-    // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
-    let before = if system.is_damped() { None } else { potential(system, room, balance, false) };
-    let given = given_along(room);
-    let mut length = 1.0;
-    for _ in 0..MOST_TRIALS {
-        for k in 0..room.u.len() {
-            room.trial[k] = room.u[k] + length * room.step[k];
-        }
-        let allowed = evaluate(system, room, balance, true).is_ok();
-        let now = if allowed { slope_along(room) } else { f64::NAN };
-        // Differences of energies are lost in rounding where the step is small.
-        let risen = match before {
-            Some((energy, magnitude)) if allowed => {
-                potential(system, room, balance, true).is_none_or(|(after, size)| {
-                    let rounding = 1e-12 * (magnitude + size + (length * given).abs());
-                    !(after - length * given <= energy + rounding)
-                })
-            }
-            _ => false,
-        };
-        if allowed && now.is_finite() && now <= SLOPE_LEFT * slope.abs() && !risen {
-            room.u.copy_from_slice(&room.trial);
-            if length == 1.0 && stretches && now < -STEEP * slope.abs() {
-                return stretch(system, room, balance, slope, now, before.map(|(energy, _)| (energy, given)));
-            }
-            return Ok(length);
-        }
-        let secant = slope.abs() / (slope.abs() + now);
-        length *= if secant.is_finite() && !risen { secant.larger(0.1).smaller(0.6) } else { 0.4 };
-    }
-    // No progress: the state stays where it was, and with it the forces.
-    evaluate(system, room, balance, false)?;
-    Ok(0.0)
-}
-
-/// Goes on along a step from whose end it is still steep downhill, as long as it is: a matrix without negative eigenvalues is
-/// too stiff where a body buckles or turns right side out. Gives how far it went, in steps.
-fn stretch<const D: usize>(
-    system: &mut System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    slope: f64,
-    now: f64,
-    before: Option<(f64, f64)>,
-) -> Result<f64, StepError> {
-    let (mut length, mut now) = (1.0, now);
-    let mut last = before.and_then(|(_, given)| Some(potential(system, room, balance, false)?.0 - given));
-    loop {
-        // The secant of the slopes, but no more than twice as far.
-        let left = slope.abs() + now;
-        let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
-        for k in 0..room.u.len() {
-            room.trial[k] = room.u[k] + (longer - length) * room.step[k];
-        }
-        let allowed = longer <= LONGEST_STRETCH && evaluate(system, room, balance, true).is_ok();
-        let beyond = if allowed { slope_along(room) } else { f64::NAN };
-        let energy = match before {
-            Some((_, given)) if allowed => potential(system, room, balance, true).map(|(e, _)| e - longer * given),
-            _ => None,
-        };
-        let falls = match (energy, last) {
-            (Some(energy), Some(last)) => energy < last,
-            _ => before.is_none(),
-        };
-        if !(falls && beyond <= STEEP * slope.abs()) {
-            evaluate(system, room, balance, false)?;
-            return Ok(length);
-        }
-        room.u.copy_from_slice(&room.trial);
-        (length, now, last) = (longer, beyond, energy);
-        if now >= -STEEP * slope.abs() {
-            return Ok(length);
-        }
-    }
-}
-
-/// The slope along the step of the incremental potential less the work of friction and of the constraints.
-fn slope_along<const D: usize>(room: &mut Room<D>) -> f64 {
-    let given = given_along(room);
-    dot(&room.residual, &room.step) - given
-}
-
-/// The work along the step of friction, and of the constraints by the forces that they are expected to take.
-fn given_along<const D: usize>(room: &mut Room<D>) -> f64 {
-    // r − friction in the directions that are held.
-    let Room { right, reaction, contacting, free, projectors, step, .. } = room;
-    right.copy_from_slice(reaction);
-    contacting.subtract_friction(right);
-    let mut work = dot(right, step);
-    Filter { free, projectors }.apply(right);
-    work -= dot(right, step);
-    // Friction: what is subtracted from nothing.
-    right.fill(0.0);
-    contacting.subtract_friction(right);
-    work - dot(right, step)
-}
-
-/// The incremental potential and the size of its parts [J].
-fn potential<const D: usize>(system: &System<D>, room: &Room<D>, balance: &Balance, trial: bool) -> Option<(f64, f64)> {
-    let energy = system.potential_energy(Room::<D>::STAGE, balance.time)?;
-    let u = if trial { &room.trial } else { &room.u };
-    let mut inertia = 0.0;
-    for (node, mass) in room.mass.iter().enumerate() {
-        for k in node * D..(node + 1) * D {
-            let way = u[k] - room.y[k];
-            inertia += mass * way * way;
-        }
-    }
-    if let Some(coupled) = &system.inertia {
-        // The forces were evaluated last, and with them the way.
-        inertia += coupled.square::<D>(&room.way);
-    }
-    inertia *= 0.5 * balance.sigma;
-    let mut lifted = 0.0;
-    if balance.load != 1.0 {
-        // What the missing part of the weight would have given.
-        for node in 0..system.nodes {
-            for d in 0..D {
-                lifted += (1.0 - balance.load) * room.outer.0[d][node] * u[node * D + d];
-            }
-        }
-    }
-    Some((energy + inertia + lifted, energy.abs() + inertia + lifted.abs()))
 }
 
 /// Whether what is out of balance is no more than the rounding of the forces.

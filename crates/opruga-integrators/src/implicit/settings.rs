@@ -41,7 +41,7 @@ pub(crate) enum Otherwise {
 }
 
 /// The number of Newton's iterations.
-const ITERATIONS: Field = Field::new(
+pub(crate) const ITERATIONS: Field = Field::new(
     "iterations",
     Allowed::Integer { least: 1, greatest: 1000 },
     "",
@@ -49,7 +49,7 @@ const ITERATIONS: Field = Field::new(
     "Iterations of Newton's method at most; 100, or 3 where `accuracy` is \"real_time\".",
 );
 /// When the iteration ends.
-const TOLERANCE: Field = Field::new(
+pub(crate) const TOLERANCE: Field = Field::new(
     "tolerance",
     Allowed::Number { least: Bound::Closed(1e-14), greatest: Bound::Closed(0.1) },
     "",
@@ -57,7 +57,7 @@ const TOLERANCE: Field = Field::new(
     "The iteration ends when no node is corrected by more than this part of the body's extent.",
 );
 /// The linear solver.
-const LINEAR_SOLVER: Field = Field::new(
+pub(crate) const LINEAR_SOLVER: Field = Field::new(
     "linear_solver",
     Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
     "",
@@ -67,7 +67,7 @@ processor, or the sparse Cholesky factor, which is the same on processors of one
 the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes.",
 );
 /// What to do without convergence.
-const OTHERWISE: Field = Field::new(
+pub(crate) const OTHERWISE: Field = Field::new(
     "when_not_converged",
     Allowed::Choice(&["error", "halve", "accept"]),
     "",
@@ -76,8 +76,18 @@ const OTHERWISE: Field = Field::new(
 (these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
 );
 
-/// The fields of the rules that step through time.
-pub(crate) const FIELDS: &[Field] = &[ACCURACY, ITERATIONS, TOLERANCE, LINEAR_SOLVER, OTHERWISE];
+/// The fields of a rule that steps through time, or of statics: its own, and those that say how equations are solved.
+macro_rules! fields {
+    (of_time $(, $own:expr)*) => {{
+        use $crate::implicit::settings::{ACCURACY, ITERATIONS, LINEAR_SOLVER, OTHERWISE, TOLERANCE};
+        &[$($own,)* ACCURACY, ITERATIONS, TOLERANCE, LINEAR_SOLVER, OTHERWISE]
+    }};
+    (of_statics $(, $own:expr)*) => {{
+        use $crate::implicit::settings::{ITERATIONS, LINEAR_SOLVER, TOLERANCE};
+        &[$($own,)* ITERATIONS, TOLERANCE, LINEAR_SOLVER]
+    }};
+}
+pub(crate) use fields;
 
 /// Exact or in real time.
 pub(crate) const ACCURACY: Field = Field::new(
@@ -89,9 +99,6 @@ pub(crate) const ACCURACY: Field = Field::new(
 from the motion of the last step, at most 100 products each with a matrix that is kept as long as it leads to the end of a \
 step; a fifth of what is out of balance may be left, and is made up for in the steps that follow.",
 );
-
-/// The fields of statics.
-pub(crate) const STATIC_FIELDS: [Field; 3] = [ITERATIONS, TOLERANCE, LINEAR_SOLVER];
 
 impl Settings {
     /// From the parameters of a rule.

@@ -144,7 +144,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     } else {
         newton::solve(system, room, &balance, settings)?
     };
-    report::<R, D>(settings, system, room, &solved)?;
+    report(R::NAME, settings, system, room, &solved)?;
 
     rule.end(system, room, &balance, h);
     if system.contacts.is_some() {
@@ -187,7 +187,8 @@ fn touches<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> bool {
 }
 
 /// Enters what Newton did, and refuses what has not converged.
-fn report<R: Rule<D>, const D: usize>(
+pub(crate) fn report<const D: usize>(
+    integrator: &'static str,
     settings: &Settings,
     system: &mut System<D>,
     room: &Room<D>,
@@ -207,7 +208,7 @@ fn report<R: Rule<D>, const D: usize>(
         return Ok(());
     }
     Err(StepError::NotConverged {
-        integrator: R::NAME,
+        integrator,
         iterations: solved.iterations,
         residual,
         correction: solved.correction,

@@ -10,6 +10,10 @@
 //! line. Energy is kept exactly where forces are linear; a stiff spring that turns within a step exchanges energy with its
 //! stretch, which bounds the step in practice.
 //!
+//! In contact the tremor of a stiff body would never end, and friction would act on it. Steps in which obstacles hold nodes
+//! have their stage at θ = 1/(1 + 0.8) instead of ½: what is much faster than the step falls by the factor (1 − θ)/θ = 0.8,
+//! an oscillation with small hω by (θ − ½) h²ω² (the θ-method; Hughes 1987, 8.2).
+//!
 //! Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1 and IV.2.
 
 #[cfg(test)]
@@ -17,7 +21,7 @@ mod tests;
 
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
-use crate::implicit::settings::FIELDS;
+use crate::implicit::settings::fields;
 use crate::implicit::step::{Implicit, RADIUS_IN_CONTACT, Rule};
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
@@ -29,9 +33,10 @@ pub const SPEC: Spec = Spec {
     kind: "implicit_midpoint",
     summary: "implicit, second order, stable for every step; keeps momentum, and energy of linear systems",
     documentation: "M (v₁ − v₀) = h F in the middle of the step, x₁ = x₀ + ½ h (v₀ + v₁), solved by Newton's method. Without \
-damping amplitudes stay as they are; linear and angular momentum are kept to the tolerance. One body an island.",
+damping amplitudes stay as they are; linear and angular momentum are kept to the tolerance. While obstacles hold nodes, what is \
+much faster than the step falls by a fifth in a step, so that bodies come to rest. One body an island.",
     dimensions: &[2, 3],
-    fields: FIELDS,
+    fields: fields!(of_time),
 };
 
 /// The kind `implicit_midpoint`.

@@ -1,0 +1,95 @@
+//! What the forces of contacts change by with the positions of their nodes.
+
+use super::contact::{Contact, Contacting, SMALL, dot};
+use opruga_core::system::System;
+use opruga_solve::blocks::{Block, isotropic};
+
+/// A direction of friction that turns by less than this in an iteration is followed by the next.
+const FOLLOWED: f64 = 0.1;
+
+/// A slide of more than this part of the extent has a direction anyhow.
+const SLIDING: f64 = 1e-4;
+
+/// Where nodes are within a step, and what they may meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight<'a, const D: usize> {
+    pub(crate) system: &'a System<D>,
+    pub(crate) x0: &'a [f64],
+    pub(crate) u: &'a [f64],
+    pub(crate) theta: f64,
+    pub(crate) h: f64,
+    pub(crate) extent: f64,
+}
+
+/// How far from a node its surface is looked at, in extents of the body.
+const BESIDE: f64 = 1e-5;
+
+/// Normals that turn by more than this within that distance belong to an edge.
+const EDGE: f64 = 1e-2;
+
+impl<const D: usize> Sight<'_, D> {
+    /// ∂n/∂x along the surface, by differences; nothing at edges.
+    fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
+        let obstacles = self.system.contacts.as_ref()?;
+        let (at, step) = (contact.node * D, BESIDE * self.extent);
+        let from: [f64; D] = core::array::from_fn(|d| self.x0[at + d]);
+        let mut turn = isotropic::<D>(0.0);
+        for axis in 0..D {
+            let mut unit = [0.0; D];
+            unit[axis] = 1.0;
+            let aside = contact.along(&unit);
+            let to: [f64; D] = core::array::from_fn(|d| from[d] + self.u[at + d] / self.theta + step * aside[d]);
+            let mut beside = None;
+            obstacles.touch(&from, &to, self.system.time + self.h, self.h, 0.1 * self.extent, &mut |touch| {
+                if touch.surface == contact.touch.surface {
+                    beside = Some(touch.normal);
+                }
+            });
+            let beside = beside?;
+            let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
+            if dot(&difference, &difference) > EDGE * EDGE {
+                return None;
+            }
+            // Row by row: the derivative along the axis, of what lies along the surface.
+            turn[axis] = contact.along(&difference.map(|x| x / step));
+        }
+        let half = |i: usize, j: usize| 0.5 * (turn[i][j] + turn[j][i]);
+        Some(core::array::from_fn(|i| core::array::from_fn(|j| half(i, j))))
+    }
+}
+
+impl<const D: usize> Contacting<D> {
+    /// Calls back with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
+    /// across it, and of the constraint, whose direction follows the surface, −λ ∂n/∂x. Where `clamped`, only blocks without
+    /// negative eigenvalues.
+    pub(crate) fn derivatives(&self, sight: &Sight<'_, D>, clamped: bool, visit: &mut dyn FnMut(usize, Block<D>)) {
+        for contact in self.contacts.iter().filter(|contact| contact.normal_force > 0.0) {
+            let normal = &contact.touch.normal;
+            if contact.rubs() && D > 2 {
+                let slide = contact.slide(sight.u, sight.theta, sight.x0);
+                // A slide that turns far has no direction yet that could be followed.
+                let size = dot(&slide, &slide).sqrt();
+                let strength = contact.touch.friction * contact.normal_force / size;
+                if dot(&slide, &contact.push) < 0.0
+                    && size > SMALL * sight.extent
+                    && (contact.turn < FOLLOWED || size > SLIDING * sight.extent)
+                {
+                    let mut block = isotropic::<D>(strength);
+                    for i in 0..D {
+                        for j in 0..D {
+                            block[i][j] -= strength * (normal[i] * normal[j] + contact.push[i] * contact.push[j]);
+                        }
+                    }
+                    visit(contact.node, block);
+                }
+            }
+            if let Some(turn) = sight.turn_of_normal(contact) {
+                let factor = -contact.normal_force / sight.theta;
+                let trace: f64 = (0..D).map(|d| turn[d][d]).sum();
+                if trace != 0.0 && !(clamped && factor * trace < 0.0) {
+                    visit(contact.node, turn.map(|row| row.map(|entry| factor * entry)));
+                }
+            }
+        }
+    }
+}
