@@ -2,6 +2,7 @@
 
 use super::{COMPLETE, Equilibrium, LOAD, SPEC};
 use crate::testing::problems::Springs;
+use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 use opruga_core::state::{Columns, Layout, Parameter};
@@ -175,4 +176,19 @@ fn a_balance_that_is_not_found_leaves_the_state_as_it_was() {
         "{error}"
     );
     assert_eq!((&system.state.x, &system.state.v), (&x, &v));
+}
+
+#[test]
+fn what_is_out_of_balance_is_told_of_nodes_that_are_held_along_some_axes_too() {
+    let mut system = body(&[[0.0, 0.0], [0.0, -1.0]], vec![[0, 1]], 10.0, vec![1.0, 5.0]);
+    system.gravity = [300.0, -9.81];
+    pin(&mut system, 0, [true, true]);
+    pin(&mut system, 1, [true, false]);
+    let rule = rule(&[("iterations", Value::Integer(1))]);
+    system.equip(&rule);
+    let StepError::NotConverged { residual, .. } = rule.step(&mut system, 0.5).unwrap_err() else {
+        panic!("another error")
+    };
+    // The spring takes as much as its part of the way: along the free axis alone something is left.
+    assert!(residual > 1.0 && residual < 5.0 * 9.81, "{residual}");
 }

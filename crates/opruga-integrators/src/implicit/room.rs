@@ -8,7 +8,7 @@ use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
-use opruga_solve::blocks::{Block, isotropic};
+use opruga_solve::blocks::{Block, isotropic, times};
 
 /// Room for an implicit step. Long vectors hold the coordinates of one node after the other.
 #[derive(Debug)]
@@ -187,14 +187,13 @@ impl<const D: usize> Room<D> {
         }
     }
 
-    /// The largest force out of balance on a node that nothing holds [N].
+    /// The largest force out of balance on a node along what nothing holds [N].
     pub(crate) fn largest_residual(&self) -> f64 {
         let mut largest: f64 = 0.0;
         for (node, rest) in self.residual.as_chunks::<D>().0.iter().enumerate() {
-            if self.free[node] {
-                let square: f64 = rest.iter().map(|r| r * r).sum();
-                largest = if square > largest { square } else { largest };
-            }
+            let rest = if self.free[node] { *rest } else { times(&self.projectors[node], rest) };
+            let square: f64 = rest.iter().map(|r| r * r).sum();
+            largest = if square > largest { square } else { largest };
         }
         largest.sqrt()
     }

@@ -1,0 +1,91 @@
+//! Opruga beside its peers, on the same bodies in one run (docs/comparison.md).
+//!
+//! Everything on one thread, by its processor time. Errors stand beside times: at rest against the static solution, of
+//! the first swing (depth, and time until it is back) against backward Euler of the same step, solved to the last
+//! digits.
+
+mod beam;
+mod cube;
+mod motion;
+mod mujoco;
+mod ours;
+mod rapier;
+mod table;
+
+use clap::Parser;
+use table::Table;
+
+/// Length of a frame, the same for all [s].
+pub const FRAME: f64 = 1.0 / 60.0;
+
+/// Processor time of this thread [s].
+pub fn processor_time() -> f64 {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
+}
+
+/// Opruga beside Rapier and MuJoCo: milliseconds per frame of one thread, and errors.
+#[derive(Debug, Parser)]
+pub struct Settings {
+    /// Bodies: `cube`, `beam`
+    #[arg(long, value_delimiter = ',', default_value = "cube,beam")]
+    bodies: Vec<String>,
+    /// Cells along a side of the cube
+    #[arg(long, value_delimiter = ',', default_value = "4,10")]
+    cells: Vec<usize>,
+    /// Young's moduli of the cube [Pa]
+    #[arg(long, value_delimiter = ',', default_value = "1e5,1e6")]
+    moduli: Vec<f64>,
+    /// Frames that are timed
+    #[arg(long, default_value_t = 120)]
+    frames: usize,
+    /// How often they are timed, all programs by turns
+    #[arg(long, default_value_t = 3)]
+    repeats: usize,
+    /// A Python with the package `mujoco`; MuJoCo is left out without
+    #[arg(long, value_name = "PYTHON")]
+    mujoco: Option<String>,
+    /// An object for programs
+    #[arg(long)]
+    json: bool,
+}
+
+fn compare(settings: &Settings, done: &mut dyn FnMut(Table)) -> Result<(), String> {
+    for body in &settings.bodies {
+        match body.as_str() {
+            "cube" => {
+                for &n in &settings.cells {
+                    for &modulus in &settings.moduli {
+                        done(cube::compare(n, modulus, settings)?);
+                    }
+                }
+            }
+            "beam" => {
+                for modulus in [1e8, 1e6] {
+                    done(beam::compare(modulus, settings)?);
+                }
+            }
+            other => return Err(format!("there is no body `{other}`; known: cube, beam")),
+        }
+    }
+    Ok(())
+}
+
+fn main() {
+    let settings = Settings::parse();
+    let mut tables = Vec::new();
+    let outcome = compare(&settings, &mut |table| {
+        if settings.json {
+            tables.push(table.json());
+        } else {
+            print!("{}", table.markdown());
+        }
+    });
+    if settings.json {
+        println!("{}", serde_json::json!({ "rapier": rapier::VERSION, "frame": FRAME, "tables": tables }));
+    }
+    if let Err(message) = outcome {
+        eprintln!("error: {message}");
+        std::process::exit(2);
+    }
+}

@@ -1,0 +1,88 @@
+//! What a swing looks like: how deep it goes at first, and how long it takes.
+
+/// The first swing of something that is let go and falls.
+#[derive(Clone, Copy, Debug)]
+pub struct Swing {
+    /// Depth of the first lowest point below the start [m].
+    pub amplitude: f64,
+    /// Time from the start to the first highest point after it [s].
+    pub period: f64,
+}
+
+/// What a run gives.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// Processor time of every frame [ms].
+    pub milliseconds: Vec<f64>,
+    /// Mean height of the free end at the start and after every frame [m].
+    pub heights: Vec<f64>,
+}
+
+/// How far the free end moves in a frame where it counts as at rest [m].
+const STILL: f64 = 1e-7;
+
+/// For so many frames.
+const STILL_FRAMES: usize = 30;
+
+impl Run {
+    /// How far the free end hangs below its start at the end [m].
+    pub fn sag(&self) -> f64 {
+        self.heights[0] - self.heights[self.heights.len() - 1]
+    }
+
+    /// Whether the free end has come to rest.
+    pub fn is_still(&self) -> bool {
+        let count = self.heights.len();
+        count > STILL_FRAMES
+            && self.heights[count - STILL_FRAMES - 1..].windows(2).all(|pair| (pair[1] - pair[0]).abs() < STILL)
+    }
+
+    /// The first swing, of frames of a length; none where it has not come back by the end.
+    pub fn swing(&self, frame: f64) -> Option<Swing> {
+        let lowest = turn(&self.heights, 1, |before, here, after| here <= before && here < after)?;
+        let highest = turn(&self.heights, lowest.0 + 1, |before, here, after| here >= before && here > after)?;
+        Some(Swing { amplitude: self.heights[0] - lowest.2, period: highest.1 * frame })
+    }
+
+    /// The median time of a frame [ms].
+    pub fn median(&self) -> f64 {
+        let mut sorted = self.milliseconds.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// The first sample from `from` on that is a turning point: its number, and time in samples and height by the parabola
+/// through it and its neighbours.
+fn turn(heights: &[f64], from: usize, is_turn: fn(f64, f64, f64) -> bool) -> Option<(usize, f64, f64)> {
+    (from..heights.len().saturating_sub(1)).find_map(|k| {
+        let (before, here, after) = (heights[k - 1], heights[k], heights[k + 1]);
+        is_turn(before, here, after).then(|| {
+            let (slope, bend) = (0.5 * (after - before), after - 2.0 * here + before);
+            (k, k as f64 - slope / bend, here - 0.5 * slope * slope / bend)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Run;
+
+    #[test]
+    fn the_swing_of_a_cosine_is_its_depth_and_period() {
+        let heights: Vec<f64> = (0..40).map(|k| (0.31 * f64::from(k)).cos() * 0.5).collect();
+        let run = Run { heights, milliseconds: vec![3.0, 1.0, 2.0] };
+        let swing = run.swing(0.1).expect("a swing");
+        assert!((swing.amplitude - 1.0).abs() < 2e-3, "{swing:?}");
+        assert!((swing.period - 0.1 * 2.0 * std::f64::consts::PI / 0.31).abs() < 2e-3, "{swing:?}");
+        assert!(!run.is_still() && run.median() == 2.0);
+    }
+
+    #[test]
+    fn what_does_not_come_back_has_no_swing() {
+        let run = Run { heights: (0..40).map(|k| -f64::from(k)).collect(), milliseconds: Vec::new() };
+        assert!(run.swing(0.1).is_none() && run.sag() == 39.0);
+        let still = Run { heights: vec![1.0; 40], milliseconds: Vec::new() };
+        assert!(still.is_still());
+    }
+}
