@@ -68,7 +68,7 @@ impl Trial {
         self.slows_down_honestly()?;
         self.says_where_nothing_draws()?;
         self.goes_on_on_another_device()?;
-        self.draws_by_webgpu()?;
+        self.runs_on_webgpu()?;
         answers.store(false, Ordering::Relaxed);
         self.works_without_a_network()?;
         match self.browser.troubles.first() {
