@@ -54,8 +54,8 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     }
     let mut rows = Vec::new();
     for (k, (name, solver)) in ["Rapier, elements", "Rapier, constraints"].into_iter().zip(solvers).enumerate() {
-        let resting = rapier::run(&shape, modulus, solver, Damping::Full, REST_FRAMES, Run::is_still).sag();
-        rows.push(Row::new(&format!("{name}, 4 steps"), nodes, &swinging[k], Some(resting), &of_four));
+        let resting = rapier::run(&shape, modulus, solver, Damping::Full, REST_FRAMES, Run::is_still).at_rest();
+        rows.push(Row::new(&format!("{name}, 4 steps"), nodes, &swinging[k], resting, &of_four));
     }
     if let Some(python) = &settings.mujoco {
         let kirchhoff = values(n, modulus, "st_venant_kirchhoff");
@@ -70,7 +70,7 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     damped.push(("body.cube.models.fem.damping", format!("{DAMPING:?}")));
     let resting = |substeps| -> Result<Option<f64>, String> {
         let run = Held::new(SCENE, &damped, REAL_TIME, substeps)?.run(REST_FRAMES, Run::is_still)?;
-        Ok(Some(run.sag()))
+        Ok(run.at_rest())
     };
     swinging[4].heights.clear();
     rows.push(Row::new("Opruga, real time, 1 step", nodes, &swinging[2], resting(1)?, &of_one));

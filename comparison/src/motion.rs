@@ -18,11 +18,11 @@ pub struct Run {
     pub heights: Vec<f64>,
 }
 
-/// How far the free end moves in a frame where it counts as at rest [m].
-const STILL: f64 = 1e-7;
+/// The part of its sag by which the free end may still move where it counts as at rest.
+const STILL: f64 = 1e-4;
 
-/// For so many frames.
-const STILL_FRAMES: usize = 30;
+/// In so many frames.
+const STILL_FRAMES: usize = 60;
 
 impl Run {
     /// How far the free end hangs below its start at the end [m].
@@ -30,11 +30,19 @@ impl Run {
         self.heights[0] - self.heights[self.heights.len() - 1]
     }
 
+    /// How far the free end hangs below its start once it has come to rest, on average over its last frames [m]; none
+    /// where it still moves.
+    pub fn at_rest(&self) -> Option<f64> {
+        let count = self.heights.len();
+        let last = (count > STILL_FRAMES).then(|| &self.heights[count - STILL_FRAMES..])?;
+        let sag = self.heights[0] - last.iter().sum::<f64>() / STILL_FRAMES as f64;
+        let (low, high) = last.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+        (high - low <= STILL * sag.abs()).then_some(sag)
+    }
+
     /// Whether the free end has come to rest.
     pub fn is_still(&self) -> bool {
-        let count = self.heights.len();
-        count > STILL_FRAMES
-            && self.heights[count - STILL_FRAMES - 1..].windows(2).all(|pair| (pair[1] - pair[0]).abs() < STILL)
+        self.at_rest().is_some()
     }
 
     /// The first swing, of frames of a length; none where it has not come back by the end.
@@ -82,7 +90,8 @@ mod tests {
     fn what_does_not_come_back_has_no_swing() {
         let run = Run { heights: (0..40).map(|k| -f64::from(k)).collect(), milliseconds: Vec::new() };
         assert!(run.swing(0.1).is_none() && run.sag() == 39.0);
-        let still = Run { heights: vec![1.0; 40], milliseconds: Vec::new() };
-        assert!(still.is_still());
+        let heights = (0..100).map(|k| if k == 0 { 0.0 } else { -1.0 + 4e-5 * f64::from(k % 2) }).collect();
+        let still = Run { heights, milliseconds: Vec::new() };
+        assert!((still.at_rest().expect("at rest") - (1.0 - 2e-5)).abs() < 1e-12);
     }
 }
