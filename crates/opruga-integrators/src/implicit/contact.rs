@@ -24,6 +24,8 @@ pub(crate) struct Contacting<const D: usize> {
     known: Vec<Contact<D>>,
     /// Room for what one node touches.
     found: Vec<Touch<D>>,
+    /// Room for the forces that friction goes by, and for what they change by.
+    forces: [Vec<f64>; 3],
 }
 
 /// One node on one surface.
@@ -106,6 +108,10 @@ impl<const D: usize> Contacting<D> {
             contacts.reserve(nodes);
         }
         self.found.reserve(D);
+        for forces in &mut self.forces {
+            forces.clear();
+            forces.reserve(nodes);
+        }
     }
     /// Whether friction may turn aside what slides.
     pub(crate) fn any_turns(&self) -> bool {
@@ -393,8 +399,11 @@ impl<const D: usize> Contacting<D> {
     /// Lets friction follow the forces that the constraints take now; `right` is then by what it has changed. Says whether it has
     /// by more than `tolerance` of itself.
     pub(crate) fn follow(&mut self, reaction: &[f64], mixing: &mut Mixing, tolerance: f64, right: &mut [f64]) -> bool {
-        let (mut state, mut change, mut most, mut worst) = (Vec::new(), Vec::new(), 0.0f64, 0.0f64);
-        for contacts in self.contacts.chunk_by(|a, b| a.node == b.node).filter(|c| c.iter().any(Contact::rubs)) {
+        let Contacting { contacts: all, forces: [state, change, plain], .. } = self;
+        state.clear();
+        change.clear();
+        let (mut most, mut worst) = (0.0f64, 0.0f64);
+        for contacts in all.chunk_by(|a, b| a.node == b.node).filter(|c| c.iter().any(Contact::rubs)) {
             let at = contacts[0].node * D;
             let normal_forces = split(contacts, &core::array::from_fn(|d| reaction[at + d]));
             for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.rubs()) {
@@ -409,15 +418,16 @@ impl<const D: usize> Contacting<D> {
         if worst <= tolerance * most {
             return false;
         }
-        mixing.note(&state, &change);
-        let plain = change.clone();
-        mixing.mix(&mut change);
+        mixing.note(state, change);
+        plain.clear();
+        plain.extend_from_slice(change);
+        mixing.mix(change);
         // Where friction and the force along the normal nearly feed each other, mixing leads anywhere.
-        if !state.iter().zip(&change).all(|(force, change)| (force + change).abs() <= 4.0 * most) {
-            change = plain;
+        if !state.iter().zip(&*change).all(|(force, change)| (force + change).abs() <= 4.0 * most) {
+            change.copy_from_slice(plain);
         }
         right.fill(0.0);
-        for (contact, change) in self.contacts.iter_mut().filter(|contact| contact.rubs()).zip(&change) {
+        for (contact, change) in all.iter_mut().filter(|contact| contact.rubs()).zip(&*change) {
             let before = contact.normal_force;
             contact.normal_force = (before + change).larger(0.0);
             let strength = contact.touch.friction * (contact.normal_force - before);

@@ -149,6 +149,7 @@ impl<const D: usize> Linear<D> {
     pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
         self.added.clear();
         if mixture.matrix_free {
+            self.added.reserve(mixture.mass.len());
             self.diagonal.clear();
             self.diagonal.extend(mixture.mass.iter().map(|mass| isotropic::<D>(mixture.sigma * mass)));
             let mut sink = DiagonalSink { factor: 1.0, blocks: &mut self.diagonal };

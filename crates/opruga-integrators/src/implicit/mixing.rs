@@ -28,10 +28,26 @@ pub(crate) struct Mixing {
     changes: Vec<Vec<f64>>,
     ways: Vec<Vec<f64>>,
     known: usize,
+    /// The same, made orthogonal; and what is left of a change.
+    across: Vec<Vec<f64>>,
+    combined: Vec<Vec<f64>>,
+    rest: Vec<f64>,
 }
 
 impl Mixing {
-    /// Begins anew.
+    /// Begins anew, with room for states of so many numbers at most.
+    pub(crate) fn begin(&mut self, most: usize) {
+        self.forget();
+        for list in [&mut self.changes, &mut self.ways, &mut self.across, &mut self.combined] {
+            list.resize_with(MOST, Vec::new);
+            list.iter_mut().for_each(|vector| reserve(vector, most));
+        }
+        for vector in [&mut self.state, &mut self.change, &mut self.rest] {
+            reserve(vector, most);
+        }
+    }
+
+    /// Forgets what has been noted.
     pub(crate) fn forget(&mut self) {
         self.known = 0;
         self.state.clear();
@@ -44,10 +60,11 @@ impl Mixing {
 
     /// Notes a state and the change that an iteration makes of it.
     pub(crate) fn note(&mut self, state: &[f64], change: &[f64]) {
-        if self.state.len() == state.len() && self.known < MOST {
-            if self.changes.len() == self.known {
-                self.changes.push(Vec::new());
-                self.ways.push(Vec::new());
+        if self.state.len() == state.len() {
+            if self.known == MOST {
+                self.changes.rotate_left(1);
+                self.ways.rotate_left(1);
+                self.known -= 1;
             }
             let (changes, ways) = (&mut self.changes[self.known], &mut self.ways[self.known]);
             changes.clear();
@@ -58,44 +75,51 @@ impl Mixing {
                 ways.push(state[k] - self.state[k] + of_change);
             }
             self.known += 1;
-        } else if self.state.len() == state.len() {
-            self.changes.rotate_left(1);
-            self.ways.rotate_left(1);
-            self.known -= 1;
-            return self.note(state, change);
         }
-        self.state.clear();
-        self.state.extend_from_slice(state);
-        self.change.clear();
-        self.change.extend_from_slice(change);
+        refill(&mut self.state, state);
+        refill(&mut self.change, change);
     }
 
     /// Takes what the iterations before make superfluous out of a change that has been noted.
-    pub(crate) fn mix(&self, change: &mut [f64]) {
+    pub(crate) fn mix(&mut self, change: &mut [f64]) {
+        let Mixing { changes, ways, known, across, combined, rest, .. } = self;
+        refill(rest, change);
         // Orthogonal differences of changes, the newest first, and the same combinations of ways.
-        let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(self.known);
-        let mut rest = change.to_vec();
-        for k in (0..self.known).rev() {
-            let (mut across, mut way) = (self.changes[k].clone(), self.ways[k].clone());
-            let whole = dot(&across, &across);
-            for (other, its_way) in &basis {
-                let part = dot(&across, other);
-                subtract(&mut across, part, other);
-                subtract(&mut way, part, its_way);
+        let mut found = 0;
+        for k in (0..*known).rev() {
+            let (before, others) = across.split_at_mut(found);
+            let (ways_before, other_ways) = combined.split_at_mut(found);
+            let (own, way) = (&mut others[0], &mut other_ways[0]);
+            refill(own, &changes[k]);
+            refill(way, &ways[k]);
+            let whole = dot(own, own);
+            for (other, its_way) in before.iter().zip(&*ways_before) {
+                let part = dot(own, other);
+                subtract(own, part, other);
+                subtract(way, part, its_way);
             }
-            let left = dot(&across, &across);
+            let left = dot(own, own);
             if left.is_nan() || left <= NOTHING_NEW * NOTHING_NEW * whole {
                 continue;
             }
             let size = left.sqrt();
-            across.iter_mut().for_each(|x| *x /= size);
+            own.iter_mut().for_each(|x| *x /= size);
             way.iter_mut().for_each(|x| *x /= size);
-            let part = dot(&rest, &across);
-            subtract(&mut rest, part, &across);
-            subtract(change, part, &way);
-            basis.push((across, way));
+            let part = dot(rest, own);
+            subtract(rest, part, own);
+            subtract(change, part, way);
+            found += 1;
         }
     }
+}
+
+fn reserve(vector: &mut Vec<f64>, most: usize) {
+    vector.reserve(most.saturating_sub(vector.len()));
+}
+
+fn refill(own: &mut Vec<f64>, from: &[f64]) {
+    own.clear();
+    own.extend_from_slice(from);
 }
 
 fn subtract(from: &mut [f64], factor: f64, vector: &[f64]) {
@@ -115,6 +139,7 @@ mod tests {
         let wanted = [1.0, -2.0, 0.5, 3.0];
         let mut z = [0.0; 4];
         let mut mixing = Mixing::default();
+        mixing.begin(4);
         for _ in 0..6 {
             let mut f: Vec<f64> =
                 matrix.iter().map(|row| (0..4).map(|k| row[k] * (wanted[k] - z[k])).sum::<f64>()).collect();

@@ -103,7 +103,8 @@ pub(crate) fn solve<const D: usize>(
         size = x.abs().larger(size);
     }
     begin(system, room, balance)?;
-    room.mixing.forget();
+    room.mixing.begin(room.u.len());
+    room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
     let mut first_norm = 0.0;
     // What the next direction is made of first, and the correction of the last iteration that went all of its way.
     let (mut first, mut before) = (Keep::Exact, f64::INFINITY);
@@ -249,7 +250,7 @@ fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> boo
     if !wanted || room.mixing.is_empty() {
         return false;
     }
-    let plain = room.step.clone();
+    room.trial.copy_from_slice(&room.step);
     room.mixing.mix(&mut room.step);
     Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
     for (s, p) in room.step.iter_mut().zip(&room.prescribed) {
@@ -260,7 +261,7 @@ fn mix<const D: usize>(room: &mut Room<D>, wanted: bool, slope: &mut f64) -> boo
         *slope = found;
         return true;
     }
-    room.step = plain;
+    room.step.copy_from_slice(&room.trial);
     false
 }
 
