@@ -198,13 +198,13 @@ impl<const D: usize> World<D> {
             Some(pool) => pool.install(|| {
                 // Large bodies one after the other, each on all threads; then the others, one a thread. A body that waits for
                 // its threads must not be handed another one, whose workspace would be its own.
-                let threads = pool.current_num_threads();
-                for island in islands.iter_mut().filter(|island| island.is_shared_by(threads)) {
+                let (threads, count) = (pool.current_num_threads(), islands.len());
+                for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
                     island.system.threads = threads;
                     island.frame(&plan, &mut lock(&workspaces[0]));
                     island.system.threads = 1;
                 }
-                islands.par_iter_mut().filter(|island| !island.is_shared_by(threads)).for_each(|island| {
+                islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
                     let thread = rayon::current_thread_index().unwrap_or(0);
                     island.frame(&plan, &mut lock(&workspaces[thread]));
                 });

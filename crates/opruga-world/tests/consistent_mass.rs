@@ -117,7 +117,7 @@ fn steps_follow_the_frequencies_of_the_same_masses() {
         let mut blueprint = bar(mesh.clone(), mass);
         let spec = Registry::<2>::default().integrator(integrator).expect("an integrator").spec();
         blueprint.integrator = Values::defaults(spec, 2);
-        blueprint.integrator.set(spec, "tolerance", Value::Number(1e-14), 2).expect("a field");
+        blueprint.integrator.set(spec, "tolerance", Value::Number(1e-12), 2).expect("a field");
         let mode = world(blueprint.clone()).modes(0, 1).expect("a mode").remove(0);
         let steps = 200;
         blueprint.time = Time { seconds: 1.0, frame: 2.0 * PI / mode.omega() / f64::from(steps), substeps: 1 };
