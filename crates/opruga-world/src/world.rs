@@ -192,7 +192,7 @@ impl<const D: usize> World<D> {
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
         // One small body has nothing to share: waking threads for it would cost more than its frame.
-        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads));
+        let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
         match self.pool.as_ref().filter(|_| !alone(islands)) {
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
