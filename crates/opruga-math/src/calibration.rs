@@ -15,7 +15,11 @@ pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
         #[inline(always)]
         fn run<P: Pack>(self) {
             let (factor, term) = (P::splat(0.999_999), P::splat(1e-6));
-            let mut chains = [P::one(); CHAINS];
+            // Numbers that are not known before: else the compiler knows the end.
+            let mut chains = [P::load(&*self.0); CHAINS];
+            for k in 0..CHAINS {
+                chains[k] += P::splat(k as f64);
+            }
             for _ in 0..ROUNDS {
                 for k in 0..CHAINS {
                     chains[k] = chains[k] * factor + term;

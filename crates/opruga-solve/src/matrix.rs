@@ -5,7 +5,7 @@ use crate::blocks::{Block, isotropic, nodes, nodes_mut, product, times};
 use crate::landing::{Landing, is_known};
 use opruga_core::potential::{Sink, StencilPack, StencilPacks};
 use opruga_core::threads::each_part;
-use opruga_math::{Column, Simd, WIDTH};
+use opruga_math::{Simd, WIDTH};
 
 /// Compressed rows of blocks, filled by what models deliver as a [`Sink`].
 ///
@@ -31,8 +31,6 @@ pub struct BlockMatrix<const D: usize> {
     factor: f64,
     rank_one: Vec<RankOne<D>>,
     ranks: usize,
-    /// Room of [`Landing`].
-    turned: Column,
 }
 
 /// How many orders of calls are remembered.
@@ -219,8 +217,8 @@ impl<const D: usize> BlockMatrix<D> {
     fn replay(&mut self, pack: &StencilPack<'_>) -> usize {
         let count = pack.count * pack.nodes * pack.nodes;
         let slots = &self.scripts[self.script].pack_slots[self.packs.slots..][..count];
-        let Self { values, factor, turned, .. } = self;
-        Landing { values, first: 0, factor: *factor, turned }.add(Simd::best(), pack, slots);
+        let Self { values, factor, .. } = self;
+        Landing { values, first: 0, factor: *factor }.add(Simd::best(), pack, slots);
         count
     }
 
@@ -248,8 +246,7 @@ impl<const D: usize> BlockMatrix<D> {
         let factor = self.factor;
         each_part(&mut self.values, &starts, |part, values| {
             let rows = rows[part]..rows.get(part + 1).map_or(usize::MAX, |row| *row);
-            let mut turned = Column::default();
-            let mut landing = Landing { values, first: starts[part], factor, turned: &mut turned };
+            let mut landing = Landing { values, first: starts[part], factor };
             packs.deliver(&rows, &mut |number, pack| {
                 let from = number * WIDTH * nodes * nodes;
                 landing.add(Simd::best(), pack, &slots[from..from + pack.count * nodes * nodes]);
