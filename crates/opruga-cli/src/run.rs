@@ -166,7 +166,7 @@ impl Job<'_> {
         let bar = progress_bar(frames);
         let start = Instant::now();
         let first = world.frames();
-        let (mut failure, mut told_at) = (None, 0.0);
+        let (mut failure, mut told_at, mut looked_at) = (None, 0.0, false);
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut world);
         while failure.is_none() && world.frames() < frames {
@@ -178,6 +178,7 @@ impl Job<'_> {
                 failure = Some(source.run_error(&error, world.time()));
                 break;
             }
+            looked_at = looked_at || world.look_at_steps_again();
             failure = tape.as_mut().and_then(|tape| tape.push(&mut world).err()).map(unrecorded);
             looking += recorder.record(&mut world);
             if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {

@@ -193,6 +193,11 @@ impl<const D: usize> World<D> {
         /// [`WorldError`] names body, node and substep; the world is at its last good frame.
         pub fn frame(&mut self) -> Result<(), WorldError> = frame_here;
 
+        /// Where energy has come from nowhere (`ledger.closure`), looks whether the step is still stable in the present
+        /// state, and warns (`step.outgrown`) if it is not; says whether there was anything to look for. Stepping goes on
+        /// as it would without.
+        pub fn look_at_steps_again(&mut self) -> bool = look_at_steps_again_here;
+
         /// Moves a node and gives it a velocity, from outside of the physics.
         ///
         /// # Errors

@@ -241,12 +241,7 @@ impl<const D: usize> World<D> {
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        if self.energy.closure > LARGEST_CLOSURE {
-            if self.flows.open_frames == 0 {
-                self.look_at_steps_again();
-            }
-            self.flows.open_frames += 1;
-        }
+        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE);
         self.take_away_what_is_far()
     }
 
