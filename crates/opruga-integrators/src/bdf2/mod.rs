@@ -101,7 +101,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
         }
     }
     fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
-        let [way, before] = &mut system.history.columns[..] else { return };
+        // Behind them may be what the real-time setting remembers.
+        let [way, before, ..] = &mut system.history.columns[..] else { return };
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;

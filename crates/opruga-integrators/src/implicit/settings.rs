@@ -97,8 +97,12 @@ pub(crate) const ACCURACY: Field = Field::new(
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
 from the motion of the last step, at most 100 products each with a matrix that is kept as long as it leads to the end of a \
-step; a fifth of what is out of balance may be left, and is made up for in the steps that follow.",
+step; a fifth of what is out of balance may be left, and is made up for in the steps that follow. Rules that damp nothing \
+(`implicit_midpoint`, `newmark`) would add it up, and refuse the setting.",
 );
+
+/// Rules that keep what a step leaves out of balance.
+const UNDAMPED: [&str; 2] = ["implicit_midpoint", "newmark"];
 
 impl Settings {
     /// From the parameters of a rule.
@@ -107,6 +111,13 @@ impl Settings {
     /// [`BuildError`] where they exclude one another.
     pub(crate) fn of_rule(kind: &'static str, values: &Values) -> Result<Settings, BuildError> {
         let settings = Settings::new(values);
+        if settings.real_time && UNDAMPED.contains(&kind) {
+            let message = format!(
+                "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` damps nothing, and would add it up \
+                 without end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting"
+            );
+            return Err(BuildError::new(kind, "integrator.real_time", message));
+        }
         if settings.real_time && settings.solver == Solver::MatrixFree {
             let message = "`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix; allowed \
                            with it: \"auto\", \"conjugate_gradients\", \"cholesky\"";

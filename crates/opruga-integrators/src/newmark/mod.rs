@@ -174,7 +174,7 @@ impl<const D: usize> Rule<D> for Newmark {
 
 /// M a₀ = F at the start; where nodes are coupled, those that are held do not accelerate.
 fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
-    let Room { a0, force, held, mass, step, right, .. } = room;
+    let Room { a0, force, mass, step, right, .. } = room;
     a0.resize(step.len(), 0.0);
     for node in 0..system.nodes {
         let inverse = system.inverse_mass.at(node);
@@ -183,15 +183,18 @@ fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
         }
     }
     let Some(inertia) = system.inertia.as_ref().filter(|_| system.history.numbers[0] <= 0.0) else { return };
+    // The rule begins before the step knows what is held.
+    let mut held = vec![false; right.len()];
+    system.held_axes(&mut |node, d| held[node * D + d] = true);
     for (k, b) in right.iter_mut().enumerate() {
-        *b = if held[k].is_nan() { force.0[k % D][k / D] } else { 0.0 };
+        *b = if held[k] { 0.0 } else { force.0[k % D][k / D] };
     }
     let multiply = |x: &[f64], y: &mut [f64]| {
         for node in 0..system.nodes {
             let coupled = inertia.product::<D>(node, x);
             for d in 0..D {
                 let k = node * D + d;
-                y[k] = if held[k].is_nan() { mass[node] * x[k] + coupled[d] } else { x[k] };
+                y[k] = if held[k] { x[k] } else { mass[node] * x[k] + coupled[d] };
             }
         }
     };
