@@ -111,11 +111,11 @@ fn collapsed_mirrored_and_scattered_bodies_come_back_or_are_refused_with_a_reaso
         // A mirrored body turns every tetrahedron the right way; of the stable law it ends in a balance of its own, folded as a
         // ball is that was turned inside out.
         let mirrored = end(material, "mirrored", 3, &|x, _| [-x[0], x[1], x[2]]);
-        assert!(
-            matches!(mirrored, End::Back)
-                || matches!(mirrored, End::Elsewhere(whole, least) if whole > 0.9 && least > 0.4),
-            "{material}: {mirrored:?}"
-        );
+        let as_it_must = match material {
+            "stable_neo_hookean" => matches!(mirrored, End::Elsewhere(whole, least) if whole > 0.9 && least > 0.4),
+            _ => matches!(mirrored, End::Back),
+        };
+        assert!(as_it_must, "{material}: {mirrored:?}");
         comes_back(material, "scattered", 3, &|_, node| core::array::from_fn(|d| random(node, d)));
         comes_back(material, "stretched tenfold", 3, &|x, _| [10.0 * x[0], x[1], x[2]]);
         comes_back(material, "twisted three times", 4, &|x, _| {

@@ -78,7 +78,9 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
         let (way, speed, energy) = incline(0.49);
         println!("{rule}: {way:.6} m, {speed:.6} m/s");
         assert!((way / 0.274_198 - 1.0).abs() < 1e-2, "{rule}: {way} {speed}");
-        assert!((speed / 0.219_358 - 1.0).abs() < 3e-3, "{rule}: {way} {speed}");
+        // One step a frame alone is tried: in 16 a block slides too fast by any rule (README, limits), most of all by Newmark's.
+        let own_error = if rule == "newmark" { 3e-3 } else { 1e-3 };
+        assert!((speed / 0.219_358 - 1.0).abs() < own_error, "{rule}: {way} {speed}");
         // Friction takes µ N s of it.
         let rubbed = 0.49 * 2.0 * -across * way;
         assert!((energy.loss_friction / rubbed - 1.0).abs() < 2e-2, "{rule}: {} {rubbed}", energy.loss_friction);
