@@ -120,7 +120,7 @@ impl Equilibrium {
         load: f64,
         h: f64,
     ) -> Result<(), StepError> {
-        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load, impulse: 1.0 };
+        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load, impulse: 1.0, echo: 0.0 };
         let solved = solve(system, room, &balance, &self.settings)?;
         report(SPEC.kind, &self.settings, system, room, &solved)
     }

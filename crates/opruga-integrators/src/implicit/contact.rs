@@ -122,6 +122,12 @@ impl<const D: usize> Contacting<D> {
         self.contacts.iter().any(Contact::is_held)
     }
 
+    /// Whether nodes are held, and all by surfaces that do not move.
+    pub(crate) fn any_at_rest(&self) -> bool {
+        let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);
+        self.any() && self.contacts.iter().filter(|contact| contact.is_held()).all(rests)
+    }
+
     /// Looks where nodes are that start at x₀ and end displaced by u/θ; nodes that are inside are held from now
     /// on. Depths below a billionth of the extent do not count. Nodes that impact are first thought to stick, or to slide.
     pub(crate) fn look(&mut self, sight: &Sight<'_, D>, impacts_slide: bool) -> bool {

@@ -27,8 +27,10 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The part of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h.
+    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
+    /// will still add to it out of what it remembers.
     pub(crate) impulse: f64,
+    pub(crate) echo: f64,
 }
 
 /// How the iteration ended.
