@@ -381,3 +381,45 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
     }
     assert!(tried >= 9 * 10 - 20, "{tried}");
 }
+
+/// What a rule damps by itself is no error that a user could do anything about. (Of explicit rules, tests of torture ask that they
+/// warn.)
+#[test]
+fn the_ledger_does_not_warn_of_a_rules_own_damping() {
+    let ball = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 12, center = [0.0, 0.0] }\nmass = 1.0\n\
+        angular_velocity = 8.0\nmodels = [ { kind = \"mass_spring\", stiffness = 1000.0 } ]\n";
+    for rule in RULES {
+        let mut world = built(plane(&(head(1.0 / 60.0, 1, 0.0, rule) + ball)));
+        frames(&mut world, 240);
+        let energy = world.energy();
+        assert!(world.warnings().iter().all(|warning| warning.code != "ledger.closure"), "{rule}: {energy:?}");
+        assert!(rule != "backward_euler" || energy.closure > 0.1 && energy.loss_integrator > 0.0, "{energy:?}");
+    }
+}
+
+/// A floor without friction holds a block up, and not where it is along the floor.
+#[test]
+fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
+    let text = |friction: f64, shape: &str| {
+        head(1.0 / 60.0, 1, -9.81, "equilibrium")
+            + &format!(
+                "[[body]]\nname = \"block\"\nshape = {shape}\ndensity = 1000.0\nmodels = [ {{ kind = \"fem\", youngs_modulus = 1e5, \
+                 poissons_ratio = 0.4 }} ]\n"
+            )
+            + &floor(-0.05, friction, 0.0)
+    };
+    let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
+    for (friction, shape) in [(0.0, square), (0.5, square)] {
+        let mut world = built(plane(&text(friction, shape)));
+        let outcome = world.frame();
+        println!("{friction}: {outcome:?}, {:?}", world.solver_work());
+        let iterations = world.solver_work().iterations;
+        match outcome {
+            Ok(()) => assert!(friction > 0.0 && iterations < 30),
+            Err(error) => {
+                let said = error.to_string();
+                assert!(friction == 0.0 && said.contains("translation along x") && said.contains("hint"), "{said}");
+            }
+        }
+    }
+}

@@ -122,6 +122,19 @@ impl<const D: usize> Contacting<D> {
         self.contacts.iter().any(Contact::is_held)
     }
 
+    /// The directions in which nodes are held, or would be by friction.
+    pub(crate) fn directions(&self) -> Vec<(usize, [f64; D])> {
+        let mut out = Vec::new();
+        for contact in self.contacts.iter().filter(|contact| contact.is_held()) {
+            out.push((contact.node, contact.touch.normal));
+            for d in 0..if contact.touch.friction > 0.0 { D } else { 0 } {
+                let mut axis = [0.0; D];
+                axis[d] = 1.0;
+                out.push((contact.node, axis));
+            }
+        }
+        out
+    }
     /// Whether nodes are held, and all by surfaces that do not move.
     pub(crate) fn any_at_rest(&self) -> bool {
         let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);

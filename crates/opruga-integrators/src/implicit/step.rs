@@ -93,6 +93,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn shares_threads(&self) -> bool {
         self.settings.real_time
     }
+    fn damps_by_itself(&self) -> bool {
+        true
+    }
     fn takes_mass_matrix(&self) -> bool {
         true
     }
