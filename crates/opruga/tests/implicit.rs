@@ -411,11 +411,15 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
     let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
     for (friction, shape) in [(0.0, square), (0.5, square)] {
         let mut world = built(plane(&text(friction, shape)));
+        let at_rest = mean(&world, |node| world.position(0, node)[0]);
         let outcome = world.frame();
         println!("{friction}: {outcome:?}, {:?}", world.solver_work());
         let iterations = world.solver_work().iterations;
         match outcome {
-            Ok(()) => assert!(friction > 0.0 && iterations < 30),
+            Ok(()) => {
+                let way = mean(&world, |node| world.position(0, node)[0]) - at_rest;
+                assert!(friction > 0.0 && iterations < 60 && way.abs() < 1e-3, "{way} m, {iterations} iterations");
+            }
             Err(error) => {
                 let said = error.to_string();
                 assert!(friction == 0.0 && said.contains("translation along x") && said.contains("hint"), "{said}");

@@ -126,23 +126,20 @@ impl Equilibrium {
     ) -> Result<(), StepError> {
         let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load, impulse: 1.0, echo: 0.0 };
         let mut solved = Solved::default();
-        // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends.
+        // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
         let loose = system.contacts.is_some() && !rigid::unheld_motions(system).is_empty();
-        let parts = if loose {
-            [EARLY.min(self.settings.iterations), self.settings.iterations]
-        } else {
-            [0, self.settings.iterations]
-        };
-        for most in parts {
-            if most > solved.iterations && !solved.converged {
-                let settings = Settings { iterations: most - solved.iterations, ..self.settings };
-                let Solved { iterations, products, .. } = solved;
-                solved = solve(system, room, &balance, &settings)?;
-                solved.iterations += iterations;
-                solved.products += products;
-                if loose && !solved.converged {
-                    self.refuse_what_is_free(system, room)?;
-                }
+        let all = self.settings.iterations;
+        for most in if loose { [EARLY.min(all), all] } else { [all, all] } {
+            if most == solved.iterations || solved.converged {
+                continue;
+            }
+            let before = solved;
+            let settings = Settings { iterations: most - before.iterations, ..self.settings };
+            solved = solve(system, room, &balance, &settings)?;
+            solved.iterations += before.iterations;
+            solved.products += before.products;
+            if loose {
+                self.refuse_what_is_free(system, room)?;
             }
         }
         report(SPEC.kind, &self.settings, system, room, &solved)
@@ -272,6 +269,9 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
     }
     fn damps_by_itself(&self) -> bool {
+        true
+    }
+    fn is_static(&self) -> bool {
         true
     }
     fn takes_mass_matrix(&self) -> bool {

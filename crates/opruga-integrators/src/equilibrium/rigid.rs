@@ -113,7 +113,10 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     positions: &[[f64; D]],
     touched: &[(usize, [f64; D])],
 ) -> Result<(), StepError> {
-    let free = unheld_by(system, positions, touched);
+    let mut free = unheld_by(system, positions, touched);
+    if free.iter().all(Motion::turns) {
+        free.retain(|motion| !swings(system, motion, &center(system)));
+    }
     if touched.is_empty() || free.is_empty() {
         return Ok(());
     }

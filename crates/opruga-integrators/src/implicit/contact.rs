@@ -351,17 +351,11 @@ impl<const D: usize> Contacting<D> {
         let Sight { x0, u, theta, extent, .. } = *sight;
         let small = SMALL * extent;
         let mut verdict = Verdict::default();
-        let mut first = 0;
-        while first < self.contacts.len() {
-            let node = self.contacts[first].node;
-            let mut last = first;
-            while last < self.contacts.len() && self.contacts[last].node == node {
-                last += 1;
-            }
-            let at = node * D;
-            let force: [f64; D] = core::array::from_fn(|d| reaction[at + d]);
-            let normal_forces = split(&self.contacts[first..last], &force);
-            for (k, contact) in self.contacts[first..last].iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
+        for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
+            let node = contacts[0].node;
+            let force = nodes::<D>(reaction)[node];
+            let normal_forces = split(contacts, &force);
+            for (k, contact) in contacts.iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
                 let normal_force = normal_forces[k.min(D - 1)];
                 if normal_force < 0.0 {
                     contact.hold = Hold::Released;
@@ -410,7 +404,6 @@ impl<const D: usize> Contacting<D> {
                 }
                 contact.normal_force = normal_force;
             }
-            first = last;
         }
         verdict
     }
