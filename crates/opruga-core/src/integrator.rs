@@ -44,6 +44,15 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
+    /// Whether a step ends where forces balance, however far that is from where it begins and whatever the velocities.
+    fn is_static(&self) -> bool {
+        false
+    }
+    /// Whether it takes energy out of fast motion by itself, as implicit rules do: what then is lost is no sign of a step that is
+    /// too long.
+    fn damps_by_itself(&self) -> bool {
+        false
+    }
     /// Whether its steps spread the work on one system over [`System::threads`].
     fn shares_threads(&self) -> bool {
         false

@@ -159,12 +159,9 @@ impl<const D: usize> Island<D> {
         let swept = self.swept(plan);
         let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);
-        // A body that left the region swept by its velocities might have met an obstacle: once more, looking at all.
-        if let Ok(after) = &outcome
-            && !near
-            && plan.colliders.is_some()
-            && left(&swept, &after.position)
-        {
+        // A body that left the region swept by its velocities, or found no end of a step, might have met an obstacle: once
+        // more, looking at all.
+        if !near && plan.colliders.is_some() && outcome.as_ref().map_or(true, |after| left(&swept, &after.position)) {
             self.restore();
             outcome = self.attempt(plan, true);
         }
@@ -280,7 +277,8 @@ impl<const D: usize> Island<D> {
     /// Whether the bodies may meet an obstacle within the frame.
     fn reaches(&self, plan: &FramePlan<D>, swept: &[[f64; D]; 2]) -> bool {
         let Some(colliders) = plan.colliders else { return false };
-        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
+        self.integrator.is_static()
+            || colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
     }
 
     /// Bounds swept within the frame by v·dt + ½g·dt² and a margin.

@@ -241,7 +241,10 @@ impl<const D: usize> World<D> {
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE);
+        // What implicit rules damp by themselves is known of them.
+        let damped =
+            self.energy.loss_integrator > 0.0 && self.islands.iter().all(|island| island.integrator.damps_by_itself());
+        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE && !damped);
         self.take_away_what_is_far()
     }
 

@@ -131,6 +131,45 @@ fn solids_that_fall_on_floors_and_balls_are_stepped_by_every_rule_within_a_dozen
     }
 }
 
+/// The energy after every frame, less the least before it: the most that it ever grew by, and the largest kinetic energy [J].
+fn growth<const D: usize>(mut world: World<D>, frames: u64) -> Result<[f64; 2], String> {
+    let (mut least, mut most, mut moving) = (world.energy().total(), 0.0f64, 0.0f64);
+    for _ in 0..frames {
+        world.frame().map_err(|error| error.to_string())?;
+        let energy = world.energy();
+        most = most.max(energy.total() - least);
+        moving = moving.max(energy.kinetic);
+        least = least.min(energy.total());
+    }
+    Ok([most, moving])
+}
+
+/// Newmark's rule once let such a body gain energy without end. In flight, rules that damp nothing let energy swing.
+#[test]
+fn drawings_of_elements_that_fall_on_a_floor_gain_no_energy() {
+    let italy = Fall {
+        name: "italy",
+        dimension: 2,
+        body: "shape = { kind = \"map\", file = \"shapes/countries-110m.json\", layer = \"countries\", feature = \"Italy\", \
+            projection = \"mercator\", spacing = 0.08, size = 2.0, filling = \"triangles\" }\nposition = [0.0, 1.4]\n",
+        obstacles: FLOOR,
+    };
+    let heart = FALLS.iter().find(|fall| fall.name == "heart").expect("a heart");
+    for (fall, modulus, least_substeps) in [(&italy, 1e5, 1), (heart, 1e4, 1), (heart, 1e5, 4)] {
+        for rule in RULES {
+            for substeps in [least_substeps, 4] {
+                let text = scene(fall, "stable_neo_hookean", modulus, 0.0, rule)
+                    .replace("substeps = 1\n", &format!("substeps = {substeps}\n"));
+                let case = format!("{}, E = {modulus:e}, {rule}, {substeps} steps", fall.name);
+                let [grown, moving] =
+                    growth(built(plane(&text)), 120).unwrap_or_else(|error| panic!("{case}: {error}"));
+                println!("{case}: {:.1e} of {moving:.1} J", grown / moving);
+                assert!(grown < 0.03 * moving, "{case}: {grown} J of {moving} J");
+            }
+        }
+    }
+}
+
 /// The table of shapes, materials, rules and moduli; `FALLS=spot,heart`, `RULES=`, `MATERIALS=`, `MODULI=`, `FRAMES=` choose of it.
 #[test]
 #[ignore = "a measurement"]

@@ -1,6 +1,6 @@
 //! The motions of a body as a whole that nothing holds.
 
-use opruga_core::error::BuildError;
+use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{Account, Definiteness, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::Block;
@@ -106,11 +106,49 @@ fn center<const D: usize>(system: &System<D>) -> [f64; D] {
     center
 }
 
+/// Refuses a body that can move as a whole though it lies on obstacles, which hold nodes along the given directions, with its
+/// nodes at the given places.
+pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
+    system: &System<D>,
+    positions: &[[f64; D]],
+    touched: &[(usize, [f64; D])],
+) -> Result<(), StepError> {
+    let mut free = unheld_by(system, positions, touched);
+    if free.iter().all(Motion::turns) {
+        free.retain(|motion| !swings(system, motion, &center(system)));
+    }
+    if touched.is_empty() || free.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<String> = free.iter().map(Motion::name).collect();
+    let message = format!(
+        "the body lies on an obstacle, and neither that nor pins hold it against {}; an equilibrium needs a body that is \
+         held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
+        names.join(", ")
+    );
+    Err(StepError::Model { model: "equilibrium", message })
+}
+
 /// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
 pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
+    let positions: Vec<[f64; D]> = (0..system.nodes).map(|node| system.state.x.at(node)).collect();
+    unheld_by(system, &positions, &[])
+}
+
+/// The same of nodes at the given places, some of which are held along the given directions as well.
+fn unheld_by<const D: usize>(
+    system: &System<D>,
+    positions: &[[f64; D]],
+    touched: &[(usize, [f64; D])],
+) -> Vec<Motion<D>> {
     let nodes = system.nodes;
-    let position = |node: usize| system.state.x.at(node);
-    let center = center(system);
+    let position = |node: usize| positions[node];
+    let mut center = [0.0; D];
+    for x in positions {
+        for d in 0..D {
+            center[d] += x[d] / nodes as f64;
+        }
+    }
     // Translations, then rotations about the centre, each scaled to a mean displacement of one.
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
@@ -147,6 +185,14 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
             }
         }
     });
+    for (node, direction) in touched {
+        let along = |shape: &Vec<f64>| (0..D).map(|d| shape[node * D + d] * direction[d]).sum::<f64>();
+        for p in 0..n {
+            for q in 0..n {
+                held[p * n + q] += along(&shapes[p]) * along(&shapes[q]);
+            }
+        }
+    }
     let mut projection = Projection { motions: &shapes, out: vec![0.0; n * n], largest: 0.0 };
     system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
     if projection.largest > 0.0 {

@@ -255,7 +255,7 @@ impl<const D: usize> Linear<D> {
         out: &mut [f64],
     ) -> Result<u32, Indefinite> {
         let most = MOST_PRODUCTS;
-        if mixture.matrix_free {
+        let products = if mixture.matrix_free {
             let mut directions = std::mem::take(&mut self.directions);
             let multiply = |x: &[f64], y: &mut [f64]| {
                 self.multiply(mixture, x, y);
@@ -263,17 +263,17 @@ impl<const D: usize> Linear<D> {
             };
             let ended = conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut directions);
             self.directions = directions;
-            return finite(out, ended?.iterations);
-        }
-        if settings.solver.is_direct::<D>(self.whole.rows()) {
+            ended?.iterations
+        } else if settings.solver.is_direct::<D>(self.whole.rows()) {
             out.copy_from_slice(b);
             self.cholesky.solve(out);
-            return finite(out, 1);
-        }
-        let constrained = &self.constrained;
-        let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
-        let ended = conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?;
-        finite(out, ended.iterations)
+            1
+        } else {
+            let Linear { constrained, incomplete, directions, .. } = self;
+            let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
+            conjugate_gradients(multiply, &*incomplete, b, out, tolerance, most, directions)?.iterations
+        };
+        if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
     }
 
     /// The matrix with nothing taken out.
@@ -305,8 +305,4 @@ impl<const D: usize> Linear<D> {
 /// Whether the solver of a body works without a matrix.
 pub(crate) fn is_matrix_free(solver: Solver) -> bool {
     solver == Solver::MatrixFree
-}
-
-fn finite(out: &[f64], products: u32) -> Result<u32, Indefinite> {
-    if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
 }

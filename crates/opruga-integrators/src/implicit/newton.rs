@@ -1,9 +1,9 @@
 //! Newton's method on the balance of forces of a stage.
 
-use super::contact::Verdict;
+use super::contact::{Contacting, Verdict};
 use super::contact_derivatives::Sight;
 use super::line_search::{line_search, potential, slope_along};
-use super::linear::{Filter, Mixture, is_matrix_free};
+use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
@@ -27,8 +27,10 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The part of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h.
+    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
+    /// will still add to it out of what it remembers.
     pub(crate) impulse: f64,
+    pub(crate) echo: f64,
 }
 
 /// How the iteration ended.
@@ -164,8 +166,9 @@ pub(crate) fn solve<const D: usize>(
         if plain <= goal {
             full_step(system, room, balance)?;
         } else {
-            // What is too stiff and has not far to go to obstacles may go on.
-            let rough = keep != Keep::Exact && plain > ROUGH * room.extent;
+            // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
+            let falls = balance.sigma == 0.0 && system.contacts.is_some();
+            let rough = keep != Keep::Exact && plain > ROUGH * room.extent && !falls;
             let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
             length = line_search(system, room, balance, slope, stretches)?;
             solved.correction *= length;
@@ -272,7 +275,7 @@ pub(crate) fn look<const D: usize>(
     impacts_slide: bool,
 ) -> bool {
     let Room { contacting, x0, u, extent, .. } = room;
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     contacting.look(&sight, impacts_slide)
 }
 
@@ -286,7 +289,7 @@ pub(crate) fn judge<const D: usize>(
     yields: bool,
 ) -> Verdict {
     let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
     contacting.judge(reaction, &sight, tolerance, &|node| {
         if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
@@ -310,6 +313,29 @@ pub(crate) fn mixture<'a, const D: usize>(
         time: balance.time,
         keep,
         matrix_free: is_matrix_free(settings.solver),
+    }
+}
+
+/// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
+pub(crate) fn wanted_forces<const D: usize>(
+    mixture: &Mixture<D>,
+    linear: &Linear<D>,
+    contacting: &Contacting<D>,
+    residual: &[f64],
+    prescribed: Option<&[f64]>,
+    trial: &mut [f64],
+    right: &mut [f64],
+) {
+    trial.copy_from_slice(residual);
+    contacting.subtract_friction(trial);
+    if let Some(prescribed) = prescribed {
+        linear.multiply(mixture, prescribed, right);
+        for (t, r) in trial.iter_mut().zip(&*right) {
+            *t += r;
+        }
+    }
+    for (r, t) in right.iter_mut().zip(&*trial) {
+        *r = -t;
     }
 }
 
@@ -345,23 +371,12 @@ fn find_direction<const D: usize>(
     } = room;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
     if let Keep::Raised(part) = keep {
         linear.raise(part);
     }
-    // b = −(r − friction) − A d in the free directions.
-    trial.copy_from_slice(residual);
-    contacting.subtract_friction(trial);
-    if moves {
-        linear.multiply(&mixture, prescribed, right);
-        for (t, r) in trial.iter_mut().zip(&*right) {
-            *t += r;
-        }
-    }
-    for (r, t) in right.iter_mut().zip(&*trial) {
-        *r = -t;
-    }
+    wanted_forces(&mixture, linear, contacting, residual, moves.then_some(&**prescribed), trial, right);
     let filter = Filter { free, projectors };
     filter.apply(right);
     let norm = dot(right, right).sqrt();

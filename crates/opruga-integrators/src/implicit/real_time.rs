@@ -7,7 +7,7 @@
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::linear::{Filter, Mixture};
-use super::newton::{Balance, Solved, evaluate, judge, look};
+use super::newton::{Balance, Solved, evaluate, judge, look, wanted_forces};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
@@ -164,17 +164,8 @@ impl Task<'_> {
         moves: bool,
     ) -> Result<f64, Indefinite> {
         let Room { kept, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, .. } = room;
-        trial.copy_from_slice(residual);
-        contacting.subtract_friction(trial);
-        if moves {
-            linear.multiply(&self.mixture(system, mass), prescribed, right);
-            for (t, r) in trial.iter_mut().zip(&*right) {
-                *t += r;
-            }
-        }
-        for (r, t) in right.iter_mut().zip(&*trial) {
-            *r = -t;
-        }
+        let mixture = self.mixture(system, mass);
+        wanted_forces(&mixture, linear, contacting, residual, moves.then_some(&**prescribed), trial, right);
         let filter = Filter { free, projectors };
         filter.apply(right);
         kept.hold(system.threads, linear, &filter, self.direct)?;

@@ -1,6 +1,7 @@
 //! The vectors that an implicit step works on.
 
 use super::contact::Contacting;
+use super::impact::Struck;
 use super::kept::Kept;
 use super::linear::Linear;
 use super::mixing::Mixing;
@@ -47,7 +48,9 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     /// Nodes that met an obstacle in this step.
-    pub(crate) struck: Vec<usize>,
+    pub(crate) struck: Vec<Struck<D>>,
+    /// What the rule will still add to velocities out of what it remembers [m/s].
+    pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
     /// The matrix of the real-time setting.
     pub(crate) kept: Kept<D>,
@@ -85,6 +88,7 @@ impl<const D: usize> Default for Room<D> {
             way: Vec::new(),
             reaction: Vec::new(),
             struck: Vec::new(),
+            memory: Vec::new(),
             prescribed: Vec::new(),
             held: Vec::new(),
             free: Vec::new(),
@@ -122,6 +126,7 @@ impl<const D: usize> Room<D> {
             &mut self.u,
             &mut self.u1,
             &mut self.v1,
+            &mut self.memory,
             &mut self.residual,
             &mut self.trial,
             &mut self.step,
