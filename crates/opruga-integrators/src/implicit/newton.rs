@@ -9,6 +9,7 @@ use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
@@ -413,24 +414,28 @@ pub(crate) fn evaluate<const D: usize>(
     balance: &Balance,
     trial: bool,
 ) -> Result<(), StepError> {
-    let u = if trial { &room.trial } else { &room.u };
+    let u: &[f64] = if trial { &room.trial } else { &room.u };
     Room::show(system, &room.x0, u, &room.z, balance.beta);
     system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    for node in 0..system.nodes {
-        for d in 0..D {
-            let k = node * D + d;
-            room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
+    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
+    let u: &[f64] = if trial { tried } else { u };
+    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
+        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
+            for d in 0..D {
+                let k = node * D + d;
+                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
+            }
         }
-    }
+    });
     if balance.sigma != 0.0
         && let Some(inertia) = &system.inertia
     {
-        room.way.clear();
-        room.way.extend(u.iter().zip(&room.y).map(|(u, y)| u - y));
+        way.clear();
+        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
         for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, &room.way);
+            let product = inertia.product::<D>(node, way);
             for d in 0..D {
-                room.residual[node * D + d] += balance.sigma * product[d];
+                residual[node * D + d] += balance.sigma * product[d];
             }
         }
     }
