@@ -17,6 +17,7 @@ use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::Stability;
 use opruga_core::system::Workspace;
+use opruga_core::threads::together;
 use opruga_math::Simd;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -201,7 +202,7 @@ impl<const D: usize> World<D> {
                 let (threads, count) = (pool.current_num_threads(), islands.len());
                 for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
                     island.system.threads = threads;
-                    island.frame(&plan, &mut lock(&workspaces[0]));
+                    together(threads, || island.frame(&plan, &mut lock(&workspaces[0])));
                     island.system.threads = 1;
                 }
                 islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {

@@ -54,7 +54,11 @@ pub(crate) struct Filter<'a, const D: usize> {
 impl<const D: usize> Filter<'_, D> {
     /// What is free of a vector.
     pub(crate) fn apply(&self, vector: &mut [f64]) {
-        for (node, x) in nodes_mut::<D>(vector).iter_mut().enumerate() {
+        self.apply_from(0, vector);
+    }
+    /// What is free of the part of a vector that begins with this node.
+    pub(crate) fn apply_from(&self, first: usize, vector: &mut [f64]) {
+        for (node, x) in (first..).zip(nodes_mut::<D>(vector)) {
             if !self.free[node] {
                 *x = times(&self.projectors[node], x);
             }

@@ -9,6 +9,7 @@ use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
@@ -318,6 +319,7 @@ pub(crate) fn mixture<'a, const D: usize>(
 
 /// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
 pub(crate) fn wanted_forces<const D: usize>(
+    threads: usize,
     mixture: &Mixture<D>,
     linear: &Linear<D>,
     contacting: &Contacting<D>,
@@ -326,7 +328,7 @@ pub(crate) fn wanted_forces<const D: usize>(
     trial: &mut [f64],
     right: &mut [f64],
 ) {
-    trial.copy_from_slice(residual);
+    each_block(threads, D, [&mut *trial], |first, [trial]| trial.copy_from_slice(&residual[first..][..trial.len()]));
     contacting.subtract_friction(trial);
     if let Some(prescribed) = prescribed {
         linear.multiply(mixture, prescribed, right);
@@ -334,9 +336,11 @@ pub(crate) fn wanted_forces<const D: usize>(
             *t += r;
         }
     }
-    for (r, t) in right.iter_mut().zip(&*trial) {
-        *r = -t;
-    }
+    each_block(threads, D, [right], |first, [right]| {
+        for (r, t) in right.iter_mut().zip(&trial[first..]) {
+            *r = -t;
+        }
+    });
 }
 
 /// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
@@ -376,7 +380,8 @@ fn find_direction<const D: usize>(
     if let Keep::Raised(part) = keep {
         linear.raise(part);
     }
-    wanted_forces(&mixture, linear, contacting, residual, moves.then_some(&**prescribed), trial, right);
+    let ways = moves.then_some(&**prescribed);
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, trial, right);
     let filter = Filter { free, projectors };
     filter.apply(right);
     let norm = dot(right, right).sqrt();
@@ -428,24 +433,28 @@ pub(crate) fn evaluate<const D: usize>(
     balance: &Balance,
     trial: bool,
 ) -> Result<(), StepError> {
-    let u = if trial { &room.trial } else { &room.u };
+    let u: &[f64] = if trial { &room.trial } else { &room.u };
     Room::show(system, &room.x0, u, &room.z, balance.beta);
     system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    for node in 0..system.nodes {
-        for d in 0..D {
-            let k = node * D + d;
-            room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
+    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
+    let u: &[f64] = if trial { tried } else { u };
+    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
+        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
+            for d in 0..D {
+                let k = node * D + d;
+                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
+            }
         }
-    }
+    });
     if balance.sigma != 0.0
         && let Some(inertia) = &system.inertia
     {
-        room.way.clear();
-        room.way.extend(u.iter().zip(&room.y).map(|(u, y)| u - y));
+        way.clear();
+        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
         for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, &room.way);
+            let product = inertia.product::<D>(node, way);
             for d in 0..D {
-                room.residual[node * D + d] += balance.sigma * product[d];
+                residual[node * D + d] += balance.sigma * product[d];
             }
         }
     }

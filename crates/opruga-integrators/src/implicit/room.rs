@@ -8,6 +8,7 @@ use super::mixing::Mixing;
 use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, times};
 
@@ -105,12 +106,21 @@ impl<const D: usize> Default for Room<D> {
     }
 }
 
-/// Columns into a long vector.
-pub(crate) fn gather<const D: usize>(columns: &Columns<D>, nodes: usize, out: &mut [f64]) {
+/// Writes two numbers for every coordinate into columns; places behind the last node have what that has.
+pub(crate) fn write<const D: usize>(
+    places: usize,
+    nodes: usize,
+    threads: usize,
+    [one, other]: [&mut Columns<D>; 2],
+    numbers: impl Fn(usize) -> [f64; 2] + Sync,
+) {
     for d in 0..D {
-        for node in 0..nodes {
-            out[node * D + d] = columns.0[d][node];
-        }
+        let columns = [&mut one.0[d][..places], &mut other.0[d][..places]];
+        each_block(threads, 1, columns, |first, [one, other]| {
+            for (place, (one, other)) in (first..).zip(one.iter_mut().zip(other)) {
+                [*one, *other] = numbers(place.min(nodes - 1) * D + d);
+            }
+        });
     }
 }
 
@@ -146,8 +156,13 @@ impl<const D: usize> Room<D> {
         for column in self.force.0.iter_mut().chain(&mut self.outer.0) {
             column.grow(system.places() + opruga_math::WIDTH);
         }
-        gather(&system.state.x, system.nodes, &mut self.x0);
-        gather(&system.state.v, system.nodes, &mut self.v0);
+        for (columns, out) in [(&system.state.x, &mut self.x0), (&system.state.v, &mut self.v0)] {
+            each_block(system.threads, D, [out], |first, [out]| {
+                for (node, out) in (first / D..).zip(out.as_chunks_mut::<D>().0) {
+                    *out = columns.at(node);
+                }
+            });
+        }
         let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for node in self.x0.as_chunks::<D>().0 {
             for d in 0..D {
@@ -181,15 +196,9 @@ impl<const D: usize> Room<D> {
 
     /// Writes a stage into the work columns of a system: x₀ + u, and the velocities β (u − z).
     pub(crate) fn show(system: &mut System<D>, x0: &[f64], u: &[f64], z: &[f64], beta: f64) {
-        let (places, nodes) = (system.places(), system.nodes);
-        let [columns, velocities] = &mut system.state.work[0];
-        for d in 0..D {
-            for place in 0..places {
-                let k = place.min(nodes - 1) * D + d;
-                columns.0[d][place] = x0[k] + u[k];
-                velocities.0[d][place] = beta * (u[k] - z[k]);
-            }
-        }
+        let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+        let stage = system.state.work[0].each_mut();
+        write(places, nodes, threads, stage, |k| [x0[k] + u[k], beta * (u[k] - z[k])]);
     }
 
     /// The largest force out of balance on a node along what nothing holds [N].

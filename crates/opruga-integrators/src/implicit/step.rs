@@ -4,13 +4,14 @@ use super::contact::{SMALL, dot};
 use super::impact::Ending;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
-use super::room::Room;
+use super::room::{Room, write};
 use super::settings::{Otherwise, Settings, Solver};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
 use opruga_core::potential::{Account, Views};
 use opruga_core::spec::Values;
 use opruga_core::system::{Pin, Stage, System, Work8};
+use opruga_core::threads::each_block;
 use opruga_math::{Lane, WIDTH};
 use opruga_solve::blocks::nodes;
 
@@ -220,9 +221,12 @@ fn solve<R: Rule<D>, const D: usize>(
     let balance = rule.begin(system, room, h);
     // From the motion of the last step; held axes are where they have to be.
     room.hold(system, balance.theta, h);
-    for k in 0..room.u.len() {
-        room.u[k] = if room.held[k].is_nan() { balance.theta * h * room.v0[k] } else { room.held[k] };
-    }
+    let Room { u, held, v0, .. } = &mut *room;
+    each_block(system.threads, D, [u], |first, [u]| {
+        for (k, u) in (first..).zip(u) {
+            *u = if held[k].is_nan() { balance.theta * h * v0[k] } else { held[k] };
+        }
+    });
     let solved = if settings.real_time {
         real_time::predict(system, room, balance.theta, h);
         real_time::solve(system, room, &balance, settings)?
@@ -340,14 +344,9 @@ fn accept_or_refuse<const D: usize>(
 
 /// Writes the end of the step into the state.
 pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
-    let (places, nodes) = (system.places(), system.nodes);
-    for d in 0..D {
-        for place in 0..places {
-            let k = place.min(nodes - 1) * D + d;
-            system.state.x.0[d][place] = room.x0[k] + room.u1[k];
-            system.state.v.0[d][place] = room.v1[k];
-        }
-    }
+    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+    let state = [&mut system.state.x, &mut system.state.v];
+    write(places, nodes, threads, state, |k| [room.x0[k] + room.u1[k], room.v1[k]]);
 }
 
 /// Whether the same bits come out on every processor.

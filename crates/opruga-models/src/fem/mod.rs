@@ -47,11 +47,12 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
-use opruga_core::threads::each_in_column;
+use opruga_core::threads::each_part;
 use opruga_core::tile::Tile;
 use opruga_math::{ROW, Simd, WIDTH};
 use opruga_mesh::Mesh;
 use section::{Cell, FORCES, NUMBERS, Part, Plan, Section, rest_gradient};
+use std::sync::{Mutex, PoisonError};
 
 /// The kind `fem`.
 #[derive(Debug)]
@@ -71,6 +72,8 @@ pub struct Solid<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     /// The shares of all parts.
     shares: Vec<Task>,
+    /// Where the scratch of each begins, behind that of the whole.
+    starts: Vec<usize>,
     sums: Sums,
     /// What the consistent mass matrix has more than the lumped masses.
     inertia: Vec<(u32, u32, f64)>,
@@ -269,17 +272,18 @@ impl<'a, const D: usize> Builder<'a, D> {
     fn finish(self, built: Built<D>) -> Box<Solid<D>> {
         let Built { parts, inertia } = built;
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
-        let mut shares = Vec::new();
+        let (mut shares, mut starts) = (Vec::new(), Vec::new());
         let mut start = FORCES;
         for (part, own) in parts.iter().enumerate() {
             for (share, list) in own.shares().iter().enumerate() {
                 let length = own.scratch_len(list);
                 shares.push(Task { part, share, start, length });
+                starts.push(start - FORCES);
                 start += length;
             }
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Box::new(Solid { layout, nodes, parts, shares, sums, inertia, damped: self.damped })
+        Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, damped: self.damped })
     }
 }
 
@@ -408,10 +412,19 @@ impl<const D: usize> Potential<D> for Solid<D> {
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (sums, rest) = scratch.split_at_mut(FORCES);
-        each_in_column(view.threads, &self.shares, rest, &|task| task.length, &|task, scratch| {
-            let part = &self.parts[task.part];
-            part.evaluate(&part.shares()[task.share], simd, view, scratch)
-        })?;
+        let refused: Mutex<Option<(usize, StepError)>> = Mutex::new(None);
+        each_part(view.threads, rest, &self.starts, |number, scratch| {
+            let part = &self.parts[self.shares[number].part];
+            if let Err(error) = part.evaluate(&part.shares()[self.shares[number].share], simd, view, scratch) {
+                let mut first = refused.lock().unwrap_or_else(PoisonError::into_inner);
+                if first.as_ref().is_none_or(|(other, _)| number < *other) {
+                    *first = Some((number, error));
+                }
+            }
+        });
+        if let Some((_, error)) = refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
         sums.fill(0.0);
         for task in &self.shares {
             let own = &rest[task.start - FORCES..][..FORCES];

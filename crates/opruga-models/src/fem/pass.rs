@@ -106,13 +106,16 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     Layout::Batch => (group.first + k) % WIDTH,
                 };
                 let energy = &density.0[k * WIDTH..(k + 1) * WIDTH];
-                let mut sum = 0.0;
-                for l in 0..WIDTH {
-                    totals.energy[row][l] += energy[l];
-                    totals.power[row][l] += power.0[k * WIDTH + l];
-                    sum += energy[l];
+                for (total, energy) in totals.energy[row].iter_mut().zip(energy) {
+                    *total += energy;
                 }
-                if sum.is_nan()
+                if section.damped {
+                    for (total, power) in totals.power[row].iter_mut().zip(&power.0[k * WIDTH..]) {
+                        *total += power;
+                    }
+                }
+                if section.may_refuse()
+                    && energy.iter().any(|energy| energy.is_nan())
                     && let Some(refusal) = section.refusal(view, group.first + k, energy)
                 {
                     return Err(refusal);

@@ -373,12 +373,14 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
+    /// Whether the law may have no energy. Laws of space and of plane strain have one everywhere; what overflows there has
+    /// diverged, and is found so.
+    pub(super) fn may_refuse(&self) -> bool {
+        self.law_in_space.is_none() && D < 3
+    }
+
     /// The refusal of the first element of a pack whose nodes are somewhere but whose energy is not a number.
     pub(super) fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
-        // Laws of space and of plane strain have an energy everywhere; what overflows there has diverged, and is found so.
-        if self.law_in_space.is_some() || D == 3 {
-            return None;
-        }
         (0..WIDTH).filter(|l| energy[*l].is_nan()).find_map(|l| {
             let (element, body) = self.item(pack, l);
             let cell = self.cells.get(element)?;
