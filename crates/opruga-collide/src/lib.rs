@@ -46,6 +46,7 @@ mod contacts;
 mod facet_contacts;
 mod facets;
 mod hull;
+mod inside;
 mod motion;
 mod picture;
 mod response;
@@ -55,5 +56,6 @@ mod touch;
 mod vector;
 
 pub use contacts::Colliders;
+pub use inside::Buried;
 pub use picture::Picture;
 pub use spec::all;

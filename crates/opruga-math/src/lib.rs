@@ -13,6 +13,7 @@ pub mod singular;
 pub mod strip;
 pub mod symmetric;
 mod twin;
+pub mod words;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 

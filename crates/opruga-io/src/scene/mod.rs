@@ -21,6 +21,7 @@ use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
+pub(crate) use cost::Cost;
 use opruga_core::spec::Values;
 use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Surroundings, Time,
