@@ -146,7 +146,10 @@ fn labels(
     let covered = |canvas: &Canvas, side: Side| -> usize {
         all.iter().map(|label| canvas.differing(place(label, side), background)).sum()
     };
-    let side = if covered(canvas, Side::Below) < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
+    // Above unless much more is covered there: names do not jump from picture to picture.
+    let area: f32 = all.iter().map(|label| place(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
+    let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
+    let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
     for label in &all {
         let own = place(label, side);
         // A corner of something else under it is no reason to leave the row.
