@@ -6,6 +6,7 @@ mod bench;
 mod checkpoints;
 mod exports;
 mod failure;
+mod forecast;
 mod interrupt;
 mod mesh;
 mod modes;

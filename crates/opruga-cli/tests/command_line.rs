@@ -306,7 +306,7 @@ fn modes_about_the_equilibrium_keep_what_statics_understands() {
     };
     // One iteration does not lead from the line to the chain that hangs.
     let refused = call("integrator.iterations=1");
-    assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iterations"), "{}", said(&refused));
+    assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iteration at"), "{}", said(&refused));
     let output = call("integrator.iterations=200");
     assert_eq!(code(&output), 0, "{}", said(&output));
 }

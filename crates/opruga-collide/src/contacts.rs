@@ -75,6 +75,15 @@ impl<const D: usize> Colliders<D> {
             collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
         })
     }
+    /// The collider that a surface belongs to; surfaces are numbered part by part.
+    pub(crate) fn collider_of(&self, surface: usize) -> usize {
+        let mut parts = 0;
+        let behind = |collider: &Collider<D>| {
+            parts += collider.parts.len();
+            parts > surface
+        };
+        self.0.iter().position(behind).unwrap_or(0)
+    }
     /// Where the colliders are at a time [s], in order.
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
         self.0.iter().map(|collider| picture(collider, time)).collect()

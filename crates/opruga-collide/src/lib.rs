@@ -47,6 +47,7 @@ mod contacts;
 mod facet_contacts;
 mod facets;
 mod hull;
+mod inside;
 mod motion;
 mod picture;
 mod response;
@@ -56,5 +57,6 @@ mod touch;
 mod vector;
 
 pub use contacts::Colliders;
+pub use inside::Buried;
 pub use picture::Picture;
 pub use spec::all;

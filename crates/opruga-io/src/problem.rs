@@ -123,9 +123,19 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
+/// What is told of because the scene itself asks for it: worth knowing, and no error where warnings are errors.
+const ASKED_FOR: [&str; 2] = ["shape.overlap", "shape.dropped"];
+
+impl Notice {
+    /// Whether a notice of this code tells of nothing but what was asked for.
+    pub(crate) fn is_asked_for(code: &str) -> bool {
+        ASKED_FOR.contains(&code)
+    }
+}
+
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, &self.about, "warning")?;
+        describe(f, &self.about, if Notice::is_asked_for(self.about.code) { "note" } else { "warning" })?;
         if self.count > 1 { write!(f, "\n  = {} times", self.count) } else { Ok(()) }
     }
 }

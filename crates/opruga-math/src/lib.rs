@@ -14,6 +14,7 @@ pub mod strip;
 pub mod symmetric;
 mod team;
 mod twin;
+pub mod words;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 

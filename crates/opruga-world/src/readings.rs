@@ -11,6 +11,7 @@ use opruga_core::stability::Stability;
 use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage};
 use opruga_math::WIDTH;
+use opruga_math::words::number;
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -258,8 +259,9 @@ impl<const D: usize> World<D> {
         count(
             "ledger.closure",
             &format!(
-                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {lost:.4} J {way} by \
-                 the end: the error of the integrator; {help}"
+                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {way} by \
+                 the end: the error of the integrator; {help}",
+                number(lost)
             ),
             self.flows.open_frames,
         );

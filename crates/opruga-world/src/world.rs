@@ -164,6 +164,7 @@ impl<const D: usize> World<D> {
         };
         world.regroup(&Touched::All, &states)?;
         world.check_stability()?;
+        world.warn_of_buried_bodies();
         // The ledger starts from here.
         world.flows.start = 0.0;
         let start = world.stock_energy();

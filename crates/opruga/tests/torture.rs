@@ -71,7 +71,7 @@ fn parameters_that_make_no_sense() {
         // 48, 50: steps that are too long, told before the run
         (
             ring(1, BALL, ""),
-            "step.unstable: the step h = 1.666667e-2 s of `symplectic_euler` is unstable for body `b`: the largest stable step is ",
+            "step.unstable: the step h = 0.0166667 s of `symplectic_euler` is unstable for body `b`: the largest stable step is ",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),

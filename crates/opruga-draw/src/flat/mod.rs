@@ -69,7 +69,7 @@ pub(crate) fn scene(
     }
     bodies::draw(&mut canvas, picture, view, &projection, unit);
     let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
-    draw_marks(&mut canvas, picture, view, unit, &project, &|_| true);
+    draw_marks(&mut canvas, picture, view, background, unit, &project, &|_| true);
     Ok((scene, projection.scale))
 }
 
@@ -121,6 +121,44 @@ mod tests {
         broken.ends = vec![4, 7];
         let body = BodyPicture { positions: positions.clone(), areas: vec![broken], ..Default::default() };
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
+    }
+
+    /// Names lie all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.
+    #[test]
+    fn names_lie_where_nothing_is_in_the_way() {
+        let body = |x: f64, y: f64, label: &str| BodyPicture {
+            positions: [[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0]].map(|p| [p[0] + x, p[1] + y, 0.0]).to_vec(),
+            facets: Facets::Edges(vec![[0, 1], [1, 2], [2, 3], [3, 0]]),
+            label: label.into(),
+            ..Default::default()
+        };
+        let floor = || vec![ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] }];
+        let rows = |bodies: Vec<BodyPicture>, colliders: Vec<ColliderPicture>| -> (Vec<u32>, Projection) {
+            // The view leaves room at the top and at the bottom.
+            let frame = BodyPicture { positions: vec![[-3.0, -1.5, 0.0], [3.0, 4.5, 0.0]], ..Default::default() };
+            let mut picture = Picture { bodies, colliders, ..Default::default() };
+            picture.bodies.push(frame);
+            let view = View::fit([&picture]).expect("a view");
+            let draw = |picture: &Picture| scene(picture, &view, [255; 3], [300, 300], 0.6).expect("an image").0;
+            let named = draw(&picture);
+            picture.bodies.iter_mut().for_each(|body| body.label.clear());
+            let bare = draw(&picture);
+            let written = |y: &u32| (0..300).any(|x| named.pixel(x, *y) != bare.pixel(x, *y));
+            ((0..300).filter(written).collect(), Projection::new(&view, 300, 300))
+        };
+        let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.1, "right")], floor());
+        let ground = at.pixel([0.0; 3])[1] as u32;
+        assert!(!written.is_empty() && written.iter().all(|y| *y < ground), "{written:?} {ground}");
+        // Hung from above: below them.
+        let ceiling = vec![ColliderPicture::HalfSpace { point: [0.0, 1.05, 0.0], normal: [0.0, -1.0, 0.0] }];
+        let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.0, "right")], ceiling);
+        let feet = at.pixel([0.0; 3])[1] as u32;
+        assert!(!written.is_empty() && written.iter().all(|y| *y >= feet), "{written:?} {feet}");
+        // One over the other: two rows of letters, both above their bodies.
+        let (written, at) = rows(vec![body(0.0, 0.0, "low"), body(0.0, 2.0, "high")], floor());
+        let rows_of =
+            |y: f64| written.iter().filter(|row| (at.pixel([0.0, y, 0.0])[1] - **row as f32).abs() < 12.0).count();
+        assert!(rows_of(1.0) > 2 && rows_of(3.0) > 2, "{written:?}");
     }
 
     #[test]

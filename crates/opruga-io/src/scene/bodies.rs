@@ -1,7 +1,7 @@
 //! `[[body]]`: shape, mass, models and pins.
 
+use super::Cost;
 use super::copies::{Copies, copies, write_out};
-use super::cost::Cost;
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
 use super::{place_of, selectors};
