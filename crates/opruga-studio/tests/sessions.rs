@@ -369,7 +369,7 @@ fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
         (Request::Edit(Edit::Add(unknown)), "springy"),
         (Request::Edit(Edit::Shape("ball".into(), "vertices", Value::Integer(1))), "vertices"),
         (Request::Open { name: "x".into(), text: "format = 3".into(), files: Files::default() }, "format"),
-        (Request::Grab(Grip::Pull, 7, [0.0; 3]), "no such body"),
+        (Request::Grab(Grip::Pull, 7, [0.0; 3]), "no body `7`"),
     ] {
         let asked = format!("{request:?}");
         session.handle(request);
@@ -456,7 +456,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
         std::fs::write(&path, bytes).expect("a file");
         path
     };
-    let refused = |path: &std::path::Path| take(path).expect_err("it is refused");
+    let refused = |path: &std::path::Path| take(path).expect_err("it is refused").to_string();
     assert!(refused(&put("letter.docx", b"PK")).contains(".toml"));
     assert!(refused(&put("bytes.toml", &[0xff, 0xfe, 0x00])).contains("UTF-8"));
     assert!(refused(&folder.join("absent.toml")).contains("read"));

@@ -7,6 +7,7 @@ use crate::document::Document;
 use crate::engine;
 use crate::pair;
 use crate::runner::{Copied, Link};
+use crate::said::Said;
 use crate::shown::{Severity, Show};
 use crate::work::{self, breathe};
 use opruga::Options;
@@ -37,10 +38,8 @@ pub enum What {
 #[derive(Debug, Default)]
 pub struct Keeping {
     asked: Option<(What, Show, Receiver<Copied>)>,
-    working: Option<Receiver<Result<String, String>>>,
-    message: Option<(String, Severity)>,
-    /// Whether the message is the place of a file.
-    written: bool,
+    working: Option<Receiver<Result<Said, Said>>>,
+    message: Option<(Said, Severity)>,
 }
 
 impl Keeping {
@@ -68,28 +67,21 @@ impl Keeping {
         }
         if let Some(outcome) = self.working.as_ref().and_then(|working| working.try_recv().ok()) {
             self.working = None;
-            self.written = outcome.is_ok();
             self.message = Some(match outcome {
-                Ok(path) => (path, Severity::Told),
-                Err(error) => (error, Severity::Refused),
+                Ok(written) => (written, Severity::Told),
+                Err(refused) => (refused, Severity::Refused),
             });
         }
     }
 
     /// What there is to say.
-    pub fn message(&self) -> Option<(String, Severity)> {
-        self.message.clone()
-    }
-
-    /// Whether that is where the last file was written.
-    pub fn is_written(&self) -> bool {
-        self.written
+    pub fn message(&self) -> Option<&(Said, Severity)> {
+        self.message.as_ref()
     }
 
     /// Says something else in its place.
-    pub fn tell(&mut self, severity: Severity, text: String) {
-        self.written = false;
-        self.message = Some((text, severity));
+    pub fn tell(&mut self, severity: Severity, said: Said) {
+        self.message = Some((said, severity));
     }
 
     /// The message was read.
@@ -101,8 +93,8 @@ impl Keeping {
 /// Writes a file; where it is.
 ///
 /// # Errors
-/// A sentence for the person.
-async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> {
+/// What there is to say to the person.
+async fn write(what: What, copied: &Copied, show: Show) -> Result<Said, Said> {
     let ending = match what {
         What::Scene => "toml",
         What::Picture => "png",
@@ -113,30 +105,33 @@ async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String
     let bytes = made(what, copied, show).await?;
     let first = hand_over(&copied.name, ending, &bytes)?;
     // Side by side there are two scenes.
-    let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
+    let (What::Scene, Some(differences)) = (what, &copied.differences) else {
+        return Ok(Said::Written(vec![first]));
+    };
     let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
     let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
-    Ok(format!("{first}, {second}"))
+    Ok(Said::Written(vec![first, second]))
 }
 
 /// A file in the folder `out/studio` that is not there yet.
 #[cfg(not(target_arch = "wasm32"))]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
     let folder = std::path::PathBuf::from("out").join("studio");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("the folder {} cannot be made: {e}", folder.display()))?;
+    let named = || folder.display().to_string();
+    std::fs::create_dir_all(&folder).map_err(|e| Said::NoFolder(named(), e.to_string()))?;
     let path = |number: u32| {
         let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
         folder.join(name)
     };
     let free = (1..10_000).map(path).find(|path| !path.exists());
-    let path = free.ok_or_else(|| format!("{} is full", folder.display()))?;
+    let path = free.ok_or_else(|| Said::FolderFull(named()))?;
     opruga::io::safe_write::safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
     Ok(path.display().to_string())
 }
 
 /// A download.
 #[cfg(target_arch = "wasm32")]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
     let name = format!("{name}.{ending}");
     crate::browser::download(&name, bytes).map(|()| name)
 }
@@ -144,13 +139,13 @@ fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
 /// The bytes of a file.
 ///
 /// # Errors
-/// A sentence for the person.
+/// What there is to say to the person.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Said> {
     work::finish(made(what, copied, show))
 }
 
-async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Said> {
     match what {
         What::Scene => Ok(copied.text.clone().into_bytes()),
         What::Table => table(copied).await,
@@ -159,19 +154,18 @@ async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
 }
 
 /// The engine of the scene, from its start.
-fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
+fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Said> {
     let document = Document::new(&copied.name, &copied.text)?;
-    let built = pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default());
-    built.map_err(|refusal| refusal.to_string())
+    pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default())
 }
 
-async fn table(copied: &Copied) -> Result<Vec<u8>, String> {
+async fn table(copied: &Copied) -> Result<Vec<u8>, Said> {
     let mut engine = again(copied)?;
     let mut rows = Vec::new();
     rows.push(engine.row());
     for _ in 0..copied.frames {
         breathe().await;
-        engine.frame().map_err(|e| e.to_string())?;
+        engine.frame()?;
         rows.push(engine.row());
     }
     // Bodies come and go: a column for everything that there ever was.
@@ -189,7 +183,7 @@ async fn table(copied: &Copied) -> Result<Vec<u8>, String> {
     Ok(text.into_bytes())
 }
 
-async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Said> {
     let mut engine = again(copied)?;
     let every = ((1.0 / RATE / engine.frame_seconds()).round() as u64).max(1);
     let mut pictures: Vec<Picture> = Vec::new();
@@ -198,7 +192,7 @@ async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
     }
     for _ in 0..copied.frames {
         breathe().await;
-        engine.frame().map_err(|e| e.to_string())?;
+        engine.frame()?;
         if what != What::Picture && engine.frames().is_multiple_of(every) {
             pictures.push(engine.moment(&show));
         }
@@ -213,8 +207,8 @@ async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
     let rate = 1.0 / (every as f64 * engine.frame_seconds());
     match what {
         What::Picture => pictures.last().map_or_else(
-            || Err("there is nothing to draw".into()),
-            |picture| image(picture)?.to_png().map_err(|e| e.to_string()),
+            || Err(Said::NothingToDraw),
+            |picture| image(picture)?.to_png().map_err(|e| e.to_string().into()),
         ),
         What::Film => {
             let mut writer =
@@ -223,7 +217,7 @@ async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
                 breathe().await;
                 writer.push(&image(picture)?).map_err(|e| e.to_string())?;
             }
-            writer.finish().map_err(|e| e.to_string())
+            writer.finish().map_err(|e| e.to_string().into())
         }
         _ => {
             let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);
