@@ -13,9 +13,9 @@ use crate::panels::{bars, palette};
 use crate::runner::Link;
 use crate::said::Said;
 use crate::session::{Edit, Placed, Request, Session};
-use crate::shown::{Offer, Severity, Show, Shown};
+use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, CornerRadius, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Stroke, Ui};
+use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Ui};
 use std::sync::Arc;
 
 /// The scene that comes first.
@@ -140,9 +140,10 @@ impl Studio {
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
         let narrow = ui.available_width() <= NARROW;
         Panel::top("tools").frame(bar).show(ui, |ui| {
-            let chosen = bars::tools(ui, &shown, words, narrow, self.keeping.is_working(), &mut asks);
+            let chosen = bars::tools(ui, &shown, words, narrow, &mut asks);
             self.choose(ui, chosen);
-            bars::status(ui, &shown, words, self.rate, narrow, self.drawn_by.as_ref());
+            let making = self.keeping.working();
+            bars::status(ui, &shown, words, self.rate, narrow, self.drawn_by.as_ref(), making);
         });
         Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));
         let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));

@@ -212,7 +212,7 @@ fn the_sides_can_differ_in_resolution_and_are_compared_by_what_both_have() {
     let shown = session.shown();
     let right = shown.beside.as_ref().expect("two scenes");
     assert_eq!((shown.bodies[0].nodes, right.right.bodies[0].nodes, right.right.frames), (36, 90, 0));
-    assert_eq!(words(&right), ["vertices 90"]);
+    assert_eq!(words(right), ["vertices 90"]);
     assert!(right.distances.is_none(), "there is no distance between nodes that are not the same");
     // A polygon of n corners in a circle: n/2 sin(2π/n) of its square.
     let polygon = |n: f64| 0.5 * n * (std::f64::consts::TAU / n).sin() * 0.5 * 0.5;

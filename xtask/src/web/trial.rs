@@ -35,8 +35,7 @@ pub(super) fn run(page: &Path, native: PathBuf) -> Result<(), String> {
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let (address, answers) = server::serve(page.to_path_buf(), 0)?.start();
     // First the browser with WebGPU: the server is away in the end.
-    let rounds: [(bool, &dyn Fn(&mut Trial) -> Outcome); 2] =
-        [(true, &Trial::on_webgpu), (false, &|trial| trial.all(&answers))];
+    let rounds: [(bool, Round<'_>); 2] = [(true, &Trial::on_webgpu), (false, &|trial| trial.all(&answers))];
     let outcome = rounds.into_iter().try_for_each(|(webgpu, round)| {
         let browser = Browser::start(&folder, webgpu)?;
         let mut trial = Trial { browser, address: address.clone(), folder: folder.clone(), native: native.clone() };
@@ -63,6 +62,8 @@ struct Trial {
 }
 
 type Outcome = Result<(), String>;
+/// What is tried in one browser.
+type Round<'a> = &'a dyn Fn(&mut Trial) -> Outcome;
 
 impl Trial {
     fn all(&mut self, answers: &std::sync::atomic::AtomicBool) -> Outcome {

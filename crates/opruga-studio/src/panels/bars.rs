@@ -34,14 +34,7 @@ pub enum Chosen {
 }
 
 /// The bar above the scene.
-pub fn tools(
-    ui: &mut Ui,
-    shown: &Shown,
-    words: Language,
-    narrow: bool,
-    working: bool,
-    asks: &mut Vec<Request>,
-) -> Chosen {
+pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mut Vec<Request>) -> Chosen {
     let mut chosen = Chosen::Nothing;
     ui.horizontal_wrapped(|ui| {
         if ui.button(words.scenes()).on_hover_text(format!("{}  (G)", words.scenes_hint())).clicked() {
@@ -50,30 +43,22 @@ pub fn tools(
         if ui.button(words.save()).on_hover_text(format!("{}  (Ctrl S)", words.save_scene())).clicked() {
             chosen = Chosen::Keep(What::Scene);
         }
-        ui.add_enabled_ui(!working, |ui| {
-            ui.menu_button(words.keep(), |ui| {
-                for (what, name) in [
-                    (What::Scene, words.save_scene()),
-                    (What::Picture, words.screenshot()),
-                    (What::Film, words.film()),
-                    (What::Animation, words.animation()),
-                    (What::Table, words.table()),
-                ] {
+        ui.menu_button(words.keep(), |ui| {
+            for what in [What::Scene, What::Picture, What::Film, What::Animation, What::Table] {
+                if ui.button(file_name(words, what)).clicked() {
+                    chosen = Chosen::Keep(what);
+                    ui.close();
+                }
+            }
+            if cfg!(target_arch = "wasm32") {
+                ui.separator();
+                for (other, name) in [(Chosen::Link, words.copy_link()), (Chosen::File, words.open_file())] {
                     if ui.button(name).clicked() {
-                        chosen = Chosen::Keep(what);
+                        chosen = other;
                         ui.close();
                     }
                 }
-                if cfg!(target_arch = "wasm32") {
-                    ui.separator();
-                    for (other, name) in [(Chosen::Link, words.copy_link()), (Chosen::File, words.open_file())] {
-                        if ui.button(name).clicked() {
-                            chosen = other;
-                            ui.close();
-                        }
-                    }
-                }
-            });
+            }
         });
         if !narrow {
             ui.separator();
@@ -103,6 +88,17 @@ pub fn tools(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| windows(ui, words, &mut chosen, true));
     });
     chosen
+}
+
+/// What a file is called.
+fn file_name(words: Language, what: What) -> &'static str {
+    match what {
+        What::Scene => words.save_scene(),
+        What::Picture => words.screenshot(),
+        What::Film => words.film(),
+        What::Animation => words.animation(),
+        What::Table => words.table(),
+    }
 }
 
 /// What opens other parts of the window, from left to right or from the right.
@@ -213,7 +209,15 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, way: Re
 }
 
 /// The line on top: the numbers of the machine, and what draws.
-pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64, narrow: bool, drawn_by: Option<&[String; 2]>) {
+pub fn status(
+    ui: &mut Ui,
+    shown: &Shown,
+    words: Language,
+    rate: f64,
+    narrow: bool,
+    drawn_by: Option<&[String; 2]>,
+    making: impl Iterator<Item = (What, u32)>,
+) {
     let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
     let h = shown.frame / f64::from(shown.substeps.max(1));
     let cost = shown.pace.frame_cost;
@@ -245,6 +249,10 @@ pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64, narrow: bo
         }
         if shown.recorded > 0 {
             ui.label(small(format!("{}: {}", words.recorded(), shown.recorded)));
+        }
+        for (what, hundredths) in making {
+            let text = format!("{}: {hundredths} %", file_name(words, what));
+            ui.label(small(text).strong()).on_hover_text(words.working());
         }
         for warning in shown.warnings.iter().take(2) {
             let text = format!("{}: {} ({})", words.warning(), warning.code, warning.count);
