@@ -46,7 +46,7 @@ pub(crate) fn request(
     if file.contains(['"', '\\']) {
         return Err(Said::NameOfFile(file.into()));
     }
-    Ok(Request::Open { name, text: around(file, fields, *space, &ending), files: files() })
+    Ok(Request::OpenAround { name, text: around(file, fields, *space, &ending), files: files() })
 }
 
 /// A scene with one shape over a floor.

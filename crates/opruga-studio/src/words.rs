@@ -160,7 +160,7 @@ words! {
     losses: "losses", "gubici";
     integration_error: "error of integration", "pogreška integracije";
     drag_me: "drag me", "povuci me";
-    drop_here: "Drop a scene, SVG, OBJ, STL or PLY here", "Ispusti ovdje prizor, SVG, OBJ, STL ili PLY";
+    drop_here: "Drop a scene, SVG, OBJ, STL, PLY or glTF here", "Ispusti ovdje prizor, SVG, OBJ, STL, PLY ili glTF";
     slower: "slower than real time", "sporije od stvarnog vremena";
     real_time: "real time", "stvarno vrijeme";
     steps_a_second: "steps/s", "koraka/s";

@@ -483,6 +483,36 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 
+/// A fine surface needs more substeps than a coarse one; nobody who drops a file knows how many.
+#[test]
+fn a_surface_that_is_dropped_takes_as_many_substeps_as_it_needs() {
+    let spot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/spot.obj");
+    let mut session = open("ball");
+    session.handle(opruga_studio::dropping::take(std::path::Path::new(spot)).expect("a shape"));
+    no_refusal(&mut session);
+    assert_eq!(session.name(), "spot");
+    assert!(session.shown().substeps > 96, "more than it begins with");
+    pass(&mut session, 2);
+}
+
+/// What a message offers for a scene that was not opened changes that scene, and not the one that is open.
+#[test]
+fn a_scene_that_was_refused_for_its_step_is_opened_with_the_substeps_that_are_offered() {
+    let mut session = open("ball");
+    let own = session.shown().substeps;
+    let text = opruga::scenes::find("pressures").expect("a scene");
+    let line = text.lines().find(|line| line.starts_with("substeps")).expect("it says its substeps");
+    let text = text.replace(line, "substeps = 1");
+    session.handle(Request::Open { name: "coarse".into(), text, files: Files::default() });
+    assert!(refusal(&mut session).contains("unstable"));
+    let offer = session.shown().message.and_then(|message| message.offer).expect("an offer");
+    session.handle(Request::Accept(offer.clone()));
+    no_refusal(&mut session);
+    assert_eq!(session.name(), "coarse");
+    assert_eq!(offer, Offer::Substeps(session.shown().substeps));
+    assert_eq!(open("ball").shown().substeps, own);
+}
+
 #[test]
 fn drawings_are_seen_in_their_own_colours_until_another_colouring_is_chosen() {
     let mut session = open("emoji");

@@ -49,6 +49,15 @@ pub enum Request {
         /// Where the files are that it names.
         files: Files,
     },
+    /// Open a scene that was made around a shape: it takes as many substeps as the shape needs.
+    OpenAround {
+        /// Its name.
+        name: String,
+        /// Its text.
+        text: String,
+        /// Where the files are that it names.
+        files: Files,
+    },
     /// Let time pass, or not.
     Play(bool),
     /// One frame.
@@ -185,6 +194,7 @@ impl Session {
         let (before, edits) = (self.messages, request.is_edit());
         let outcome = match request {
             Request::Open { name, text, files } => self.open_another(&name, &text, files),
+            Request::OpenAround { name, text, files } => self.open_around(&name, &text, files),
             Request::Play(playing) => {
                 self.playing = playing;
                 self.pacing.rest();
@@ -315,6 +325,23 @@ impl Session {
         Ok(())
     }
 
+    /// The same with as many substeps as it needs.
+    fn open_around(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+        match self.open_another(name, text, files.clone()) {
+            Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
+                self.open_with(name, text, files, with_a_margin(substeps))
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// The same with so many substeps.
+    fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
+        let mut document = Document::new(name, text)?;
+        document.set("time.substeps", &Value::Integer(i64::from(substeps)));
+        self.open_another(name, &document.text(), files)
+    }
+
     fn accept(&mut self, offer: &Offer) -> Result<(), Said> {
         self.message = None;
         match offer {
@@ -334,6 +361,10 @@ impl Session {
             }
             Offer::Substeps(substeps) => {
                 let refused = self.refused.take();
+                // A scene that was not opened has substeps of its own.
+                if let Some(Request::Open { name, text, files }) = refused {
+                    return self.open_with(&name, &text, files, *substeps);
+                }
                 self.set("time.substeps", Value::Integer(i64::from(*substeps)))?;
                 if let Some(request) = refused {
                     self.handle(request);
@@ -362,8 +393,7 @@ impl Session {
             }
             WorldError::UnstableStep { substeps, .. } => {
                 self.refused = request;
-                // A little more than the least, so that the next change does not fail at once.
-                Some(Offer::Substeps(substeps.saturating_add(substeps / 8 + 1)))
+                Some(Offer::Substeps(with_a_margin(*substeps)))
             }
             _ => None,
         };
@@ -431,4 +461,9 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }
+}
+
+/// A little more substeps than the least, so that the next change does not fail at once.
+fn with_a_margin(substeps: u32) -> u32 {
+    substeps.saturating_add(substeps / 8 + 1)
 }
