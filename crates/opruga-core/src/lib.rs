@@ -1,12 +1,14 @@
 //! The language of Opruga: what models, integrators and obstacles are to one another.
 
 pub mod accumulator;
+mod advance;
 pub mod check;
 pub mod contacts;
 pub mod error;
 mod implicit;
 pub mod inertia;
 pub mod integrator;
+mod ledger;
 pub mod pair;
 mod pins;
 pub mod potential;
@@ -17,3 +19,4 @@ pub mod stencil;
 pub mod system;
 pub mod threads;
 pub mod tile;
+mod workspace;

@@ -14,76 +14,19 @@
 //! Every tile evaluates all elements that touch it (those across its border are evaluated by both tiles). So a node
 //! receives the same numbers in the same order whatever the tiles and the layout: its force has the same bits.
 
+mod clamp;
 mod dual;
+mod kernel;
 
+pub use clamp::clamp;
 pub use dual::Dual;
+pub use kernel::{Blocks, Kernel};
 
 use crate::potential::{Definiteness, Potential, Sink, Views};
 use crate::state::{At, Layout, OrderedSum, Parameter, View};
 use crate::tile::{TILE, Tile};
-use core::fmt::Debug;
 use core::marker::PhantomData;
-use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
-
-/// The blocks ∂²U/∂xₐ∂x_b of a stencil, `[a][b]` with rows i and columns j of the coordinates.
-pub type Blocks<const D: usize, const N: usize> = [[[[f64; D]; D]; N]; N];
-
-/// The law of one stencil of N nodes in D dimensions with K parameters.
-///
-/// Formulas are straight code over [`Lane`], without closures and without branches on values ([`Lane::select`]); methods
-/// should be `#[inline(always)]`, so that they become vector code inside of the loops here.
-pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug + Send + Sync + 'static {
-    /// The word that names the model.
-    const NAME: &'static str;
-    /// The energy U [J].
-    fn energy<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> S;
-    /// ∂U/∂x of every node [N].
-    fn gradient<S: Lane>(parameters: &[S; K], x: &[[S; D]; N]) -> [[S; D]; N];
-    /// The force of damping on every node [N] and the power that it takes [W]; asked only where the model is damped.
-    #[inline(always)]
-    fn damping<S: Lane>(_parameters: &[S; K], _x: &[[S; D]; N], _v: &[[S; D]; N]) -> ([[S; D]; N], S) {
-        ([[S::zero(); D]; N], S::zero())
-    }
-    /// −∂F/∂v of the force of damping; as it stands, its exact derivative by dual numbers.
-    fn damping_matrix(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
-        let constants = parameters.map(Dual::constant);
-        let x = x.map(|node| node.map(Dual::constant));
-        let mut v = [[Dual::constant(0.0); D]; N];
-        let mut out = [[[[0.0; D]; D]; N]; N];
-        for b in 0..N {
-            for j in 0..D {
-                v[b][j].slope = 1.0;
-                let (force, _) = Self::damping(&constants, &x, &v);
-                v[b][j].slope = 0.0;
-                for a in 0..N {
-                    for i in 0..D {
-                        out[a][b][i][j] = -force[a][i].slope;
-                    }
-                }
-            }
-        }
-        out
-    }
-    /// ∂²U/∂x∂x; as it stands, the exact derivative of [`Kernel::gradient`] by dual numbers.
-    fn hessian(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
-        let constants = parameters.map(Dual::constant);
-        let mut at = x.map(|node| node.map(Dual::constant));
-        let mut out = [[[[0.0; D]; D]; N]; N];
-        for b in 0..N {
-            for j in 0..D {
-                at[b][j].slope = 1.0;
-                let slope = Self::gradient(&constants, &at);
-                at[b][j].slope = 0.0;
-                for a in 0..N {
-                    for i in 0..D {
-                        out[a][b][i][j] = slope[a][i].slope;
-                    }
-                }
-            }
-        }
-        out
-    }
-}
+use opruga_math::{Pack, Simd, WIDTH, Work};
 
 /// All stencils of one kernel on one body, or on eight alike ones.
 #[derive(Debug)]
@@ -490,79 +433,5 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work fo
             Layout::Batch => sum.store(&mut out),
         }
         out
-    }
-}
-
-/// The most rows of a stencil's Hessian.
-const MOST_ROWS: usize = 12;
-
-/// Removes the negative eigenvalues of symmetric block matrices, eight side by side.
-pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
-    const { assert!(N * D <= MOST_ROWS, "room for the rows of a stencil") }
-    let mut square = [[[0.0; WIDTH]; MOST_ROWS]; MOST_ROWS];
-    for some in matrices.chunks_mut(WIDTH) {
-        for p in 0..N * D {
-            for q in 0..N * D {
-                for (l, blocks) in some.iter().enumerate() {
-                    let (one, other) = (blocks[p / D][q / D][p % D][q % D], blocks[q / D][p / D][q % D][p % D]);
-                    square[p][q][l] = 0.5 * (one + other);
-                }
-            }
-        }
-        Simd::best().run(PositivePart { square: &mut square });
-        for p in 0..N * D {
-            for q in 0..N * D {
-                for (l, blocks) in some.iter_mut().enumerate() {
-                    blocks[p / D][q / D][p % D][q % D] = square[p][q][l];
-                }
-            }
-        }
-    }
-}
-
-/// The positive parts of eight matrices; rows that are not in use are zero and stay so.
-struct PositivePart<'a> {
-    square: &'a mut [[[f64; WIDTH]; MOST_ROWS]; MOST_ROWS],
-}
-impl Work for PositivePart<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        for part in 0..P::PARTS {
-            let offset = part * P::Part::NUMBERS;
-            let mut matrix = [[P::Part::zero(); MOST_ROWS]; MOST_ROWS];
-            for p in 0..MOST_ROWS {
-                for q in 0..MOST_ROWS {
-                    matrix[p][q] = P::Part::load(&self.square[p][q][offset..]);
-                }
-            }
-            let kept = symmetric::positive_part(&matrix);
-            for p in 0..MOST_ROWS {
-                for q in 0..MOST_ROWS {
-                    kept[p][q].store(&mut self.square[p][q][offset..]);
-                }
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The clamped matrix of diag(2, −3) turned by 30° is 2 n nᵀ.
-    #[test]
-    fn clamp_drops_the_negative_eigenvalue() {
-        let (c, s) = (0.75f64.sqrt(), 0.5);
-        let n = [c, s];
-        let m = [-s, c];
-        let entry = |i: usize, j: usize| 2.0 * n[i] * n[j] - 3.0 * m[i] * m[j];
-        let mut blocks: Blocks<2, 1> = [[[[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]]];
-        clamp(core::slice::from_mut(&mut blocks));
-        for i in 0..2 {
-            for j in 0..2 {
-                assert!((blocks[0][0][i][j] - 2.0 * n[i] * n[j]).abs() < 1e-14);
-            }
-        }
     }
 }

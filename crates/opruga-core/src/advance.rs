@@ -1,0 +1,224 @@
+//! One sweep over a system: forces of a tile, then the integrator on the tiles that are complete, then obstacles.
+
+use crate::contacts::Moved;
+use crate::error::StepError;
+use crate::potential::Account;
+use crate::state::{Layout, Parameter};
+use crate::system::{Stage, State, System, Update, view};
+use crate::tile::{Tile, Weight};
+use core::ops::Range;
+use opruga_math::{Pack, WIDTH, Work};
+
+impl<const D: usize> System<D> {
+    /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
+    ///
+    /// `weight` [s] is the share of this evaluation in the step's work integrals. `step` is the substep if the update
+    /// ends it: then obstacles act.
+    ///
+    /// # Errors
+    /// [`StepError`] where a model refuses the state.
+    pub fn advance<U: Update<D>>(
+        &mut self,
+        evaluate: Stage,
+        time: f64,
+        weight: f64,
+        step: Option<f64>,
+        update: &U,
+    ) -> Result<(), StepError> {
+        let now = self.time + time;
+        self.make_room();
+        self.prepare(evaluate, now)?;
+        if step.is_some() {
+            self.take_held_motion(0..self.places());
+        }
+        for tile in 0..self.plan.len() {
+            self.add_forces(evaluate, now, weight, tile);
+            for k in 0..self.plan.released_after(tile).len() {
+                let done = self.plan.released_after(tile)[k] as usize;
+                self.update_tile(done, update);
+                if let Some(h) = step {
+                    self.collide(done, h);
+                }
+            }
+        }
+        if !self.pins.is_empty() {
+            self.hold_pins(update.writes(), self.time + update.time());
+        }
+        if step.is_some() {
+            self.give_held_motion(0..self.places());
+        }
+        Ok(())
+    }
+
+    /// Lets every model look at the body as a whole.
+    pub(crate) fn prepare(&mut self, stage: Stage, time: f64) -> Result<(), StepError> {
+        let view = view(&self.state, self.nodes, self.layout, stage, time, self.threads);
+        for member in &mut self.members {
+            member.potential.prepare(self.simd, &view, &member.memory, &mut member.scratch)?;
+        }
+        Ok(())
+    }
+
+    /// Adds up the forces of all models on the nodes of one tile.
+    #[inline]
+    pub(crate) fn add_forces(&mut self, stage: Stage, time: f64, weight: f64, tile: usize) {
+        let view = view(&self.state, self.nodes, self.layout, stage, time, self.threads);
+        let range = self.plan.range(tile);
+        let buffer = self.plan.buffer(tile);
+        let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
+        let mut heaviness = Some(Weight { mass: &self.mass, gravity: self.gravity });
+        let mut power = [0.0; WIDTH];
+        if !self.members.first().is_some_and(|m| m.potential.begins_tiles()) {
+            let mut tile = Tile {
+                range: range.clone(),
+                force: force.each_mut().map(|f| &mut **f),
+                power: &mut power,
+                weight: heaviness.take(),
+                slots: &mut self.slots,
+            };
+            tile.settle(self.simd);
+        }
+        for member in &self.members {
+            let mut tile = Tile {
+                range: range.clone(),
+                force: force.each_mut().map(|f| &mut **f),
+                power: &mut power,
+                weight: heaviness.take(),
+                slots: &mut self.slots,
+            };
+            member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
+            let views = member.potential.views();
+            if views.damping || member.potential.account() == Account::User {
+                let account = match member.potential.account() {
+                    Account::User => &mut self.work.user,
+                    _ => &mut self.work.damping,
+                };
+                for l in 0..WIDTH {
+                    account[l] += weight * power[l];
+                    power[l] = 0.0;
+                }
+            }
+        }
+        // A pin balances the forces of the models, whatever the stabiliser leaves of them.
+        let force_on = |d: usize, place: usize| force[d][place - range.start];
+        self.held.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
+        if let Some(limit) = self.stabilisers.largest_force {
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_forces += limit_lengths(&mut force, range.len(), limit, is_node);
+        }
+    }
+
+    /// Lets the integrator move the nodes of a tile.
+    #[inline]
+    fn update_tile<U: Update<D>>(&mut self, tile: usize, update: &U) {
+        let range = self.plan.range(tile);
+        let buffer = self.plan.buffer(tile);
+        if self.contacts.is_some() {
+            for d in 0..D {
+                self.before[d][..range.len()].copy_from_slice(&self.state.x.0[d][range.clone()]);
+            }
+        }
+        let force = self.forces.each_ref().map(|f| &f[buffer..buffer + range.len() + WIDTH]);
+        self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
+    }
+
+    /// Lets obstacles hold back the nodes of a tile.
+    #[inline]
+    fn collide(&mut self, tile: usize, h: f64) {
+        let range = self.plan.range(tile);
+        self.limit_velocities_of(range.clone());
+        if self.contacts.is_none() {
+            return;
+        }
+        // What an obstacle takes of the motion of a held node its pin gives back.
+        self.give_held_motion(range.clone());
+        self.resolve_contacts(tile, h);
+        self.take_held_motion(range);
+    }
+
+    /// Shortens the velocities that are above the limit, of all nodes.
+    pub(crate) fn limit_velocities(&mut self) {
+        self.limit_velocities_of(0..self.places());
+    }
+
+    #[inline]
+    fn limit_velocities_of(&mut self, range: Range<usize>) {
+        if let Some(limit) = self.stabilisers.largest_velocity {
+            let mut columns = self.state.v.0.each_mut().map(|c| &mut c[range.clone()]);
+            let is_node = |k: usize| is_node(self.layout, self.nodes, self.bodies, range.start + k);
+            self.work.limited_velocities += limit_lengths(&mut columns, range.len(), limit, is_node);
+        }
+    }
+
+    fn resolve_contacts(&mut self, tile: usize, h: f64) {
+        let Some(contacts) = &self.contacts else { return };
+        let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
+        contacts.resolve(
+            self.simd,
+            &mut Moved {
+                range: range.clone(),
+                places_used: self.nodes * self.layout.stride(),
+                before: self.before.each_ref().map(|b| &**b),
+                x: &mut self.state.x,
+                v: &mut self.state.v,
+                force: self.forces.each_ref().map(|f| &f[buffer..buffer + range.len() + WIDTH]),
+                mass: &self.mass,
+                layout: self.layout,
+                time: self.time + h,
+                h,
+                loss_contact: &mut self.work.contact,
+                loss_friction: &mut self.work.friction,
+                work_colliders: &mut self.work.user,
+                work_correction: &mut self.work.correction,
+            },
+        );
+    }
+}
+
+/// Hands a tile to the integrator.
+struct Move<'a, U, const D: usize> {
+    update: &'a U,
+    range: Range<usize>,
+    force: [&'a [f64]; D],
+    inverse_mass: &'a Parameter,
+    state: &'a mut State<D>,
+}
+impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        self.update.tile::<P>(self.range, &self.force, self.inverse_mass, self.state);
+    }
+}
+
+/// Whether a place holds a node of a body; the others fill packs up.
+fn is_node(layout: Layout, nodes: usize, bodies: usize, place: usize) -> bool {
+    match layout {
+        Layout::Single => place < nodes,
+        Layout::Batch => place % WIDTH < bodies && place / WIDTH < nodes,
+    }
+}
+
+/// Shortens vectors longer than a limit; returns how many of them belong to nodes.
+fn limit_lengths<const D: usize>(
+    columns: &mut [&mut [f64]; D],
+    count: usize,
+    limit: f64,
+    is_node: impl Fn(usize) -> bool,
+) -> u64 {
+    let mut acted = 0;
+    for k in 0..count {
+        let mut square = 0.0;
+        for column in columns.iter() {
+            square += column[k] * column[k];
+        }
+        if square > limit * limit {
+            let factor = limit / square.sqrt();
+            for column in columns.iter_mut() {
+                column[k] *= factor;
+            }
+            acted += u64::from(is_node(k));
+        }
+    }
+    acted
+}

@@ -1,0 +1,55 @@
+//! The account of a system: what went into and out of its energy, and what solving its equations took.
+
+use opruga_math::{Lane, WIDTH};
+
+/// What went into and out of the energy since the ledger was last emptied [J]; eight partial sums each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work8 {
+    /// Work of forces from outside, of moving obstacles and of pins.
+    pub user: [f64; WIDTH],
+    /// Energy given to the gas by ramps, heating and leaks.
+    pub gas: [f64; WIDTH],
+    /// Energy taken by damping.
+    pub damping: [f64; WIDTH],
+    /// Energy taken by friction.
+    pub friction: [f64; WIDTH],
+    /// Energy taken by impacts.
+    pub contact: [f64; WIDTH],
+    /// Energy given by obstacles that put nodes back on their surface.
+    pub correction: [f64; WIDTH],
+    /// How often a force was limited.
+    pub limited_forces: u64,
+    /// How often a velocity was limited.
+    pub limited_velocities: u64,
+    /// What implicit integrators did.
+    pub solver: SolverWork,
+}
+
+/// What implicit integrators did since the ledger was last emptied.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolverWork {
+    /// Systems of equations that were solved, one a step.
+    pub steps: u64,
+    /// Iterations of Newton.
+    pub iterations: u64,
+    /// Iterations of the linear solver.
+    pub linear_iterations: u64,
+    /// The largest force out of balance on a node at the end of a step [N].
+    pub residual: f64,
+    /// Steps that were accepted though they had not converged.
+    pub accepted: u64,
+    /// Steps that were halved since they had not converged.
+    pub halved: u64,
+}
+
+impl SolverWork {
+    /// Adds what was done elsewhere or later.
+    pub fn add(&mut self, other: &SolverWork) {
+        self.steps += other.steps;
+        self.iterations += other.iterations;
+        self.linear_iterations += other.linear_iterations;
+        self.residual = other.residual.larger(self.residual);
+        self.accepted += other.accepted;
+        self.halved += other.halved;
+    }
+}

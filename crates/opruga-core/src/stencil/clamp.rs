@@ -1,0 +1,78 @@
+//! Matrices of stencils made positive semidefinite, eight at a time.
+
+use super::kernel::Blocks;
+use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
+
+/// The most rows of a stencil's Hessian.
+const MOST_ROWS: usize = 12;
+
+/// Removes the negative eigenvalues of symmetric block matrices, eight side by side.
+pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
+    const { assert!(N * D <= MOST_ROWS, "room for the rows of a stencil") }
+    let mut square = [[[0.0; WIDTH]; MOST_ROWS]; MOST_ROWS];
+    for some in matrices.chunks_mut(WIDTH) {
+        for p in 0..N * D {
+            for q in 0..N * D {
+                for (l, blocks) in some.iter().enumerate() {
+                    let (one, other) = (blocks[p / D][q / D][p % D][q % D], blocks[q / D][p / D][q % D][p % D]);
+                    square[p][q][l] = 0.5 * (one + other);
+                }
+            }
+        }
+        Simd::best().run(PositivePart { square: &mut square });
+        for p in 0..N * D {
+            for q in 0..N * D {
+                for (l, blocks) in some.iter_mut().enumerate() {
+                    blocks[p / D][q / D][p % D][q % D] = square[p][q][l];
+                }
+            }
+        }
+    }
+}
+
+/// The positive parts of eight matrices; rows that are not in use are zero and stay so.
+struct PositivePart<'a> {
+    square: &'a mut [[[f64; WIDTH]; MOST_ROWS]; MOST_ROWS],
+}
+impl Work for PositivePart<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for part in 0..P::PARTS {
+            let offset = part * P::Part::NUMBERS;
+            let mut matrix = [[P::Part::zero(); MOST_ROWS]; MOST_ROWS];
+            for p in 0..MOST_ROWS {
+                for q in 0..MOST_ROWS {
+                    matrix[p][q] = P::Part::load(&self.square[p][q][offset..]);
+                }
+            }
+            let kept = symmetric::positive_part(&matrix);
+            for p in 0..MOST_ROWS {
+                for q in 0..MOST_ROWS {
+                    kept[p][q].store(&mut self.square[p][q][offset..]);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The clamped matrix of diag(2, −3) turned by 30° is 2 n nᵀ.
+    #[test]
+    fn clamp_drops_the_negative_eigenvalue() {
+        let (c, s) = (0.75f64.sqrt(), 0.5);
+        let n = [c, s];
+        let m = [-s, c];
+        let entry = |i: usize, j: usize| 2.0 * n[i] * n[j] - 3.0 * m[i] * m[j];
+        let mut blocks: Blocks<2, 1> = [[[[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]]];
+        clamp(core::slice::from_mut(&mut blocks));
+        for i in 0..2 {
+            for j in 0..2 {
+                assert!((blocks[0][0][i][j] - 2.0 * n[i] * n[j]).abs() < 1e-14);
+            }
+        }
+    }
+}
