@@ -41,6 +41,24 @@ fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
     window.until("it was let go", |shown| shown.pulls.is_empty() && shown.frames == 13);
 }
 
+/// A screen that draws seldom takes in a press together with the way that the pointer went since.
+#[test]
+fn a_body_is_held_where_it_was_pressed_however_far_the_pointer_has_gone_until_the_next_picture() {
+    let mut window = Window::open("ball", SIZE);
+    let top = top_of(&window);
+    let far = top + Vec2::new(240.0, -60.0);
+    window.pointer(top + Vec2::new(0.0, 200.0));
+    let press =
+        Event::PointerButton { pos: top, button: PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
+    window.harness.input_mut().events.extend([Event::PointerMoved(top), press, Event::PointerMoved(far)]);
+    window.frames(2);
+    window.studio().ask(Request::Step);
+    window.studio().ask(Request::Step);
+    window.until("the ball is held", |shown| shown.pulls.len() == 1 && shown.frames == 2);
+    window.button(far, PointerButton::Primary, false, Modifiers::NONE);
+    window.until("it is let go", |shown| shown.recorded == 1);
+}
+
 #[test]
 fn every_tool_and_menu_can_be_pressed_by_its_name() {
     let mut window = Window::open("ball", SIZE);

@@ -155,7 +155,7 @@ impl Canvas {
             Some(other) if other.contains(at) => (at - other.min.to_vec2() + rect.min.to_vec2(), true),
             _ => (at, false),
         };
-        let hover = response.hover_pos().map(within);
+        let hover = response.hover_pos().map(|at| pressing::pressed_at(ui).unwrap_or(at)).map(within);
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
         self.space.receive(ui);
         self.beside.receive(ui);
