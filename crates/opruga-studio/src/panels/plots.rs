@@ -1,5 +1,6 @@
 //! Curves of the last moments: energy, gas, momentum, computing time.
 
+use crate::differences::Difference;
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
@@ -28,7 +29,7 @@ pub struct Plots {
     moments: Vec<Moment>,
     opened: u64,
     /// What the right side differs in.
-    words: Option<Vec<String>>,
+    differences: Option<Vec<Difference>>,
     body: Option<String>,
 }
 
@@ -45,9 +46,9 @@ impl Plots {
             self.body = selected.map(String::from);
         }
         // What has differed from the start is computed from the start: the old curves are those of others.
-        let words = shown.beside.as_ref().map(|beside| beside.words.clone());
-        if self.words != words {
-            self.words = words;
+        let differences = shown.beside.as_ref().map(|beside| beside.differences.clone());
+        if self.differences != differences {
+            self.differences = differences;
             self.moments.iter_mut().for_each(|moment| moment.beside = None);
         }
         if self.moments.last().is_some_and(|last| last.time == shown.time) {
@@ -131,7 +132,9 @@ impl Plots {
                     let most = values.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
                     values.into_iter().map(|[t, x]| [t, if most > 0.0 { 100.0 * x / most } else { 0.0 }]).collect()
                 };
-                let lines = names.iter().take(4).map(|name| (*name, share(name))).collect();
+                let named: Vec<String> = names.iter().map(|name| words.reading(name)).collect();
+                let lines =
+                    names.iter().zip(&named).take(4).map(|(name, shown)| (shown.as_str(), share(name))).collect();
                 let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
                 let title = format!("{}: {} [% max]", words.gas(), body.map_or("", |body| body.title.as_str()));
                 plot(ui, "gas", &title, size, lines);
