@@ -2,7 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, paint, text_width};
 use crate::colour::{INK, OKABE_ITO, RUBBER};
-use crate::picture::{ArrowKind, Picture};
+use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
@@ -52,11 +52,11 @@ pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     }
 }
 
-/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point, and `in_sight` says
-/// whether a point of a surface is seen.
+/// Draws the pins, the names and the rubber lines of a picture, and some arrows; `project` gives the pixel of a point, and
+/// `in_sight` says whether a point of a surface is seen.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
-    picture: &Picture,
+    (picture, arrows): (&Picture, &[ArrowPicture]),
     view: &View,
     unit: f32,
     project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
@@ -82,11 +82,29 @@ pub(crate) fn draw_marks(
             }
         }
     }
+    draw_arrows(canvas, arrows, view, unit, project, in_sight);
+    for pull in &picture.pulls {
+        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
+            rubber_line(canvas, node, pointer, unit);
+        }
+    }
+    // Names are read over everything else.
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
         label(canvas, &body.label, body.positions.iter().filter_map(|x| project(*x)), unit);
     }
-    let width = if picture.arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
-    for mark in &picture.arrows {
+}
+
+/// Draws arrows.
+pub(crate) fn draw_arrows(
+    canvas: &mut Canvas,
+    arrows: &[ArrowPicture],
+    view: &View,
+    unit: f32,
+    project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+    in_sight: &dyn Fn([f64; 3]) -> bool,
+) {
+    let width = if arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
+    for mark in arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
         if !in_sight(mark.from) {
@@ -97,14 +115,9 @@ pub(crate) fn draw_marks(
             arrow(canvas, [from, to], width, arrow_colour(mark.kind), long > 16.0 * unit);
         }
     }
-    for pull in &picture.pulls {
-        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
-            rubber_line(canvas, node, pointer, unit);
-        }
-    }
 }
 
-/// Writes a name under the pixels of a body, within the scene and on a light ground.
+/// Writes a name under the pixels of a body, within the scene and with a light rim around its letters.
 fn label(canvas: &mut Canvas, text: &str, pixels: impl Iterator<Item = [f32; 2]>, unit: f32) {
     let (mut left, mut right, mut bottom) = (f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY);
     for [x, y] in pixels {
@@ -120,7 +133,12 @@ fn label(canvas: &mut Canvas, text: &str, pixels: impl Iterator<Item = [f32; 2]>
     let half = 0.5 * text_width(text, size) + 2.0 * unit;
     let base = (bottom + 15.0 * unit).min(height - 5.0 * unit);
     let middle = middle.min(width - half).max(half);
-    canvas.rectangle([middle - half, base - 0.85 * size, 2.0 * half, 1.15 * size], [255; 3], 0.7);
+    canvas.rectangle([middle - half, base - 0.85 * size, 2.0 * half, 1.15 * size], [255; 3], 0.6);
+    for k in 0..12 {
+        let angle = std::f32::consts::TAU * k as f32 / 12.0;
+        let place = [middle + 1.8 * unit * angle.cos(), base + 1.8 * unit * angle.sin()];
+        canvas.text(text, place, size, Anchor::Middle, [255; 3]);
+    }
     canvas.text(text, [middle, base], size, Anchor::Middle, INK);
 }
 

@@ -1,6 +1,7 @@
 //! What the interface sees of a session: one picture and the numbers beside it, made by the thread of the simulation.
 
 use opruga::Warning;
+use opruga::core::potential::Reading;
 use opruga::core::spec::Values;
 use opruga::draw::{ColourMap, Picture};
 use opruga::pictures::Quantity;
@@ -82,7 +83,7 @@ pub struct BodyShown {
     /// Its shape as the scene tells it, where it has a table of its own.
     pub shape: Option<Values>,
     /// What its models say: volume, pressure.
-    pub readings: Vec<(&'static str, f64)>,
+    pub readings: Vec<Reading>,
 }
 
 impl EnergyShown {
