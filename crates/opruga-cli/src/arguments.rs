@@ -131,9 +131,9 @@ pub(crate) struct BenchVertices {
     /// The integrator: one of those of `opruga list`
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
-    /// Only rows whose rings have this many vertices
-    #[arg(long, value_name = "VERTICES")]
-    pub(crate) only: Option<usize>,
+    /// Only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
+    #[arg(long, value_name = "[RINGSx]VERTICES")]
+    pub(crate) only: Option<String>,
     /// Processor time spent on each row, above 0 up to 600 [s]
     #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,

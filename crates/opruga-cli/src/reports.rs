@@ -237,13 +237,7 @@ fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
         let message = format!("there is no integrator `{}`", visible(&call.integrator));
         return Err(Failure::Call { message, hint: Some(hint) });
     }
-    if let Some(only) = call.only.filter(|only| !bench::ROWS.iter().any(|row| row.1 == *only)) {
-        let mut sizes: Vec<usize> = bench::ROWS.iter().map(|row| row.1).collect();
-        sizes.sort_unstable();
-        sizes.dedup();
-        let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
-        return Err(Failure::range("--only", only, &sizes.join(", ")));
-    }
+    let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {
         // Better now than after minutes of measuring.
         try_write(path, true)?;
@@ -251,7 +245,7 @@ fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };
     let mut rows = Vec::new();
     for (bodies, vertices) in bench::ROWS {
-        if call.only.is_some_and(|only| only != vertices) {
+        if chosen.is_some_and(|row| row != (bodies, vertices)) {
             continue;
         }
         if std::io::stderr().is_terminal() {

@@ -146,7 +146,7 @@ fn what_is_not_there_is_no_error_in_a_scene() {
     for name in ["ball", "unser"] {
         std::fs::create_dir(folder.path().join(name)).expect("a folder");
     }
-    let cases: [(&[&str], i32, &str); 11] = [
+    let cases: [(&[&str], i32, &str); 14] = [
         (&["run", "zebra"], 4, "= hint: scenes that come with the program: ball, ball-as-published, "),
         (&["run", "qqqqqqqqqqqqqqqqqqqqqqqq"], 4, "= hint: scenes that come with the program: ball, "),
         (&["check", "unser"], 4, "= hint: did you mean `unser.toml`?"),
@@ -158,6 +158,13 @@ fn what_is_not_there_is_no_error_in_a_scene() {
         (&["new", ""], 2, "allowed: the name of a file"),
         (&["bench", "vertices", "--plot", "nowhere/speed.svg"], 4, "= hint: the folder around it is missing"),
         (&["bench", "vertices", "--only", "7"], 2, "--only is 7; allowed: 8, 16, 36, "),
+        (&["bench", "vertices", "--only", "2x36"], 2, "100x36, 1000x36, 27778x36"),
+        (
+            &["check", "ball", "--set", "time.substeps=8,16"],
+            2,
+            "= hint: `opruga sweep` takes lists (8,16,32) and ranges",
+        ),
+        (&["check", "ball", "--set", "body.ball.mass=0.5..4:log:7"], 2, "= hint: `opruga sweep` takes lists"),
     ];
     for (arguments, exit, text) in cases {
         let output = opruga(folder.path(), arguments);

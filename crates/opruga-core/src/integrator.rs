@@ -1,7 +1,7 @@
 //! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
 
 use crate::error::{BuildError, StepError};
-use crate::potential::Views;
+use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
 use crate::system::System;
 use core::fmt::Debug;
@@ -37,7 +37,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
         Ok(())
     }
     /// Names and values of what a reader may want to see, such as the part of the load that is on.
-    fn readings(&self, _system: &System<D>) -> Vec<(&'static str, f64)> {
+    fn readings(&self, _system: &System<D>) -> Vec<Reading> {
         Vec::new()
     }
     /// Whether the same bits come out on every processor, and not only on those of one class.

@@ -19,7 +19,7 @@ pub struct Spec {
 }
 
 /// One parameter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// The word in the scene file.
     pub name: &'static str,

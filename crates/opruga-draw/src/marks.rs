@@ -2,7 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, paint, text_width};
 use crate::colour::{INK, OKABE_ITO, RUBBER};
-use crate::picture::{ArrowKind, Picture};
+use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
@@ -52,11 +52,11 @@ pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     }
 }
 
-/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point, and `in_sight` says
-/// whether a point of a surface is seen.
+/// Draws the pins, the names and the rubber lines of a picture, and some arrows; `project` gives the pixel of a point, and
+/// `in_sight` says whether a point of a surface is seen.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
-    picture: &Picture,
+    (picture, arrows): (&Picture, &[ArrowPicture]),
     view: &View,
     background: [u8; 3],
     unit: f32,
@@ -83,9 +83,27 @@ pub(crate) fn draw_marks(
             }
         }
     }
+    draw_arrows(canvas, arrows, view, unit, project, in_sight);
+    for pull in &picture.pulls {
+        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
+            rubber_line(canvas, node, pointer, unit);
+        }
+    }
+    // Names are read over everything else.
     labels(canvas, picture, background, unit, project);
-    let width = if picture.arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
-    for mark in &picture.arrows {
+}
+
+/// Draws arrows.
+pub(crate) fn draw_arrows(
+    canvas: &mut Canvas,
+    arrows: &[ArrowPicture],
+    view: &View,
+    unit: f32,
+    project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+    in_sight: &dyn Fn([f64; 3]) -> bool,
+) {
+    let width = if arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
+    for mark in arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
         if !in_sight(mark.from) {
@@ -94,11 +112,6 @@ pub(crate) fn draw_marks(
         if let (Some(from), Some(to)) = (project(mark.from), project(to)) {
             let long = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
             arrow(canvas, [from, to], width, arrow_colour(mark.kind), long > 16.0 * unit);
-        }
-    }
-    for pull in &picture.pulls {
-        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
-            rubber_line(canvas, node, pointer, unit);
         }
     }
 }

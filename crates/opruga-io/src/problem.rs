@@ -95,15 +95,17 @@ impl SceneError {
         }
         self
     }
-    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`.
+    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`; what an
+    /// error does not have is null.
     pub fn to_json(&self) -> serde_json::Value {
+        let there = |text: &String| Some(text.clone()).filter(|text| !text.is_empty());
         serde_json::json!({
             "code": self.code,
             "message": self.message,
-            "file": self.file,
+            "file": there(&self.file),
             "line": self.line,
             "column": self.column,
-            "path": self.path,
+            "path": there(&self.path),
             "value": self.value,
             "allowed": self.allowed,
             "hint": self.hint,

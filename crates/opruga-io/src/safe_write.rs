@@ -45,7 +45,7 @@ impl WriteError {
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "code": self.code, "message": self.message, "file": self.path.display().to_string(), "line": null, "column": null,
-            "path": "", "value": self.bytes, "allowed": null, "hint": self.hint,
+            "path": null, "value": self.bytes, "allowed": null, "hint": self.hint,
         })
     }
 }

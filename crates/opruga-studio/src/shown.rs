@@ -3,6 +3,7 @@
 use crate::differences::Difference;
 use crate::said::{Said, Step};
 use opruga::Warning;
+use opruga::core::potential::Reading;
 use opruga::core::spec::Values;
 use opruga::draw::{ColourMap, Picture};
 use opruga::pictures::Quantity;
@@ -84,7 +85,7 @@ pub struct BodyShown {
     /// Its shape as the scene tells it, where it has a table of its own.
     pub shape: Option<Values>,
     /// What its models say: volume, pressure.
-    pub readings: Vec<(&'static str, f64)>,
+    pub readings: Vec<Reading>,
 }
 
 impl EnergyShown {

@@ -4,9 +4,10 @@ use crate::ledger::{Stock, Survey, survey, take_stock};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
+use opruga_core::potential::Reading;
 use opruga_core::stability::Stability;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{History, System, Work8, Workspace};
+use opruga_core::system::{History, Member, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
@@ -126,7 +127,24 @@ impl<const D: usize> Island<D> {
     }
 
     /// What models say of one of the bodies.
-    pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<(&'static str, f64)> {
+    pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<Reading> {
+        let mut out = Vec::new();
+        self.ask(time, |member, view| {
+            out.extend(member.potential.readings(view, &member.scratch, &member.memory, lane));
+        });
+        out.extend(self.integrator.readings(&self.system));
+        out
+    }
+
+    /// The pressure of the gas at the nodes of one of the bodies [Pa].
+    pub(crate) fn node_pressures(&mut self, lane: usize, time: f64) -> Vec<(u32, f64)> {
+        let mut out = Vec::new();
+        self.ask(time, |member, view| out.extend(member.potential.node_pressures(view, &member.scratch, lane)));
+        out
+    }
+
+    /// Asks every model that is prepared for the present state.
+    fn ask(&mut self, time: f64, mut question: impl FnMut(&Member<D>, &View<D>)) {
         let system = &mut self.system;
         let view = View {
             x: system.state.x.slices(),
@@ -136,14 +154,11 @@ impl<const D: usize> Island<D> {
             time,
             threads: 1,
         };
-        let mut out = Vec::new();
         for member in &mut system.members {
             if member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch).is_ok() {
-                out.extend(member.potential.readings(&view, &member.scratch, &member.memory, lane));
+                question(member, &view);
             }
         }
-        out.extend(self.integrator.readings(&self.system));
-        out
     }
 
     /// Steps through a frame in a workspace that is lent; on failure the island is at its last good frame and the reason

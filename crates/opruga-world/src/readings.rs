@@ -6,7 +6,7 @@ use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
 use opruga_core::contacts::{Contacts, Moved};
-use opruga_core::potential::{Account, CellState, Count};
+use opruga_core::potential::{Account, CellState, Count, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage};
@@ -95,13 +95,21 @@ impl<const D: usize> World<D> {
         let system = &self.islands[island].system;
         system.mass.at(system.layout.place(node as usize, lane))
     }
-    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<(&'static str, f64)> {
+    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<Reading> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
         let (island, lane) = self.place[body];
         let time = self.time();
         self.islands[island].readings(lane, time)
+    }
+    pub(crate) fn node_pressures_here(&mut self, body: usize) -> Vec<(u32, f64)> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let time = self.time();
+        self.islands[island].node_pressures(lane, time)
     }
     pub(crate) fn cell_states_here(&self, body: usize) -> Vec<CellState> {
         if self.handle(body).is_none() {

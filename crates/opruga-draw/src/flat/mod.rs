@@ -9,8 +9,8 @@ mod shade;
 use crate::canvas::Canvas;
 use crate::error::DrawError;
 use crate::image::Image;
-use crate::marks::draw_marks;
-use crate::picture::Picture;
+use crate::marks::{draw_arrows, draw_marks};
+use crate::picture::{ArrowKind, ArrowPicture, Facets, Picture};
 use crate::view::View;
 
 /// The free border between what must be seen and the frame, as a share of the larger side.
@@ -67,17 +67,40 @@ pub(crate) fn scene(
     for collider in &picture.colliders {
         colliders::draw(&mut canvas, collider, &projection, unit);
     }
-    bodies::draw(&mut canvas, picture, view, &projection, unit);
     let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
-    draw_marks(&mut canvas, picture, view, background, unit, &project, &|_| true);
+    // What pushes outwards starts at the outline and lies beneath all bodies, so that no neighbour is covered.
+    let (beneath, above): (Vec<ArrowPicture>, Vec<ArrowPicture>) =
+        picture.arrows.iter().partition(|arrow| arrow.kind == ArrowKind::Pressure && leaves(picture, view, arrow));
+    draw_arrows(&mut canvas, &beneath, view, unit, &project, &|_| true);
+    bodies::draw(&mut canvas, picture, view, &projection, unit);
+    draw_marks(&mut canvas, (picture, &above), view, background, unit, &project, &|_| true);
     Ok((scene, projection.scale))
+}
+
+/// Whether an arrow leads from where it starts out of all bodies.
+fn leaves(picture: &Picture, view: &View, arrow: &ArrowPicture) -> bool {
+    // A small part of the arrow as it is drawn.
+    let share = 0.02 * view.arrow_scale(arrow.kind);
+    let point: [f64; 2] = std::array::from_fn(|axis| arrow.from[axis] + share * arrow.vector[axis]);
+    picture.bodies.iter().all(|body| {
+        let Facets::Edges(edges) = &body.facets else { return true };
+        let within = |axis: usize| {
+            let along = || body.positions.iter().map(|position| position[axis]);
+            along().any(|value| value <= point[axis]) && along().any(|value| value >= point[axis])
+        };
+        if !within(0) || !within(1) {
+            return true;
+        }
+        let at = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
+        edges.iter().filter(|[a, b]| loops::crosses(at(*a), at(*b), point)).count() % 2 == 0
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::colour::ColourMap;
-    use crate::picture::{AreaPicture, BodyPicture, ColliderPicture, Facets, Legend};
+    use crate::picture::{AreaPicture, BodyPicture, ColliderPicture, Legend};
 
     /// A square with a square hole, as an area.
     fn frame(colour: Option<[u8; 4]>) -> AreaPicture {

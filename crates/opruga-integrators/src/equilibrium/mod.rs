@@ -37,7 +37,7 @@ use crate::implicit::settings::{Settings, Solver, fields};
 use crate::implicit::step::{commit, report, same_bits_everywhere};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
+use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::nodes;
@@ -262,8 +262,8 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         }
         if obstacles { Ok(()) } else { rigid::refuse_free_motions(system) }
     }
-    fn readings(&self, system: &System<D>) -> Vec<(&'static str, f64)> {
-        vec![("load_factor", system.history.numbers[LOAD])]
+    fn readings(&self, system: &System<D>) -> Vec<Reading> {
+        vec![("load_factor".into(), system.history.numbers[LOAD])]
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)

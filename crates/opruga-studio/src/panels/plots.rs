@@ -5,6 +5,7 @@ use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, Plot, PlotPoints};
+use opruga::core::potential::Reading;
 use opruga::draw::OKABE_ITO;
 
 /// The most moments that are kept.
@@ -20,7 +21,7 @@ struct Moment {
     /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
     /// energy; not a number where the sides have it not in common.
     beside: Option<[f64; 5]>,
-    readings: Vec<(&'static str, f64)>,
+    readings: Vec<Reading>,
 }
 
 /// What was seen.
@@ -120,8 +121,8 @@ impl Plots {
             let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
             plot(ui, "energy", words.energy(), size, lines);
             if gas {
-                let names: Vec<&'static str> =
-                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| *name).collect());
+                let names: Vec<&str> =
+                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| &**name).collect());
                 // Volume and pressure differ in size: each is shown as a share of its largest value.
                 let share = |name: &str| {
                     let values: Vec<[f64; 2]> = self

@@ -116,7 +116,8 @@ impl Properties {
         });
         if !body.readings.is_empty() {
             let mut readings: Vec<String> = Vec::new();
-            for (name, x) in body.readings.iter().take(4) {
+            // Those of single chambers are in the table and in the colours.
+            for (name, x) in body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4) {
                 let unit = if *name == "pressure" {
                     " Pa"
                 } else if *name == "volume" {
