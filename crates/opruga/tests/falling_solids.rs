@@ -29,7 +29,7 @@ const FALLS: &[Fall] = &[
     Fall {
         name: "heart",
         dimension: 2,
-        body: "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.1, size = 1.0, filling = \"triangles\" }\nposition = [0.0, 1.0]\nvelocity = [0.5, -4.0]\n",
+        body: "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.1, size = 1.0, filling = \"triangles\" }\norder = 1\nposition = [0.0, 1.0]\nvelocity = [0.5, -4.0]\n",
         obstacles: FLOOR,
     },
     Fall {
@@ -47,13 +47,13 @@ const FALLS: &[Fall] = &[
     Fall {
         name: "spot",
         dimension: 3,
-        body: "shape = { kind = \"surface\", file = \"shapes/spot.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.12 }\nposition = [0.0, 1.0, 0.0]\nrotation = [0.0, 2.4, 0.0]\n",
+        body: "shape = { kind = \"surface\", file = \"shapes/spot.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.12 }\norder = 1\nposition = [0.0, 1.0, 0.0]\nrotation = [0.0, 2.4, 0.0]\n",
         obstacles: FLOOR,
     },
     Fall {
         name: "torus",
         dimension: 3,
-        body: "shape = { kind = \"surface\", file = \"shapes/torus.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.14 }\nposition = [0.3, 1.2, 0.0]\nrotation = [1.2, 0.0, 0.4]\n",
+        body: "shape = { kind = \"surface\", file = \"shapes/torus.obj\", size = 1.0, filling = \"tetrahedra\", spacing = 0.14 }\norder = 1\nposition = [0.3, 1.2, 0.0]\nrotation = [1.2, 0.0, 0.4]\n",
         obstacles: BALL,
     },
 ];

@@ -8,13 +8,13 @@
 //! | cell | points | locks |
 //! |---|---|---|
 //! | triangle, tetrahedron | 1 | in bending; near incompressibility: refused above ν = 0.45 |
-//! | quadrilateral, hexahedron | 2ᴰ; the part with λ sees the mean of F | in bending where they are few across |
+//! | quadrilateral, hexahedron | the mean of F, and the stiffness of bending and twisting | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Energies are the sum of a part with μ and a part with λ. In quadrilaterals and hexahedra the latter sees the mean
-//! deformation gradient of the cell (selective reduced integration, Malkus and Hughes 1978; with the mean of Flanagan and
-//! Belytschko 1981 instead of the centre, so that patches of any hexahedra are exact), but in plane stress, where nothing
-//! locks.
+//! Quadrilaterals and hexahedra give the law their mean deformation gradient (Flanagan and Belytschko 1981, so that patches of
+//! any cells are exact). What that does not see, bending and twisting of a cell, has the stiffness that assumed stresses give
+//! it at small strain (Pian and Sumihara 1984, Pian and Tong 1986), turned with the cell: see the files `hourglass` and
+//! `boxes`. A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
 //! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
 //! [`materials::Corotated`], [`materials::FixedCorotated`], [`materials::NeoHookean`], [`materials::StableNeoHookean`],
@@ -24,11 +24,14 @@
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
-//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
+//! Limits: the stiffness of bending cells does not change with their stretch but by A²; it matters less with every finer mesh.
+//! Energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod boxes;
 mod contraction;
 mod elements;
+mod hourglass;
 mod law;
 mod mass;
 pub mod material;
@@ -236,7 +239,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             law_in_space: law_in_space.map(|law| law()),
             positions,
             thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
-            selective: !self.stress,
+            plane_stress: self.stress,
             damped: self.damped,
         };
         built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
@@ -255,7 +258,9 @@ impl<'a, const D: usize> Builder<'a, D> {
         }
         let size = longest.sqrt();
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
-        for slopes in E::SLOPES {
+        // Boxes are looked at in the middle too.
+        let middle = E::BOX.then(|| E::at([0.0; 3]).1);
+        for slopes in E::SLOPES.iter().chain(&middle) {
             let (_, determinant) = rest_gradient(&rest, slopes);
             if !(determinant.is_finite() && determinant > least) {
                 let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
