@@ -325,8 +325,7 @@ pub(crate) fn wanted_forces<const D: usize>(
     contacting: &Contacting<D>,
     residual: &[f64],
     prescribed: Option<&[f64]>,
-    trial: &mut [f64],
-    right: &mut [f64],
+    [trial, right]: [&mut [f64]; 2],
 ) {
     each_block(threads, D, [&mut *trial], |first, [trial]| trial.copy_from_slice(&residual[first..][..trial.len()]));
     contacting.subtract_friction(trial);
@@ -381,7 +380,7 @@ fn find_direction<const D: usize>(
         linear.raise(part);
     }
     let ways = moves.then_some(&**prescribed);
-    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, trial, right);
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [&mut *trial, &mut *right]);
     let filter = Filter { free, projectors };
     filter.apply(right);
     let norm = dot(right, right).sqrt();

@@ -173,7 +173,7 @@ impl Task<'_> {
         let Room { kept, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, .. } = room;
         let mixture = self.mixture(system, mass);
         let ways = moves.then_some(&**prescribed);
-        wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, trial, right);
+        wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [trial, &mut *right]);
         let filter = Filter { free, projectors };
         each_block(system.threads, D, [&mut *right], |first, [right]| filter.apply_from(first / D, right));
         kept.hold(system.threads, linear, &filter, self.direct)?;
