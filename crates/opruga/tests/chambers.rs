@@ -1,5 +1,5 @@
 //! Bodies with more than one chamber of gas: each has readings and a colour of its own.
-#![allow(clippy::disallowed_methods)] // sines of the tests' own
+#![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 mod common;
 use common::*;
