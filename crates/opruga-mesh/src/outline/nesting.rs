@@ -42,11 +42,26 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
         }
         let area = ring.area();
         if ring.points.len() < 3 || area == 0.0 || !area.is_finite() {
+            // The halves of a figure of eight enclose as much as they take away: what is wrong is that they cross.
+            if area == 0.0
+                && !is_on_a_line(ring)
+                && let Some((parts, place)) = meeting(core::slice::from_ref(ring))
+            {
+                return Err(OutlineError::Meeting { parts, place });
+            }
             let place = ring.points.first().copied().unwrap_or([0.0; 2]);
             return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });
         }
     }
     Ok(())
+}
+
+/// Whether all points of a ring lie on one line.
+fn is_on_a_line(ring: &Ring) -> bool {
+    let Some(first) = ring.points.first() else { return true };
+    let way = |p: &[f64; 2]| [p[0] - first[0], p[1] - first[1]];
+    let Some(along) = ring.points.iter().map(way).find(|way| *way != [0.0; 2]) else { return true };
+    ring.points.iter().map(way).all(|way| along[0] * way[1] - along[1] * way[0] == 0.0)
 }
 
 /// The parts of the first two edges that meet, and about where.
