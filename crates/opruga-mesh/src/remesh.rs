@@ -109,7 +109,14 @@ impl Work {
             facet.iter().for_each(|node| fans[*node as usize].push(number as u32));
         }
         let triangles = mesh.facets.iter().copied().map(Some).collect();
-        let mut work = Work { positions: mesh.positions.clone(), groups, triangles, fans, sharp: BTreeMap::new(), held: Vec::new() };
+        let mut work = Work {
+            positions: mesh.positions.clone(),
+            groups,
+            triangles,
+            fans,
+            sharp: BTreeMap::new(),
+            held: Vec::new(),
+        };
         for edge in work.edges() {
             let normals = work.beside(edge).map(|[s, t]| [s, t].map(|k| work.normal_of(k).and_then(unit)));
             if let Some([Some(n), Some(m)]) = normals

@@ -34,7 +34,11 @@ pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
 pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     let all: Vec<&Ring> = rings.iter().collect();
     let made = numbered(contours(&all, FillRule::NonZero, false));
-    if nesting::meeting(&made).is_none() { made } else { touching::apart(&numbered(contours(&all, FillRule::NonZero, true))) }
+    if nesting::meeting(&made).is_none() {
+        made
+    } else {
+        touching::apart(&numbered(contours(&all, FillRule::NonZero, true)))
+    }
 }
 
 /// The rings of [`joined`], which may touch; with all points on their edges, or without those on straight lines.
