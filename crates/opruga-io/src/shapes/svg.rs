@@ -179,7 +179,7 @@ impl<'a, 'd> Reader<'a, 'd> {
                 let error = self.error(child, "svg.unsupported", "which language is meant is not known".into());
                 return Err(error.value("systemLanguage").hint("leave one element in the <switch>"));
             }
-            if !child.attribute("requiredExtensions").is_some_and(|value| !value.trim().is_empty()) {
+            if child.attribute("requiredExtensions").is_none_or(|value| value.trim().is_empty()) {
                 return Ok(Some(child));
             }
         }
