@@ -40,7 +40,7 @@ fn shapes_of_a_drawing_have_their_areas() {
 
 #[test]
 fn holes_follow_the_even_odd_rule_and_transforms_keep_areas() {
-    let ring = "<path d=\"M0 0h4v4h-4z M1 1h2v2h-2z\"/>";
+    let ring = "<path fill-rule=\"evenodd\" d=\"M0 0h4v4h-4z M1 1h2v2h-2z\"/>";
     assert!((area_of(ring) - 3.0).abs() < 1e-9);
     for transform in
         ["rotate(90)", "translate(5,-7)", "scale(-3,3)", "matrix(0 1 1 0 4 4)", "translate(1) rotate(180 3 4) scale(2)"]
@@ -176,7 +176,9 @@ fn deep_drawings_are_refused_and_large_ones_read() {
             format!("{:.6},{:.6} ", 100.0 * angle.cos(), 100.0 * angle.sin())
         })
         .collect();
-    assert!((area_of(&format!("<polygon points=\"{points}\"/>")) / PI - 1.0).abs() < 5e-3);
+    let (mesh, notices) = svg(&drawing(&format!("<polygon points=\"{points}\"/>"))).expect("a circle");
+    assert!((area(&mesh) / PI - 1.0).abs() < 5e-3);
+    assert_eq!(notices.iter().map(|n| n.about.code).collect::<Vec<_>>(), ["shape.thinned"]);
 }
 
 #[test]
@@ -187,9 +189,8 @@ fn parts_that_overlap_are_joined_where_the_scene_says_so() {
         plane(&shape, "a.svg", text.as_bytes()).map(|(mesh, _)| area(&mesh))
     };
     assert!((of("overlap = \"union\"").expect("a union") - 7.0).abs() < 1e-6);
-    // The two remaining parts touch at two corners, which no body may.
-    let error = of("overlap = \"even_odd\"").map(|a| assert!((a - 6.0).abs() < 1e-6));
-    assert!(error.is_ok() || error.is_err_and(|e| e[0].code == "shape.crossing" || e[0].code == "shape.spacing"));
+    // The two remaining parts touch at two corners, and are apart there.
+    assert!((of("overlap = \"even_odd\"").expect("two angles") - 6.0).abs() < 1e-6);
     let refused: SceneError = of("filling = \"triangles\"").expect_err("they cross")[0].clone();
     assert!(refused.hint.is_some_and(|hint| hint.contains("union")));
 }
@@ -403,7 +404,16 @@ fn letters_have_their_counters() {
     }
     let error = &text("日", "").expect_err("not in the font")[0];
     assert_eq!((error.code, error.value.as_deref(), error.line), ("font.no_glyph", Some("日"), Some(10)));
-    assert_eq!(text("   ", "").expect_err("no outline")[0].code, "shape.no_area");
+    for empty in ["", "   "] {
+        let error = &text(empty, "").expect_err("no outline")[0];
+        assert_eq!((error.code, error.line), ("shape.no_area", Some(10)), "{error}");
+        assert!(error.message.starts_with("the text"), "{error}");
+    }
+    // Letters that join, run from right to left, or are set onto others.
+    for script in ["سلام", "שלום", "नमस्ते", "e\\u0301"] {
+        let error = &text(script, "").expect_err(script)[0];
+        assert_eq!((error.code, error.line), ("font.script", Some(10)), "{error}");
+    }
     let cut =
         plane("kind = \"text\", file = \"f.otf\", text = \"a\", spacing = 0.1, size = 1.0", "f.otf", &FONT[..100]);
     assert_eq!(cut.expect_err("cut off")[0].code, "font.syntax");
@@ -456,7 +466,8 @@ fn bad_pictures_are_refused() {
         }
     }
     let white = picture(9, 9, |_, _| 255);
-    assert_eq!(plane(shape, "a.png", &white).expect_err("nothing dark")[0].code, "shape.no_area");
+    let error = &plane(shape, "a.png", &white).expect_err("nothing dark")[0];
+    assert_eq!((error.code, &error.message[..]), ("shape.no_area", "no pixel is more dark than the threshold"));
     // A header that promises 10¹⁰ pixels.
     let mut huge = good.clone();
     huge[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);

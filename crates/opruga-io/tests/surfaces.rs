@@ -27,7 +27,7 @@ fn obj() -> String {
     let mut text = String::from("# a cube\r\no cube\r\n");
     CORNERS.iter().for_each(|[x, y, z]| text += &format!("v {x} {y}\t{z}\r\n"));
     SQUARES.iter().for_each(|[a, b, c, d]| text += &format!("f {}/1 {}//1 {}/1/1 {}\r\n", a + 1, b + 1, c + 1, d + 1));
-    text
+    text + "vt 0 0\r\nvn 0 0 1\r\n"
 }
 
 fn stl_text() -> String {
@@ -632,7 +632,7 @@ fn surfaces_are_remeshed_to_a_length() {
     let (filled, _) =
         space(&format!("{shape}, remesh = 0.2, filling = \"lattice\", spacing = 0.5"), files).expect("filled");
     assert_eq!(filled.skin.as_ref().expect("a skin").carriers.len(), mesh.nodes());
-    let open = text.rsplit_once("f ").expect("a face").0;
+    let open = format!("{}vt 0 0\nvn 0 0 1\n", text.rsplit_once("f ").expect("a face").0);
     let files: &[(&str, &[u8])] = &[("a.obj", open.as_bytes())];
     let error = &space(&format!("{shape}, open = \"sheet\", remesh = 0.2"), files).expect_err("it is open")[0];
     assert!(error.code == "mesh.open" && error.to_string().contains("remesh"), "{error}");

@@ -2,7 +2,8 @@
 //!
 //! Rounds of four moves: edges that are too long are split, those that are too short collapse, edges are flipped toward six
 //! triangles at every node, and nodes move within the surface to the middle of their neighbours and back onto the surface
-//! that was given. No move opens the surface, turns a triangle over, or makes two edges of one.
+//! that was given. No move opens the surface, turns a triangle over, or makes two edges of one. Where moves together let
+//! the surface cross itself, those around the crossing are taken back.
 
 use crate::geometry::{cross, dot, norm, subtract};
 use crate::mesh::{limit_nodes, positive};
@@ -38,6 +39,7 @@ fn unit(v: Point) -> Option<Point> {
 }
 
 /// A surface whose triangles come and go.
+#[derive(Clone)]
 struct Work {
     positions: Vec<Point>,
     /// Node sets that each node belongs to, by number.
@@ -48,11 +50,14 @@ struct Work {
     fans: Vec<Vec<u32>>,
     /// Edges that stay: their ends keep to them.
     sharp: BTreeMap<Edge, ()>,
+    /// Nodes that neither move nor come nor go for now, ascending: where they did, the surface crossed itself.
+    held: Vec<u32>,
 }
 
 impl Mesh<3> {
     /// This closed surface with edges of about a wanted length [m]: between 0.6 and 1.45 of it for nearly all, where the shape
-    /// allows. Edges between triangles that meet at more than 40° stay edges, their corners stay where they are.
+    /// allows. Edges between triangles that meet at more than 40° stay edges, their corners stay where they are. A surface that does
+    /// not cross itself goes on so: where it would, its triangles stay smaller.
     ///
     /// Nodes are numbered anew. A group keeps its old nodes; a new node is in it where both ends of the edge are that it
     /// divides.
@@ -70,11 +75,13 @@ impl Mesh<3> {
         limit_nodes(self.remesh_estimate(length))?;
         let surface = Nearest::to(self);
         let mut work = Work::of(self);
+        // One that crosses itself as it is given may go on so.
+        let guarded = work.crossing().is_empty();
         for _ in 0..ROUNDS {
             work.split(LONG * length);
-            work.collapse(SHORT * length, LONG * length);
-            work.flip();
-            work.relax(&surface);
+            work.guard(guarded, |work| work.collapse(SHORT * length, LONG * length));
+            work.guard(guarded, Work::flip);
+            work.guard(guarded, |work| work.relax(&surface));
         }
         Ok(work.finish(self))
     }
@@ -102,7 +109,14 @@ impl Work {
             facet.iter().for_each(|node| fans[*node as usize].push(number as u32));
         }
         let triangles = mesh.facets.iter().copied().map(Some).collect();
-        let mut work = Work { positions: mesh.positions.clone(), groups, triangles, fans, sharp: BTreeMap::new() };
+        let mut work = Work {
+            positions: mesh.positions.clone(),
+            groups,
+            triangles,
+            fans,
+            sharp: BTreeMap::new(),
+            held: Vec::new(),
+        };
         for edge in work.edges() {
             let normals = work.beside(edge).map(|[s, t]| [s, t].map(|k| work.normal_of(k).and_then(unit)));
             if let Some([Some(n), Some(m)]) = normals
@@ -112,6 +126,52 @@ impl Work {
             }
         }
         work
+    }
+
+    /// Does moves that add no nodes, without those that let the surface cross itself: they are done again with the nodes of
+    /// crossing triangles held, and with those around them, until nothing crosses.
+    fn guard(&mut self, guarded: bool, moves: impl Fn(&mut Work)) {
+        let before = guarded.then(|| self.clone());
+        moves(self);
+        let Some(before) = before else { return };
+        let mut held: Vec<u32> = Vec::new();
+        loop {
+            let crossing = self.crossing();
+            if crossing.is_empty() {
+                break;
+            }
+            let known = held.len();
+            held.extend(crossing);
+            held.sort_unstable();
+            held.dedup();
+            if held.len() == known {
+                // What crosses is held already: what lies around it moved.
+                let around: Vec<u32> = held.iter().flat_map(|node| before.neighbours(*node)).collect();
+                held.extend(around);
+                held.sort_unstable();
+                held.dedup();
+                if held.len() == known {
+                    *self = before;
+                    break;
+                }
+            }
+            self.clone_from(&before);
+            self.held.clone_from(&held);
+            moves(self);
+        }
+        self.held.clear();
+    }
+
+    /// Nodes of triangles that cross, touch or overlap others.
+    fn crossing(&self) -> Vec<u32> {
+        let facets = self.triangles.iter().copied().flatten().collect();
+        let mesh = Mesh::<3> { positions: self.positions.clone(), facets, ..Mesh::default() };
+        let pairs = mesh.crossing_facets().pairs;
+        pairs.iter().flatten().flat_map(|facet| mesh.facets[*facet as usize]).collect()
+    }
+
+    fn is_held(&self, node: u32) -> bool {
+        self.held.binary_search(&node).is_ok()
     }
 
     fn at(&self, node: u32) -> Point {
@@ -219,7 +279,7 @@ impl Work {
         let mut edges: Vec<Edge> = self.edges().into_iter().filter(|e| self.length(*e) < short).collect();
         edges.sort_by(|e, f| self.length(*e).total_cmp(&self.length(*f)).then(e.cmp(f)));
         for [a, b] in edges {
-            if self.beside([a, b]).is_none() || self.length([a, b]) >= short {
+            if self.beside([a, b]).is_none() || self.length([a, b]) >= short || self.is_held(a) || self.is_held(b) {
                 continue;
             }
             // Who is bound more stays where it is.
@@ -298,7 +358,7 @@ impl Work {
     /// Flips edges where that brings their four nodes nearer to six neighbours.
     fn flip(&mut self) {
         for [a, b] in self.edges() {
-            if self.sharp.contains_key(&[a, b]) {
+            if self.sharp.contains_key(&[a, b]) || self.is_held(a) || self.is_held(b) {
                 continue;
             }
             let Some([s, t]) = self.beside([a, b]) else { continue };
@@ -344,7 +404,7 @@ impl Work {
     fn relax(&mut self, surface: &Nearest) {
         for node in 0..self.positions.len() as u32 {
             let fan = self.fans[node as usize].clone();
-            if fan.is_empty() || self.sharpness(node) > 0 {
+            if fan.is_empty() || self.sharpness(node) > 0 || self.is_held(node) {
                 continue;
             }
             let around = self.neighbours(node);

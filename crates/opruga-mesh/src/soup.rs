@@ -269,6 +269,32 @@ impl Mesh<3> {
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
     }
 
+    /// Nodes of a closed surface at which parts of it hang together that share no edge there, ascending.
+    pub fn pinched_nodes(&self) -> Vec<u32> {
+        // Around a node every facet leads from one neighbour to another; one round through all of them leaves nothing.
+        let mut ways: Vec<[u32; 3]> = Vec::with_capacity(3 * self.facets.len());
+        for [a, b, c] in &self.facets {
+            ways.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+        }
+        ways.sort_unstable();
+        let mut pinched = Vec::new();
+        for around in ways.chunk_by(|p, q| p[0] == q[0]) {
+            let mut at = around[0][1];
+            let mut steps = 0;
+            while let Ok(place) = around.binary_search_by_key(&at, |way| way[1]) {
+                at = around[place][2];
+                steps += 1;
+                if at == around[0][1] || steps > around.len() {
+                    break;
+                }
+            }
+            if steps != around.len() {
+                pinched.push(around[0][0]);
+            }
+        }
+        pinched
+    }
+
     /// Volume that the facets enclose [m³], positive for outward ones.
     pub fn enclosed_volume(&self) -> f64 {
         signed_volume(&self.facets, &self.positions)

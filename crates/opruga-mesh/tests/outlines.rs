@@ -166,6 +166,134 @@ fn joined_parts_cover_what_they_should() {
     assert_eq!(odd.len(), 2);
 }
 
+fn ring(points: &[[f64; 2]]) -> Ring {
+    Ring { points: points.to_vec(), part: 0 }
+}
+
+/// The rings as they bound a body, whose area must be what is wanted, also where triangles fill it.
+fn body_of(rings: &[Ring], how: Overlap, wanted: f64, pieces: usize) -> Vec<Ring> {
+    let mut made = outline::joined(rings, how);
+    outline::nest(&mut made).expect("rings that meet nowhere");
+    assert!((total(&made) / wanted - 1.0).abs() < 1e-8, "{how:?}: {} instead of {wanted}", total(&made));
+    let mesh = outline::skin(&made).expect("a skin");
+    assert_eq!(mesh.chambers().expect("closed").len(), pieces, "{how:?}");
+    let (low, high) = outline::bounds(&made).expect("points");
+    let spacing = 0.05 * (high[0] - low[0]);
+    let coarse = outline::resampled(&made, spacing).expect("equal edges");
+    for rings in [&made, &coarse] {
+        let (filling, quality) = outline::filled(rings, spacing).expect("a filling");
+        let area = filling.measure().expect("an area").value();
+        assert!((area / total(rings) - 1.0).abs() < 1e-9, "{how:?}: {area} instead of {}", total(rings));
+        assert!(quality.complete && quality.smallest_angle > 0.1, "{quality:?}");
+        assert_eq!(filling.chambers().expect("closed").len(), pieces, "{how:?}");
+    }
+    made
+}
+
+#[test]
+fn a_pentagram_has_the_area_of_its_tips_or_of_the_whole_star() {
+    let points: Vec<[f64; 2]> =
+        (0..5).map(|k| TAU * (0.25 + 0.4 * f64::from(k))).map(|a| [3.0 + a.cos(), 5.0 + a.sin()]).collect();
+    let star = [ring(&points)];
+    // The inner pentagon has a radius of φ⁻².
+    let inner = ((3.0 - 5f64.sqrt()) / 2.0, 72f64.to_radians());
+    let whole = 5.0 * inner.0 * 36f64.to_radians().sin();
+    let tips = whole - 2.5 * inner.0 * inner.0 * inner.1.sin();
+    // By itself a part follows the even-odd rule, whatever the parts do to one another.
+    body_of(&star, Overlap::EvenOdd, tips, 5);
+    body_of(&star, Overlap::Union, tips, 5);
+    let wound = outline::wound(&star);
+    assert!(wound.len() == 1 && (total(&wound) / whole - 1.0).abs() < 1e-8, "{}", total(&wound));
+}
+
+#[test]
+fn two_discs_leave_two_crescents_or_one_silhouette() {
+    let mut discs = [circle([0.0, 0.0], 1.0, 4000), circle([1.0, 0.0], 1.0, 4000)];
+    discs[1].part = 1;
+    let lens = 2.0 * PI / 3.0 - 0.75f64.sqrt();
+    let disc = discs[0].area();
+    assert!((disc / PI - 1.0).abs() < 1e-6);
+    let near = |rings: &[Ring], wanted: f64| assert!((total(rings) / wanted - 1.0).abs() < 2e-6, "{}", total(rings));
+    for (how, wanted, pieces) in [(Overlap::EvenOdd, 2.0 * (PI - lens), 2), (Overlap::Union, 2.0 * PI - lens, 1)] {
+        let mut made = outline::joined(&discs, how);
+        outline::nest(&mut made).expect("rings that meet nowhere");
+        near(&made, wanted);
+        let coarse = outline::resampled(&made, 0.05).expect("equal edges");
+        let (filling, _) = outline::filled(&coarse, 0.05).expect("a filling");
+        assert_eq!(filling.chambers().expect("closed").len(), pieces);
+        assert!((filling.measure().expect("an area").value() / wanted - 1.0).abs() < 2e-3);
+    }
+}
+
+#[test]
+fn bow_ties_and_figures_of_eight_are_two_bodies() {
+    let uneven = [ring(&[[0.0, 0.0], [8.0, 8.0], [8.0, 2.0], [0.0, 8.0]])];
+    let even = [ring(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])];
+    assert_eq!(even[0].area(), 0.0, "its halves run opposite ways");
+    for how in [Overlap::EvenOdd, Overlap::Union] {
+        body_of(&uneven, how, 200.0 / 7.0, 2);
+        body_of(&even, how, 2.0, 2);
+    }
+    let mut crossing = even.to_vec();
+    assert!(matches!(outline::nest(&mut crossing), Err(OutlineError::Meeting { .. })));
+}
+
+#[test]
+fn areas_that_touch_in_points_are_apart() {
+    let at_a_corner = [square(0.0, 1.0, 0), square(1.0, 2.0, 1)];
+    let at_a_side = [square(0.0, 1.0, 0), Ring { part: 1, ..ring(&[[1.0, 0.5], [2.0, 0.0], [2.0, 1.0]]) }];
+    // A hole that touches its outline opens it; one that touches it twice cuts it in two.
+    let hole = [square(0.0, 4.0, 0), ring(&[[4.0, 2.0], [2.0, 3.0], [2.0, 1.0]])];
+    let diamond = [square(0.0, 4.0, 0), ring(&[[4.0, 2.0], [2.0, 3.0], [0.0, 2.0], [2.0, 1.0]])];
+    for how in [Overlap::EvenOdd, Overlap::Union] {
+        let apart = body_of(&at_a_corner, how, 2.0, 2);
+        let (a, b) = (&apart[0].points, &apart[1].points);
+        let far = |p: &[f64; 2], q: &[f64; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();
+        let least = a.iter().flat_map(|p| b.iter().map(move |q| far(p, q))).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.0 && least < 3e-9, "{least}");
+        body_of(&at_a_side, how, 1.5, 2);
+        assert_eq!(body_of(&hole, how, 14.0, 1).len(), 1);
+        body_of(&diamond, how, 12.0, 2);
+    }
+}
+
+/// How much of a horizontal line lies inside rings by the even-odd rule.
+fn covered(rings: &[Ring], y: f64) -> f64 {
+    let mut crossings = Vec::new();
+    for ring in rings {
+        for (k, a) in ring.points.iter().enumerate() {
+            let b = ring.points[(k + 1) % ring.points.len()];
+            if (a[1] > y) != (b[1] > y) {
+                crossings.push(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+            }
+        }
+    }
+    crossings.sort_by(f64::total_cmp);
+    crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Corners on a small grid touch and cross in all ways: what is left bounds the same inside and is filled.
+    #[test]
+    fn whatever_crosses_is_joined(places in proptest::collection::vec((0i8..6, 0i8..6), 3..16), line in 0.01f64..0.99) {
+        let rings = [ring(&places.iter().map(|(x, y)| [f64::from(*x), f64::from(*y)]).collect::<Vec<_>>())];
+        let mut made = outline::joined(&rings, Overlap::EvenOdd);
+        for row in 0..6 {
+            let y = f64::from(row) + line;
+            prop_assert!((covered(&made, y) - covered(&rings, y)).abs() < 1e-6, "at {}", y);
+        }
+        if made.is_empty() {
+            return Ok(());
+        }
+        prop_assert_eq!(outline::nest(&mut made).map(|_| ()), Ok(()));
+        prop_assert!(outline::skin(&made).expect("a skin").chambers().is_ok());
+        let (filling, _) = outline::filled(&made, 1.0).expect("a filling");
+        prop_assert!((filling.measure().expect("an area").value() / total(&made) - 1.0).abs() < 1e-8);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -100,3 +100,22 @@ fn groups_stay_where_they_are_and_bad_lengths_are_refused() {
     cube.facets.pop();
     assert!(cube.remeshed(0.2).is_err(), "it is open");
 }
+
+/// Spot, 1.5 m large: its horns and ears are finer than the longer edges, its legs than the longest.
+#[test]
+fn coarse_triangles_do_not_let_a_fine_surface_cross_itself() {
+    let mut spot = spot();
+    let (low, high) = spot.bounds();
+    let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+    spot.positions.iter_mut().flatten().for_each(|x| *x *= 1.5 / extent);
+    for (length, drift) in [(0.03, 0.01), (0.045, 0.02), (0.05, 0.02), (0.1, 0.07), (0.3, 0.4)] {
+        let made = spot.remeshed(length).expect("closed");
+        let volume = made.enclosed_volume() / spot.enclosed_volume();
+        println!("{length}: {} nodes, volume {volume:.4}, {:.3}", made.nodes(), part_between(&made, length, 0.6, 1.45));
+        assert_eq!(made.check(), [], "{length}");
+        assert_eq!(made.euler_characteristic(), 2, "{length}");
+        assert_eq!(made.components().expect("closed").len(), 1, "{length}");
+        assert_eq!(made.crossing_facets().pairs, Vec::<[u32; 2]>::new(), "{length}");
+        assert!((volume - 1.0).abs() < drift, "{length}: {volume}");
+    }
+}

@@ -313,3 +313,20 @@ fn many_triangles_are_compared_in_little_time() {
     // A second for a million on an idle processor; busy machines take a few times as long.
     assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
 }
+
+#[test]
+fn cubes_that_share_a_vertex_are_pinched_there() {
+    let cube = Mesh::box_surface([0.0; 3], [1.0; 3], [2, 2, 2]).expect("a box");
+    assert_eq!(cube.pinched_nodes(), Vec::<u32>::new());
+    let n = cube.nodes() as u32;
+    let mut two = cube.clone();
+    two.positions.extend(cube.positions.iter().map(|p| p.map(|x| x + 1.0)));
+    two.facets.extend(cube.facets.iter().map(|facet| facet.map(|node| node + n)));
+    assert_eq!(two.pinched_nodes(), Vec::<u32>::new(), "each has a corner of its own");
+    let (mut positions, mut facets) = (two.positions.clone(), two.facets.clone());
+    assert_eq!(opruga_mesh::weld(&mut positions, &mut facets, 0.0), Ok(1));
+    let shared = Mesh::<3> { positions, facets, ..Mesh::default() };
+    let pinched = shared.pinched_nodes();
+    assert_eq!(pinched.iter().map(|node| shared.positions[*node as usize]).collect::<Vec<_>>(), [[1.0; 3]]);
+    assert!(shared.crossing_facets().pairs.is_empty(), "nothing else tells");
+}

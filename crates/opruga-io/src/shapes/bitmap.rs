@@ -14,16 +14,23 @@ const MOST_PIXELS: u64 = 1 << 26;
 /// Reads a PNG picture.
 ///
 /// # Errors
-/// `png.syntax`, and `shape.too_large` before the pixels are read.
+/// `png.syntax`, `shape.too_large` before the pixels are read, `shape.no_area` where none of them is inside.
 pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, SceneError> {
-    let grid = pixels(bytes, shape.text("inside").unwrap_or("dark"))?;
+    let inside = shape.text("inside").unwrap_or("dark");
+    let grid = pixels(bytes, inside)?;
     let threshold = shape.number("threshold").unwrap_or(0.5);
     let mut curves = Curves::default();
     for contour in contours(&grid, threshold) {
         curves.polygon(&contour);
     }
-    let (places, painted, notices) = (Vec::new(), Vec::new(), Vec::new());
-    Ok(Drawing { curves, y_down: true, source: None, places, painted, notices })
+    let most = grid.values.iter().fold(0.0, |most: f32, x| if *x > most { *x } else { most });
+    if f64::from(most) <= threshold {
+        let error = SceneError::new("shape.no_area", format!("no pixel is more {inside} than the threshold"));
+        let error = error.value(format!("at most {most:.3}")).allowed(format!("pixels above {threshold}"));
+        return Err(error.hint("take a smaller `threshold`, or another `inside`: dark, bright or opaque"));
+    }
+    let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves, y_down: true, source: None, places, painted, rules, notices })
 }
 
 /// Values from 0 to 1, with a border of zeros.

@@ -128,6 +128,12 @@ impl Curves {
         }));
     }
 
+    /// How many points are joined by straight lines.
+    pub(super) fn corners(&self) -> usize {
+        let lines = |contour: &Contour| contour.segments.iter().filter(|s| matches!(s, Segment::Line(_))).count();
+        self.contours.iter().map(lines).sum()
+    }
+
     /// The larger side of the box around all points and control points.
     pub(super) fn extent(&self) -> f64 {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -1,6 +1,7 @@
 //! From the curves of a drawing to rings of the wanted size and spacing.
 
 use super::curves::{Curves, larger};
+use super::rules::{self, Rule};
 use super::{Content, Loaded, Problem};
 use crate::problem::SceneError;
 use crate::source::Source;
@@ -12,6 +13,9 @@ use opruga_mesh::{Mesh, MeshError};
 /// Curves are followed within this part of the spacing.
 const TOLERANCE: f64 = 0.002;
 
+/// An outline that has so many times more points in its file than nodes loses detail that one may look for.
+const THINNED: usize = 4;
+
 /// What a reader found.
 pub(super) struct Drawing<'a> {
     pub(super) curves: Curves,
@@ -22,6 +26,8 @@ pub(super) struct Drawing<'a> {
     pub(super) places: Vec<(usize, usize)>,
     /// The colours of the parts, if they are wanted: red, green, blue, opacity.
     pub(super) painted: Vec<Option<[u8; 4]>>,
+    /// By which rule each part is filled; the even-odd rule where this is silent and nothing else is usual.
+    pub(super) rules: Vec<Rule>,
     pub(super) notices: Vec<SceneError>,
 }
 
@@ -94,6 +100,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         return Err(error.allowed("outlines that enclose area, of an extent from 1e-150 to 1e150").into());
     }
     let mut rings = drawing.curves.flatten(TOLERANCE * spacing * extent / size);
+    drawing.notices.extend(rules::follow(&mut rings, &drawing.rules));
     let mut painted = painted(&drawing.painted, &rings);
 
     // Strokes and points enclose nothing.
@@ -115,6 +122,8 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         drawing.notices.extend(told_of_overlap(&rings, &together, how).filter(|_| painted.is_empty()));
         rings = together;
     }
+    // What is left of borders that nearly coincide.
+    rings.retain(|ring| ring.area().abs() > 1e-12 * extent * extent || shape.text("overlap") == Some("refuse"));
     let mut rings = place(rings, &mut painted, &drawing, shape)?;
 
     let least = shape.number("drop_below").unwrap_or(0.0);
@@ -140,10 +149,12 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         }
         _ => Inside::Nothing,
     };
+    let given = if drawing.source.is_some() { drawing.curves.corners() } else { 0 };
     let rings = outline::resampled(&rings, spacing).map_err(|e| {
         let hint = "take a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`";
         Problem::new("spacing", refused(&e).value(spacing.to_string()).hint(hint))
     })?;
+    drawing.notices.extend(thinned(given, &rings, spacing));
     let outline = Outline { rings, inside, painted };
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
 }
@@ -194,6 +205,16 @@ fn changed(rings: &[Ring], together: &[Ring]) -> usize {
     rings.iter().filter(|ring| !is_kept(ring)).count()
 }
 
+/// That most points of an outline are left out, as the spacing of its nodes wants it.
+fn thinned(given: usize, rings: &[Ring], spacing: f64) -> Option<SceneError> {
+    let nodes: usize = rings.iter().map(|ring| ring.points.len()).sum();
+    (given > THINNED * nodes).then(|| {
+        let message = format!("{given} points of the file become {nodes} nodes, {spacing} m apart");
+        let hint = "a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it";
+        SceneError::new("shape.thinned", message).value(given.to_string()).hint(hint)
+    })
+}
+
 /// The parts of a drawing that have a colour, in the order in which they are painted.
 fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
     let mut all: Vec<Painted> = colours.iter().map(|c| Painted { rings: Vec::new(), colour: *c }).collect();
@@ -214,13 +235,7 @@ fn place(
     shape: &Values,
 ) -> Result<Vec<Ring>, Problem> {
     outline::nest(&mut rings).map_err(|e| match &e {
-        // What was joined belongs to no part of the drawing any more.
-        OutlineError::Meeting { .. } if shape.text("overlap") != Some("refuse") => {
-            let hint = "areas that meet in a point make no body: let them overlap there, or move them apart";
-            let error = refused(&e).hint(hint);
-            if drawing.places.len() == 1 { drawing.at(0, error).into() } else { error.into() }
-        }
-        OutlineError::Meeting { parts, .. } => {
+        OutlineError::Meeting { parts, .. } if shape.text("overlap") == Some("refuse") => {
             let hint = "`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses";
             Problem::from(drawing.at(parts[1], refused(&e).hint(hint)))
         }

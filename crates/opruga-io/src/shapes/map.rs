@@ -5,6 +5,7 @@
 
 use super::curves::{Curves, Point, larger, smaller};
 use super::drawing::Drawing;
+use super::globe::{self, Polygon};
 use super::json::{Raw, parse, refuse, span};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -55,22 +56,27 @@ struct Reader<'a, 's> {
     wanted: Option<&'s str>,
     /// The arcs of a topology, in degrees.
     arcs: Option<Vec<Vec<Point>>>,
-    polygons: Vec<(Vec<Vec<Point>>, Raw<'a>)>,
+    polygons: Vec<(Polygon, Raw<'a>)>,
     names: Vec<String>,
+    /// Objects that the scene's name means.
+    meant: usize,
     /// Points and lines, which have no area.
     others: usize,
+    /// Features and geometries that are null.
+    empty: usize,
 }
 
 /// Reads a map: the feature that the scene names, or all of them.
 ///
 /// # Errors
-/// `json.syntax`, `map.syntax`, `map.arc`, `map.range`, `map.unknown_feature`, `map.unknown_layer`, with line and column.
+/// `json.syntax`, `map.syntax`, `map.arc`, `map.hole`, `map.range`, `map.unknown_feature`, `map.unknown_layer`, with line and column.
 pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Drawing<'a>, SceneError> {
     let text = source.text;
     let raw: Raw<'_> = parse(source, text)?;
     let top: Object<'_> = parse(source, raw.get())?;
     let wanted = shape.text("feature");
-    let mut reader = Reader { source, wanted, arcs: None, polygons: Vec::new(), names: Vec::new(), others: 0 };
+    let mut reader =
+        Reader { source, wanted, arcs: None, polygons: Vec::new(), names: Vec::new(), meant: 0, others: 0, empty: 0 };
     if top.kind == "Topology" {
         let topology: Topology<'_> = parse(source, raw.get())?;
         reader.arcs = Some(arcs(source, &topology)?);
@@ -86,6 +92,10 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
     if reader.polygons.is_empty() {
         return Err(reader.nothing(raw));
     }
+    let laid_out = match shape.text("projection") {
+        Some("none") => globe::LaidOut::default(),
+        _ => globe::lay_out(&mut reader.polygons, reader.arcs.is_some()),
+    };
     let mut curves = Curves::default();
     let mut places = Vec::new();
     let project = projection(source, &reader.polygons, shape)?;
@@ -102,7 +112,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
         let message = format!("{} left out", counted(reader.others as u64, "point or line is", "points and lines are"));
         notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
     }
-    Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), notices })
+    notices.extend(reader.told(&laid_out));
+    Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), rules: Vec::new(), notices })
 }
 
 /// The arcs of a topology, in degrees.
@@ -174,10 +185,13 @@ impl<'a> Reader<'a, '_> {
             return Err(refuse(self.source, &raw.get()[..1], error.allowed(format!("at most {DEEPEST} levels"))));
         }
         if raw.get() == "null" {
+            self.empty += usize::from(taken);
             return Ok(());
         }
         let object: Object<'a> = parse(self.source, raw.get())?;
-        let taken = taken || self.is_wanted(&object);
+        let meant = self.wanted.is_some() && self.is_wanted(&object);
+        self.meant += usize::from(meant && !taken);
+        let taken = taken || meant;
         match object.kind.as_str() {
             "FeatureCollection" => {
                 for feature in object.features.unwrap_or_default() {
@@ -189,11 +203,10 @@ impl<'a> Reader<'a, '_> {
                     self.object(geometry, taken, depth + 1)?;
                 }
             }
-            "Feature" => {
-                if let Some(geometry) = object.geometry {
-                    self.object(geometry, taken, depth + 1)?;
-                }
-            }
+            "Feature" => match object.geometry {
+                Some(geometry) => self.object(geometry, taken, depth + 1)?,
+                None => self.empty += usize::from(taken),
+            },
             "Polygon" | "MultiPolygon" if !taken => {}
             "Polygon" => {
                 let rings = self.rings(raw, &object)?;
@@ -283,7 +296,49 @@ impl<'a> Reader<'a, '_> {
             points.pop();
             out.push(points);
         }
+        if let Some((outer, holes)) = out.split_first()
+            && let Some(k) = holes.iter().position(|hole| !hole.iter().any(|p| encloses(outer, *p)))
+            && self.checks_holes(outer)
+        {
+            let error = SceneError::new("map.hole", format!("hole {} lies outside of its polygon", k + 1));
+            let at = holes[k].first().map_or(String::new(), |p| format!("{}, {}", p[0], p[1]));
+            let error = error.value(at).allowed("holes inside of the first ring of a polygon");
+            return Err(refuse(self.source, geometry.get(), error.hint("islands are polygons of their own")));
+        }
         Ok(out)
+    }
+
+    /// Whether holes can be told from islands: not yet where a ring steps over the antimeridian.
+    fn checks_holes(&self, outer: &[Point]) -> bool {
+        outer.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() < 180.0)
+    }
+
+    /// What was done that the map does not say by itself.
+    fn told(&self, done: &globe::LaidOut) -> Vec<SceneError> {
+        let mut told = Vec::new();
+        let mut tell = |count: usize, code, [one, many]: [&str; 2]| {
+            if count > 0 {
+                let message = format!("{count} {}", if count == 1 { one } else { many });
+                told.push(SceneError::new(code, message).value(count.to_string()));
+            }
+        };
+        tell(self.empty, "map.empty", ["feature has no geometry", "features have no geometry"]);
+        let over = [
+            "outline crosses the antimeridian and is in one piece",
+            "outlines cross the antimeridian and are in one piece",
+        ];
+        tell(done.over, "map.antimeridian", over);
+        let cut = ["", "polygons that were cut along the antimeridian are one again"];
+        tell(done.cut, "map.antimeridian", cut);
+        let beside = ["polygon is moved by 360° beside the others", "polygons are moved by 360° beside the others"];
+        tell(done.beside, "map.antimeridian", beside);
+        let polar = ["outline around a pole is cut along the antimeridian and closed along the pole"; 2];
+        tell(done.polar, "map.pole", polar);
+        if let (2.., Some(name)) = (self.meant, self.wanted) {
+            let message = format!("{} features belong to `{}` and are read together", self.meant, visible(name));
+            told.push(SceneError::new("map.features", message).value(self.meant.to_string()));
+        }
+        told
     }
 
     /// Why no polygon was found.
@@ -299,10 +354,22 @@ impl<'a> Reader<'a, '_> {
     }
 }
 
+/// Whether a point lies inside of a ring: an odd number of edges cross the ray to its right.
+fn encloses(ring: &[Point], point: Point) -> bool {
+    let mut inside = false;
+    for (k, a) in ring.iter().enumerate() {
+        let b = ring[(k + 1) % ring.len()];
+        if (a[1] > point[1]) != (b[1] > point[1]) {
+            inside ^= a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > point[0];
+        }
+    }
+    inside
+}
+
 /// From degrees to the plane; the middle of the polygons keeps its proportions.
 fn projection(
     source: &Source<'_>,
-    polygons: &[(Vec<Vec<Point>>, Raw<'_>)],
+    polygons: &[(Polygon, Raw<'_>)],
     shape: &Values,
 ) -> Result<Box<dyn Fn(Point) -> Point>, SceneError> {
     let kind = shape.text("projection").unwrap_or("equirectangular");

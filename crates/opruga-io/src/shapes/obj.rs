@@ -1,7 +1,8 @@
 //! Wavefront OBJ: vertices and polygons, line by line.
 //!
 //! Read are `v`, `f` (polygons as fans; indices from 1, or negative from the end), `o` and `g` (groups of vertices). `vt`, `vn`, `vp`, `s`, `usemtl`,
-//! `mtllib` and comments carry nothing for a body; lines and points (`l`, `p`) are counted and left out; all else is refused.
+//! `mtllib` and comments carry nothing for a body, but the `vt` and `vn` that faces name must be there; lines and points (`l`, `p`), and weights of
+//! vertices, are counted and left out; all else is refused.
 //!
 //! # Source
 //! Wavefront Technologies, Object Files, version 3.0.
@@ -26,7 +27,10 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
     let mut found = Triangles::default();
     let (mut faces, mut corners, mut names): (Vec<Face>, Vec<i64>, Vec<String>) = Default::default();
     let mut group = None;
-    let mut strokes = 0usize;
+    let (mut strokes, mut weighed) = (0usize, 0usize);
+    // How many `vt` and `vn` there are, and the largest that a face names with its place.
+    let mut extras = [0i64; 2];
+    let mut largest = [(0i64, 0usize, 0usize); 2];
     let mut start = 0;
     for line in source.text.split_inclusive('\n') {
         let here = start;
@@ -54,9 +58,12 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                     let error = SceneError::new("obj.syntax", "a vertex has more than seven numbers");
                     return Err(refuse(more[4], error).allowed("v x y z, with a weight or a colour"));
                 }
+                let mut numbers = Vec::with_capacity(more.len());
                 for part in more {
-                    number(part).map_err(|e| refuse(part, e))?;
+                    numbers.push(number(part).map_err(|e| refuse(part, e))?);
                 }
+                // Three more numbers are a colour.
+                weighed += usize::from(numbers.len() % 3 == 1 && numbers[0] != 1.0);
                 found.positions.push(position);
             }
             "f" => {
@@ -75,6 +82,22 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                         return Err(refuse(part, error).allowed(format!("1 to {count}, or -{count} to -1")));
                     }
                     corners.push(if index < 0 { count + index } else { index - 1 });
+                    for (k, text) in part.split('/').skip(1).enumerate() {
+                        if text.is_empty() && k < 2 {
+                            continue;
+                        }
+                        let index = text.parse::<i64>().ok().filter(|index| k < 2 && *index != 0);
+                        let Some(index) = index else {
+                            let error = SceneError::new("obj.syntax", "a corner of a face is no whole number");
+                            return Err(refuse(part, error).allowed("v, v/vt, v//vn or v/vt/vn"));
+                        };
+                        // Those before the first cannot come any more.
+                        let wanted = if index < -extras[k] { i64::MAX } else { index };
+                        if wanted > largest[k].0 {
+                            let from = here + (part.as_ptr() as usize - line.as_ptr() as usize);
+                            largest[k] = (wanted, from, from + part.len());
+                        }
+                    }
                 }
                 faces.push(Face { line: here as u32, corners: (from, corners.len()), group });
             }
@@ -88,7 +111,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 });
             }
             "l" | "p" => strokes += 1,
-            "vt" | "vn" | "vp" | "s" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
+            "vt" => extras[0] += 1,
+            "vn" => extras[1] += 1,
+            "vp" | "s" | "usemtl" | "mtllib" | "usemap" | "maplib" => {}
             _ => {
                 let error =
                     SceneError::new("obj.syntax", format!("`{}` is no statement that is read here", visible(word)));
@@ -102,6 +127,25 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
             format!("{} left out", counted(strokes as u64, "line or point is", "lines and points are")),
         );
         found.notices.push(notice.value(strokes.to_string()));
+    }
+    if weighed > 0 {
+        let what = if weighed == 1 { "vertex has a weight" } else { "vertices have weights" };
+        let message = format!("{weighed} {what} other than 1, which triangles do not have");
+        found.notices.push(SceneError::new("obj.weight", message).value(weighed.to_string()));
+    }
+    for (k, name) in ["vt", "vn"].into_iter().enumerate() {
+        let (index, from, to) = largest[k];
+        if index > extras[k] {
+            let error = SceneError::new("mesh.index", format!("a face names a `{name}` that is not there"));
+            let error = source.mark(error, from, to).value(visible(&source.text[from..to]));
+            let count = extras[k];
+            let allowed = if count == 0 {
+                format!("no `{name}`: the file has none")
+            } else {
+                format!("1 to {count}, or -{count} to -1")
+            };
+            return Err(error.allowed(allowed));
+        }
     }
     let mut lines = Vec::with_capacity(faces.len());
     let mut groups: Vec<Vec<u32>> = vec![Vec::new(); names.len()];

@@ -1,6 +1,7 @@
 //! STL: triangles with corners of their own, as text or as bytes.
 //!
-//! A file is binary where its size is the one that its header promises, or where it cannot be a text. The normals of the file are passed over: the corners tell the side.
+//! A file is binary where its size is the one that its header promises, or where it cannot be a text. The corners tell the side of a triangle; normals of
+//! the file that are no numbers or say otherwise are counted.
 //! Vertices at the same place are joined, since the format cannot say that triangles share them.
 //!
 //! # Source
@@ -55,6 +56,7 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
     let mut found = Triangles { soup: true, places: Places::Bytes { first: HEAD, each: EACH }, ..Triangles::default() };
     found.positions.reserve_exact(3 * count);
     found.triangles.reserve_exact(count);
+    let mut normals = Normals::default();
     for (k, record) in bytes[HEAD..].chunks_exact(EACH).enumerate() {
         for (corner, field) in record[12..48].chunks_exact(12).enumerate() {
             let mut position = [0.0; 3];
@@ -71,8 +73,49 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
         }
         let first = 3 * k as u32;
         found.triangles.push([first, first + 1, first + 2]);
+        let float =
+            |d: usize| f32::from_le_bytes([record[4 * d], record[4 * d + 1], record[4 * d + 2], record[4 * d + 3]]);
+        normals.compare([0, 1, 2].map(|d| f64::from(float(d))), &found.positions);
     }
+    found.notices.extend(normals.told());
     Ok(found)
+}
+
+/// Normals that do not say what the corners say.
+#[derive(Default)]
+struct Normals {
+    /// No numbers.
+    broken: usize,
+    /// On the other side.
+    against: usize,
+}
+
+impl Normals {
+    /// Compares a normal with the triangle of the last three corners; one of length zero says nothing.
+    fn compare(&mut self, normal: [f64; 3], positions: &[[f64; 3]]) {
+        let [.., a, b, c] = positions else { return };
+        if normal.iter().any(|x| !x.is_finite()) {
+            self.broken += 1;
+            return;
+        }
+        let (u, v) = ([0, 1, 2].map(|d| b[d] - a[d]), [0, 1, 2].map(|d| c[d] - a[d]));
+        let own = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        self.against += usize::from((0..3).map(|d| own[d] * normal[d]).sum::<f64>() < 0.0);
+    }
+
+    fn told(&self) -> Vec<SceneError> {
+        let mut told = Vec::new();
+        let mut tell = |count: usize, one: &str, many: &str| {
+            if count > 0 {
+                let message =
+                    format!("{count} {}: the order of the corners tells the side", if count == 1 { one } else { many });
+                told.push(SceneError::new("stl.normal", message).value(count.to_string()));
+            }
+        };
+        tell(self.broken, "normal is no number", "normals are no numbers");
+        tell(self.against, "normal points against its triangle", "normals point against their triangles");
+        told
+    }
 }
 
 /// Reads a text file.
@@ -85,6 +128,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
     // What has to follow: solid, facet, outer loop, three vertices, endloop, endfacet, and facet or endsolid.
     let mut state = "solid";
     let (mut corners, mut begun) = (0u32, 0usize);
+    let (mut normals, mut normal) = (Normals::default(), [0.0; 3]);
     let mut start = 0;
     for line in source.text.split_inclusive('\n') {
         let here = start;
@@ -102,6 +146,11 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
             ("solid", "solid", _) => "facet",
             ("facet", "facet", _) => {
                 begun = here;
+                normal = [0.0; 3];
+                for (x, part) in normal.iter_mut().zip(text.split_ascii_whitespace().skip(2)) {
+                    // What is no number is told like one that is none.
+                    *x = part.parse().unwrap_or(f64::NAN);
+                }
                 "outer loop"
             }
             ("facet", "endsolid", _) => "solid",
@@ -132,6 +181,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
             ("endfacet", "endfacet", _) => {
                 let n = found.positions.len() as u32;
                 found.triangles.push([n - 3, n - 2, n - 1]);
+                normals.compare(normal, &found.positions);
                 lines.push(begun as u32);
                 "facet"
             }
@@ -148,6 +198,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
         let error = source.mark(SceneError::new("stl.syntax", "the file ends in the middle"), end, end);
         return Err(error.value("end of file").allowed(if state == "facet" { "endsolid" } else { state }));
     }
+    found.notices.extend(normals.told());
     found.places = Places::Lines(lines);
     Ok(found)
 }

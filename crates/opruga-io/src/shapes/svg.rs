@@ -1,8 +1,9 @@
 //! Drawings: the shapes of an SVG file as curves.
 //!
-//! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, `switch` and through `use`, with `transform`. What
-//! carries no outline (`title`, `style`, `defs`, gradients …) is passed over; what would be drawn but has no outline here (`text`, `image`, strokes,
-//! clips and masks) is refused or counted. Every part of the drawing follows the even-odd rule. Fill colours are read where the scene wants them.
+//! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, the first suitable one in `switch`, and through `use`,
+//! with `transform`. What carries no outline (`title`, `defs`, gradients …) is passed over, and what is not displayed; what would be drawn but has no
+//! outline here (`text`, `image`, strokes, markers, clips and masks) is refused or counted, and so is what style sheets say. Every part of the drawing
+//! follows the even-odd rule, or the non-zero rule where its `fill-rule` says so. Fill colours are read where the scene wants them.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.
@@ -11,18 +12,17 @@ use super::curves::{Affine, Curves, IDENTITY, Point, after, smaller};
 use super::drawing::Drawing;
 use super::svg_fill::{Fill, Fills};
 use super::svg_path::Pen;
+use super::svg_style::{has_markers, is_clear, is_hidden, style, unread};
+use super::svg_xml::document;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
 use opruga_math::words::counted;
-use roxmltree::{Attribute, Document, Node, ParsingOptions};
+use roxmltree::{Attribute, Document, Node};
 use svgtypes::{LengthUnit, PathParser, PointsParser, TransformListParser, TransformListToken};
 
 /// Elements may be nested this deep, `use` included.
 const DEEPEST: usize = 128;
-
-/// The largest number of elements and texts.
-const MOST_NODES: u32 = 4 << 20;
 
 /// The largest number of parts, which `use` could draw many times.
 const MOST_PARTS: usize = 1 << 18;
@@ -51,34 +51,29 @@ const NOT_DRAWN: [&str; 17] = [
 /// Reads a whole drawing, or the element with an id; its fill colours too where they are wanted.
 ///
 /// # Errors
-/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.unknown_id`, `svg.colour`, with line and column.
+/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.style`, `svg.unknown_id`, `svg.same_id`, `svg.colour`, with line and
+/// column.
 pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) -> Result<Drawing<'a>, SceneError> {
-    let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, entity_resolver: None };
-    let document = Document::parse_with_options(source.text, options).map_err(|e| syntax(source, &e))?;
+    let document = document(source)?;
     let root = document.root_element();
-    if root.tag_name().name() != "svg" {
-        let error =
-            SceneError::new("svg.syntax", format!("the file is no drawing but <{}>", visible(root.tag_name().name())));
-        return Err(source
-            .mark(error, root.range().start, root.range().start + 1)
-            .value(visible(root.tag_name().name()))
-            .allowed("<svg>"));
-    }
     let mut reader = Reader {
         source,
         document: &document,
         curves: Curves::default(),
         places: Vec::new(),
-        fills: Fills::of(&document, source, colours),
+        fills: Fills::of(&document, source, colours)?,
+        canvas: None,
         open: 0,
         unfilled: 0,
         images: 0,
+        hidden: 0,
+        markers: 0,
     };
+    reader.canvas = reader.canvas_of(root)?;
     match id {
         None => reader.children(root, &IDENTITY, &mut Vec::new(), Fill::FIRST)?,
         Some(id) => {
-            let wanted = document.descendants().find(|node| node.attribute("id") == Some(id));
-            let Some(wanted) = wanted else { return Err(reader.unknown(root, id, "svg.unknown_id")) };
+            let wanted = reader.named(root, id)?;
             // The element keeps the transforms around it.
             let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
             let ancestors: Vec<Node<'_, '_>> = wanted.ancestors().skip(1).filter(Node::is_element).collect();
@@ -100,33 +95,16 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     let unfilled = ["shape without fill is read by its outline", "shapes without fill are read by their outlines"];
     notice(reader.unfilled, "svg.stroke", unfilled, "instead of strokes");
     notice(reader.images, "svg.image", ["image is", "images are"], "left out");
+    let hidden = ["element that cannot be seen is", "elements that cannot be seen are"];
+    notice(reader.hidden, "svg.hidden", hidden, "left out");
+    notice(reader.markers, "svg.marker", ["element has markers", "elements have markers"], "which are left out");
     let gradients = ["gradient is", "gradients are"];
     notice(reader.fills.gradients, "svg.gradient", gradients, "painted in the mean of the colours");
-    let styled = ["element has a class", "elements have a class"];
-    notice(reader.fills.styled, "svg.style", styled, "whose style sheet is not read: other colours may be meant");
-    let painted = reader.fills.painted;
-    Ok(Drawing { curves: reader.curves, y_down: true, source: Some(source), places: reader.places, painted, notices })
-}
-
-/// What the XML reader refuses.
-fn syntax(source: &Source<'_>, error: &roxmltree::Error) -> SceneError {
-    let place = error.pos();
-    let at = source.offset(place.row as usize, place.col as usize);
-    let (code, hint) = match error {
-        roxmltree::Error::UnknownEntityReference(..) | roxmltree::Error::EntityResolver(..) => {
-            ("svg.entity", Some("entities from outside of the file are never read"))
-        }
-        roxmltree::Error::EntityReferenceLoop(_) => ("svg.entity", Some("entities may not contain one another")),
-        roxmltree::Error::NodesLimitReached => ("shape.too_large", None),
-        _ => ("svg.syntax", None),
-    };
-    let text = error.to_string();
-    let message = text.split(" at ").next().unwrap_or(&text);
-    let found: String = source.text[at..].chars().take(1).collect();
-    let error =
-        source.mark(SceneError::new(code, format!("this is no well-formed XML: {}", visible(message))), at, at + 1);
-    let error = error.value(visible(&found));
-    hint.map_or(error.clone(), |hint| error.hint(hint))
+    let styled = ["element has a style sheet", "elements have a style sheet"];
+    notice(reader.fills.styled, "svg.style", styled, "which is not read: other colours may be meant");
+    let (painted, rules) = (reader.fills.painted, reader.fills.rules);
+    let (curves, places) = (reader.curves, reader.places);
+    Ok(Drawing { curves, y_down: true, source: Some(source), places, painted, rules, notices })
 }
 
 struct Reader<'a, 'd> {
@@ -136,12 +114,16 @@ struct Reader<'a, 'd> {
     /// Where each part stands in the file.
     places: Vec<(usize, usize)>,
     fills: Fills<'a, 'd>,
+    /// Width and height that per cent refer to; none where the drawing does not say.
+    canvas: Option<Point>,
     open: usize,
     unfilled: usize,
     images: usize,
+    hidden: usize,
+    markers: usize,
 }
 
-impl<'a> Reader<'a, '_> {
+impl<'a, 'd> Reader<'a, 'd> {
     fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
         let range = node.range();
         // The tag alone, not all that it holds.
@@ -152,6 +134,58 @@ impl<'a> Reader<'a, '_> {
     fn unknown(&self, node: Node<'_, '_>, id: &str, code: &'static str) -> SceneError {
         let near = nearest(id, self.document.descendants().filter_map(|n| n.attribute("id")));
         self.error(node, code, format!("no element has the id `{}`", visible(id))).value(visible(id)).nearest(near)
+    }
+
+    /// The only element with an id.
+    fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
+        let document = self.document;
+        let mut all = document.descendants().filter(|node| node.attribute("id") == Some(id));
+        let Some(first) = all.next() else { return Err(self.unknown(node, id, "svg.unknown_id")) };
+        match all.next() {
+            None => Ok(first),
+            Some(second) => {
+                let message = format!("two elements have the id `{}`", visible(id));
+                Err(self.error(second, "svg.same_id", message).value(visible(id)).allowed("ids that differ"))
+            }
+        }
+    }
+
+    /// What per cent of a drawing refer to: its `viewBox`, else its width and height.
+    fn canvas_of(&self, root: Node<'_, '_>) -> Result<Option<Point>, SceneError> {
+        let size = |name: &str| {
+            let length = root.attribute(name)?.parse::<svgtypes::Length>().ok()?;
+            units(length.unit).map(|unit| unit * length.number)
+        };
+        let size = size("width").zip(size("height")).map(|(w, h)| [w, h]);
+        let Some(attribute) = root.attribute_node("viewBox") else { return Ok(size) };
+        let view: svgtypes::ViewBox = attribute.value().parse().map_err(|e: svgtypes::ViewBoxError| {
+            let error = SceneError::new("svg.syntax", format!("`viewBox` cannot be read: {}", visible(&e.to_string())));
+            self.in_attribute(&attribute, None, error).value(visible(attribute.value())).allowed("x y width height")
+        })?;
+        let ratio = |[w, h]: Point| w / h;
+        let stretched = root.attribute("preserveAspectRatio").is_some_and(|value| value.trim().starts_with("none"))
+            && size.is_some_and(|size| (ratio(size) / ratio([view.w, view.h]) - 1.0).abs() > 1e-6);
+        if stretched {
+            let error =
+                self.error(root, "svg.unsupported", "the drawing is stretched more one way than the other".into());
+            let error = error.value("preserveAspectRatio=\"none\"");
+            return Err(error.allowed("a width and a height in proportion to the `viewBox`"));
+        }
+        Ok(Some([view.w, view.h]))
+    }
+
+    /// The child of a `switch` that is drawn: the first that asks for nothing that is not there.
+    fn chosen<'n, 'i>(&self, node: Node<'n, 'i>) -> Result<Option<Node<'n, 'i>>, SceneError> {
+        for child in node.children().filter(Node::is_element) {
+            if child.has_attribute("systemLanguage") {
+                let error = self.error(child, "svg.unsupported", "which language is meant is not known".into());
+                return Err(error.value("systemLanguage").hint("leave one element in the <switch>"));
+            }
+            if child.attribute("requiredExtensions").is_none_or(|value| value.trim().is_empty()) {
+                return Ok(Some(child));
+            }
+        }
+        Ok(None)
     }
 
     fn children(
@@ -183,17 +217,20 @@ impl<'a> Reader<'a, '_> {
                 .value(name)
                 .allowed(format!("at most {DEEPEST} levels")));
         }
-        let style = |word: &str| style(node, word);
-        if style("display") == Some("none") || NOT_DRAWN.contains(&name) {
+        if style(node, "display") == Some("none") || NOT_DRAWN.contains(&name) {
             return Ok(());
         }
-        // What would cut the outline is refused, not ignored.
-        for word in ["clip-path", "mask"] {
-            if style(word).is_some_and(|value| value != "none") {
-                let error = self.error(node, "svg.unsupported", format!("`{word}` cannot be read"));
-                return Err(error.value(word).hint("apply it in the drawing program"));
-            }
+        let leaf = !matches!(name, "svg" | "g" | "a" | "switch" | "use");
+        if is_clear(node) || leaf && is_hidden(node) {
+            self.hidden += 1;
+            return Ok(());
         }
+        // What would cut or move the outline is refused, not ignored.
+        if let Some((word, value)) = unread(node) {
+            let error = self.error(node, "svg.unsupported", format!("`{word}` cannot be read"));
+            return Err(error.value(visible(value)).hint("apply it in the drawing program"));
+        }
+        self.markers += usize::from(leaf && has_markers(node));
         let fill = self.fills.within(node, fill)?;
         let map = after(map, &self.transform(node)?);
         let id = node.id().get_usize();
@@ -210,7 +247,11 @@ impl<'a> Reader<'a, '_> {
                     );
                     return Err(error.value("svg").hint("make it a group <g> with a transform"));
                 }
-                self.children(node, &map, path, fill)?;
+                if name != "switch" {
+                    self.children(node, &map, path, fill)?;
+                } else if let Some(child) = self.chosen(node)? {
+                    self.element_at(child, &map, path, fill)?;
+                }
             }
             "use" => self.used(node, &map, path, fill)?,
             "path" | "rect" | "circle" | "ellipse" | "polygon" | "polyline" => {
@@ -257,10 +298,7 @@ impl<'a> Reader<'a, '_> {
                 .allowed("href = \"#id\" of this file")
                 .hint("other files are never read"));
         };
-        let document = self.document;
-        let Some(goal) = document.descendants().find(|node| node.attribute("id") == Some(id)) else {
-            return Err(self.unknown(node, id, "svg.unknown_id"));
-        };
+        let goal = self.named(node, id)?;
         if path.contains(&goal.id().get_usize()) {
             let error = self.error(node, "svg.cycle", format!("`#{}` contains itself", visible(id)));
             return Err(error.value(visible(id)).hint("an element cannot be drawn inside of itself"));
@@ -345,12 +383,23 @@ impl<'a> Reader<'a, '_> {
     fn number(&self, node: Node<'_, '_>, name: &str, default: f64) -> Result<f64, SceneError> {
         let Some(attribute) = node.attribute_node(name) else { return Ok(default) };
         let length: svgtypes::Length = attribute.value().parse().map_err(|e| self.refused(&attribute, &e))?;
-        if !matches!(length.unit, LengthUnit::None | LengthUnit::Px) || !length.number.is_finite() {
-            let error = SceneError::new("svg.unsupported", format!("`{name}` is no plain number"));
+        let share = |along: Point| match name {
+            "x" | "cx" | "width" | "rx" => along[0],
+            "y" | "cy" | "height" | "ry" => along[1],
+            _ => (0.5 * (along[0] * along[0] + along[1] * along[1])).sqrt(),
+        };
+        let unit = match length.unit {
+            LengthUnit::Percent => self.canvas.map(|canvas| 0.01 * share(canvas)),
+            unit => units(unit),
+        };
+        let value = unit.map(|unit| unit * length.number).filter(|value| value.is_finite());
+        value.ok_or_else(|| {
+            let error = SceneError::new("svg.unsupported", format!("`{name}` is no length that can be read"));
             let error = self.in_attribute(&attribute, None, error).value(visible(attribute.value()));
-            return Err(error.allowed("a finite number without unit, or in px"));
-        }
-        Ok(length.number)
+            error.allowed(
+                "a finite number without unit, or in px, pt, pc, mm, cm, in, or in % of a drawing with a `viewBox`",
+            )
+        })
     }
 
     /// A length that must not be negative.
@@ -447,13 +496,15 @@ impl<'a> Reader<'a, '_> {
     }
 }
 
-/// A property of an element: in its `style`, or as an attribute.
-pub(super) fn style<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
-    let in_style = node.attribute("style").and_then(|style| {
-        style.split(';').find_map(|rule| {
-            let (word, value) = rule.split_once(':')?;
-            (word.trim() == name).then_some(value.trim())
-        })
-    });
-    in_style.or_else(|| node.attribute(name).map(str::trim))
+/// How many user units an absolute unit has, 96 to the inch; none for those that depend on something.
+fn units(unit: LengthUnit) -> Option<f64> {
+    match unit {
+        LengthUnit::None | LengthUnit::Px => Some(1.0),
+        LengthUnit::In => Some(96.0),
+        LengthUnit::Cm => Some(96.0 / 2.54),
+        LengthUnit::Mm => Some(96.0 / 25.4),
+        LengthUnit::Pt => Some(96.0 / 72.0),
+        LengthUnit::Pc => Some(16.0),
+        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => None,
+    }
 }

@@ -1,6 +1,7 @@
 //! Fill colours of a drawing: inherited from element to element, as the standard says.
 
-use super::svg::style;
+use super::rules::Rule;
+use super::svg_style::{Sheets, style};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node};
@@ -17,11 +18,14 @@ pub(super) struct Fill {
     opacity: f64,
     /// What `fill-opacity` says, which is inherited and not multiplied.
     fill_opacity: f64,
+    /// What is inside.
+    rule: Rule,
 }
 
 impl Fill {
     /// Where nothing is said: black.
-    pub(super) const FIRST: Fill = Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0 };
+    pub(super) const FIRST: Fill =
+        Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0, rule: Rule::Unsaid };
 }
 
 /// Reads the fills of elements.
@@ -34,28 +38,47 @@ pub(super) struct Fills<'a, 'd> {
     pub(super) painted: Vec<Option<[u8; 4]>>,
     /// How many elements are filled by a gradient.
     pub(super) gradients: usize,
-    /// How many elements have a class, where the drawing has a style sheet.
+    /// How many elements a style sheet may be about.
     pub(super) styled: usize,
-    has_sheet: bool,
+    /// By which rule every part of the drawing is filled.
+    pub(super) rules: Vec<Rule>,
+    sheets: Sheets,
 }
 
 impl<'a, 'd> Fills<'a, 'd> {
-    pub(super) fn of(document: &'d Document<'a>, source: &'a Source<'a>, wanted: bool) -> Fills<'a, 'd> {
-        let has_sheet = wanted && document.descendants().any(|node| node.tag_name().name() == "style");
-        Fills { document, source, wanted, painted: Vec::new(), gradients: 0, styled: 0, has_sheet }
+    /// Nothing read yet but the style sheets.
+    ///
+    /// # Errors
+    /// `svg.style` for a style sheet that changes outlines.
+    pub(super) fn of(
+        document: &'d Document<'a>,
+        source: &'a Source<'a>,
+        wanted: bool,
+    ) -> Result<Fills<'a, 'd>, SceneError> {
+        let sheets = Sheets::of(document, source)?;
+        Ok(Fills { document, source, wanted, painted: Vec::new(), gradients: 0, styled: 0, rules: Vec::new(), sheets })
     }
 
     /// The fill of an element inside one with another.
     ///
     /// # Errors
-    /// `svg.colour` for what is no fill, where colours are wanted.
+    /// `svg.colour` for what is no fill, where colours are wanted; `svg.unsupported` for what is no rule of filling.
     pub(super) fn within(&mut self, node: Node<'_, '_>, around: Fill) -> Result<Fill, SceneError> {
         let mut fill = around;
+        self.styled += usize::from(self.sheets.are_about(node));
+        match style(node, "fill-rule") {
+            None | Some("inherit") => {}
+            Some("evenodd") => fill.rule = Rule::EvenOdd,
+            Some("nonzero") => fill.rule = Rule::NonZero,
+            Some(other) => {
+                let error = self.mark(node, SceneError::new("svg.unsupported", "this is no `fill-rule`"));
+                return Err(error.value(visible(other)).allowed("evenodd, nonzero"));
+            }
+        }
         if !self.wanted {
             fill.filled = style(node, "fill").map_or(around.filled, |fill| fill != "none");
             return Ok(fill);
         }
-        self.styled += usize::from(self.has_sheet && node.has_attribute("class"));
         if let Some(text) = style(node, "fill") {
             let (paint, alpha) = self.colour(node, text, around)?;
             fill.filled = paint.is_some();
@@ -72,6 +95,7 @@ impl<'a, 'd> Fills<'a, 'd> {
 
     /// Notes the fill of the next part of the drawing.
     pub(super) fn paint(&mut self, fill: Fill) {
+        self.rules.push(fill.rule);
         let opacity = (fill.opacity * fill.fill_opacity * 255.0).round() as u8;
         let [red, green, blue] = fill.colour;
         self.painted.push((self.wanted && fill.filled && opacity > 0).then_some([red, green, blue, opacity]));

@@ -7,6 +7,28 @@ use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
+/// Scripts whose letters join, change or run from right to left, and marks that are set onto letters: from which character to which.
+const SHAPED: [(char, char); 18] = [
+    ('\u{0300}', '\u{036f}'),
+    ('\u{0590}', '\u{109f}'),
+    ('\u{1100}', '\u{11ff}'),
+    ('\u{1700}', '\u{1cff}'),
+    ('\u{1dc0}', '\u{1dff}'),
+    ('\u{200b}', '\u{200f}'),
+    ('\u{202a}', '\u{202e}'),
+    ('\u{2060}', '\u{206f}'),
+    ('\u{20d0}', '\u{20ff}'),
+    ('\u{a800}', '\u{abff}'),
+    ('\u{fb1d}', '\u{fdff}'),
+    ('\u{fe00}', '\u{fe0f}'),
+    ('\u{fe20}', '\u{fe2f}'),
+    ('\u{fe70}', '\u{fefe}'),
+    ('\u{10800}', '\u{11fff}'),
+    ('\u{1e800}', '\u{1efff}'),
+    ('\u{1f3fb}', '\u{1f3ff}'),
+    ('\u{e0000}', '\u{e0fff}'),
+];
+
 /// The pen of a font, from where a letter begins.
 struct Pen {
     curves: Curves,
@@ -43,7 +65,8 @@ impl OutlineBuilder for Pen {
 /// Reads the letters of `text` from a font in OpenType or TrueType, one part each, set on one line with the kerning of the table `kern`.
 ///
 /// # Errors
-/// `font.syntax` for a file that is no font, `font.no_glyph` for a letter that it lacks.
+/// `font.syntax` for a file that is no font, `font.no_glyph` for a letter that it lacks, `font.script` for one of a script that is not set letter by
+/// letter from left to right, `shape.no_area` for a text without outlines.
 pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Problem> {
     let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
     let face = Face::parse(bytes, 0).map_err(|e| {
@@ -59,6 +82,18 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         };
         if letter.is_control() {
             return Err(refuse("font.no_glyph", format!("`{}` is no letter", visible(&letter.to_string()))));
+        }
+        if SHAPED.iter().any(|(from, to)| (*from..=*to).contains(&letter)) {
+            let message = format!(
+                "`{}` is of a script whose letters are not set one by one from left to right",
+                visible(&letter.to_string())
+            );
+            let Problem { field, about } = refuse("font.script", message);
+            let about = about.allowed("letters such as Latin, Greek or Cyrillic ones, without marks of their own");
+            return Err(Problem::new(
+                field,
+                about.hint("draw the text in a drawing program and turn it into paths for `kind = \"svg\"`"),
+            ));
         }
         let Some(glyph) = face.glyph_index(letter) else {
             let message = format!("the font `{}` has no letter `{}`", visible(file), visible(&letter.to_string()));
@@ -76,6 +111,11 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
         pen.from += f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
         last = Some(glyph);
     }
-    let (places, painted, notices) = (Vec::new(), Vec::new(), Vec::new());
-    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places, painted, notices })
+    if pen.curves.extent() <= 0.0 {
+        let message = if text.is_empty() { "the text is empty" } else { "the text has no letter with an outline" };
+        let about = SceneError::new("shape.no_area", message).value(visible(text));
+        return Err(Problem::new("text", about.allowed("at least one letter that is drawn")));
+    }
+    let (places, painted, rules, notices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    Ok(Drawing { curves: pen.curves, y_down: false, source: None, places, painted, rules, notices })
 }

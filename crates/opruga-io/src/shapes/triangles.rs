@@ -15,7 +15,9 @@ const THIN: f64 = 1e-10;
 /// Below this part of its longest edge squared a triangle is a sliver: an angle of a tenth of a degree.
 const SLIVER: f64 = 1e-3;
 /// Extents of surfaces that nobody wonders at [m].
-const USUAL: [f64; 2] = [1e-4, 1e4];
+const USUAL: [f64; 2] = [1e-4, 1e2];
+/// How much larger or smaller a surface may be for another unit to explain it.
+const UNITS: f64 = 1e5;
 
 /// What a reader found.
 #[derive(Debug, Default)]
@@ -212,11 +214,13 @@ fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     if (USUAL[0]..=USUAL[1]).contains(&extent) {
         return None;
     }
+    let size = "`size` gives the length that is meant";
+    let explained = extent < UNITS * USUAL[1] && extent * UNITS > USUAL[0];
     let unit = if extent > USUAL[1] { "millimetres: `scale = 0.001`" } else { "kilometres: `scale = 1000.0`" };
     let about =
         SceneError::new("mesh.scale", format!("the surface is {} m large", number(extent))).value(extent.to_string());
     let about = about.allowed(format!("{} m to {} m, where `size` is not given", number(USUAL[0]), number(USUAL[1])));
-    Some(about.hint(format!("perhaps it is in {unit}; `size` gives the length that is meant")))
+    Some(about.hint(if explained { format!("perhaps it is in {unit}; {size}") } else { size.to_string() }))
 }
 
 /// The surface with edges of a wanted length.
@@ -313,6 +317,20 @@ fn orient(
         let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
         let error = error.value(format!("{volume:e}")).allowed("a volume above 1e-12 of its extent cubed");
         return Err(found.at(source, facet, error));
+    }
+    let pinched = mesh.pinched_nodes();
+    if let Some(first) = pinched.first() {
+        let shown = pinched
+            .iter()
+            .take(8)
+            .map(|node| format!("({})", mesh.positions[*node as usize].map(|x| x.to_string()).join(", ")));
+        let message =
+            format!("parts of the surface hang together by a vertex: {}", shown.collect::<Vec<_>>().join(", "));
+        let error = SceneError::new("mesh.non_manifold", message).value(pinched.len().to_string());
+        let error = error.allowed("triangles that go once around every vertex");
+        let error = error.hint("move the parts apart, or give each a vertex of its own");
+        let facet = mesh.facets.iter().position(|facet| facet.contains(first)).unwrap_or(0);
+        return Err(found.at(source, facet as u32, error));
     }
     Ok(())
 }

@@ -16,13 +16,14 @@ mod nesting;
 mod overlap;
 mod resample;
 mod squares;
+mod touching;
 
 pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
 pub use error::OutlineError;
 pub use filling::{Quality, SMALLEST_ANGLE, filled, node_estimate};
 pub use nesting::nest;
-pub use overlap::{Overlap, joined};
+pub use overlap::{Overlap, joined, wound};
 pub use resample::resampled;
 pub use squares::{squares, squares_estimate};
 

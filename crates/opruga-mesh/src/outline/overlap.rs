@@ -1,9 +1,10 @@
 //! Drawings whose parts lie over one another, made into rings that do not meet.
 
-use super::Ring;
+use super::{Ring, nesting, touching};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::overlay::FloatOverlay;
+use i_overlay::core::solver::Solver;
+use i_overlay::float::overlay::{FloatOverlay, OverlayOptions};
 
 /// What is inside where parts of a drawing lie over one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,19 +17,35 @@ pub enum Overlap {
 
 /// Rings that bound what is covered, and that meet nowhere; they belong to part 0.
 ///
-/// Coordinates are kept on a grid of about 2⁻³⁰ of the drawing's size.
+/// Coordinates are kept on a grid of about 2⁻³⁰ of the drawing's size. Areas that touch in points alone do not hang together
+/// there: every one keeps a corner of its own, set back by 2⁻³² of that size.
 pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
-    let contours = |rings: &[&Ring], rule: FillRule| -> Vec<Vec<[f64; 2]>> {
-        let all: Vec<Vec<[f64; 2]>> = rings.iter().map(|ring| ring.points.clone()).collect();
-        FloatOverlay::<[f64; 2], i32>::from_subj(&all)
-            .overlay(OverlayRule::Subject, rule)
-            .into_iter()
-            .flatten()
-            .collect()
-    };
+    let made = covered(rings, how, false);
+    if nesting::meeting(&made).is_none() {
+        return made;
+    }
+    // Points in which rings touch lie on straight edges too: none of them may be left out.
+    touching::apart(&covered(rings, how, true))
+}
+
+/// What the non-zero rule covers: points around which the rings wind.
+///
+/// Like [`joined`], for rings whose directions count.
+pub fn wound(rings: &[Ring]) -> Vec<Ring> {
+    let all: Vec<&Ring> = rings.iter().collect();
+    let made = numbered(contours(&all, FillRule::NonZero, false));
+    if nesting::meeting(&made).is_none() {
+        made
+    } else {
+        touching::apart(&numbered(contours(&all, FillRule::NonZero, true)))
+    }
+}
+
+/// The rings of [`joined`], which may touch; with all points on their edges, or without those on straight lines.
+fn covered(rings: &[Ring], how: Overlap, all_points: bool) -> Vec<Ring> {
     let everything: Vec<&Ring> = rings.iter().collect();
-    let rings = match how {
-        Overlap::EvenOdd => contours(&everything, FillRule::EvenOdd),
+    numbered(match how {
+        Overlap::EvenOdd => contours(&everything, FillRule::EvenOdd, all_points),
         Overlap::Union => {
             // First every part by itself, then all of them together: outer rings and holes then wind opposite ways.
             let mut parts: Vec<u32> = rings.iter().map(|ring| ring.part).collect();
@@ -38,12 +55,27 @@ pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
                 .into_iter()
                 .flat_map(|part| {
                     let own: Vec<&Ring> = rings.iter().filter(|ring| ring.part == part).collect();
-                    contours(&own, FillRule::EvenOdd)
+                    contours(&own, FillRule::EvenOdd, all_points)
                 })
                 .map(|points| Ring { points, part: 0 })
                 .collect();
-            contours(&clean.iter().collect::<Vec<_>>(), FillRule::NonZero)
+            contours(&clean.iter().collect::<Vec<_>>(), FillRule::NonZero, all_points)
         }
-    };
-    rings.into_iter().map(|points| Ring { points, part: 0 }).collect()
+    })
+}
+
+fn numbered(contours: Vec<Vec<[f64; 2]>>) -> Vec<Ring> {
+    contours.into_iter().map(|points| Ring { points, part: 0 }).collect()
+}
+
+/// The contours of what a rule covers, with it to their left.
+fn contours(rings: &[&Ring], rule: FillRule, all_points: bool) -> Vec<Vec<[f64; 2]>> {
+    let all: Vec<Vec<[f64; 2]>> = rings.iter().map(|ring| ring.points.clone()).collect();
+    let mut options = OverlayOptions::default();
+    (options.preserve_input_collinear, options.preserve_output_collinear) = (all_points, all_points);
+    FloatOverlay::<[f64; 2], i32>::from_subj_custom(&all, options, Solver::default())
+        .overlay(OverlayRule::Subject, rule)
+        .into_iter()
+        .flatten()
+        .collect()
 }

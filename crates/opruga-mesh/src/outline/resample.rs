@@ -8,7 +8,8 @@ const CORNER_COSINE: f64 = core::f64::consts::FRAC_1_SQRT_2;
 /// Rings with points about `spacing` [m] apart along them: corners stay, curves between them are cut into equal lengths, detail finer than the
 /// spacing is left out; at least 3 points each.
 ///
-/// A corner is a point where the directions half a spacing before and behind differ by more than 45°, and more than those around it.
+/// A corner is a point where the directions half a spacing before and behind differ by more than 45°, and more than those around it; or one in which
+/// rings touched before [`super::joined`] took them apart.
 ///
 /// # Errors
 /// [`OutlineError::Mesh`] for too many points; [`OutlineError::NoArea`] for a ring that vanishes, [`OutlineError::TooCoarse`] where edges cross now.
@@ -16,7 +17,8 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
     crate::mesh::positive("spacing", spacing)?;
     let pieces: f64 = rings.iter().map(|ring| ring.length() / spacing).sum();
     crate::mesh::limit_nodes(if pieces < 1e18 { pieces as u64 } else { u64::MAX })?;
-    let coarse: Vec<Ring> = rings.iter().map(|ring| resample(ring, spacing)).collect();
+    let touching = super::touching::touching(rings);
+    let coarse: Vec<Ring> = rings.iter().zip(&touching).map(|(ring, fixed)| resample(ring, fixed, spacing)).collect();
     for (ring, before) in coarse.iter().zip(rings) {
         if ring.area() * before.area() <= 0.0 {
             let place = ring.points.first().copied().unwrap_or([0.0; 2]);
@@ -29,13 +31,13 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
     }
 }
 
-/// One ring, resampled.
-fn resample(ring: &Ring, spacing: f64) -> Ring {
+/// One ring, resampled; the points with the given numbers stay.
+fn resample(ring: &Ring, fixed: &[usize], spacing: f64) -> Ring {
     let curve = Curve::of(ring);
     if curve.total == 0.0 {
         return ring.clone();
     }
-    let corners = curve.corners(spacing);
+    let corners = curve.corners(fixed, spacing);
     // A ring without corners begins at its first point.
     let starts = if corners.is_empty() { vec![0.0] } else { corners };
     let least: u64 = match starts.len() {
@@ -92,8 +94,8 @@ impl<'a> Curve<'a> {
         [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
     }
 
-    /// Lengths at which the corners lie, ascending.
-    fn corners(&self, spacing: f64) -> Vec<f64> {
+    /// Lengths at which the corners lie, ascending; the points with the given numbers are some whatever lies near them.
+    fn corners(&self, fixed: &[usize], spacing: f64) -> Vec<f64> {
         let twelfth = self.total / 12.0;
         let reach = if 0.5 * spacing < twelfth { 0.5 * spacing } else { twelfth };
         let mut candidates: Vec<(f64, f64)> = Vec::new();
@@ -109,7 +111,7 @@ impl<'a> Curve<'a> {
         }
         // The sharpest first; what lies within its reach belongs to it.
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut corners: Vec<f64> = Vec::new();
+        let mut corners: Vec<f64> = fixed.iter().map(|point| self.from_start[*point]).collect();
         for (_, length) in candidates {
             let place = corners.partition_point(|c| *c < length);
             let n = corners.len();

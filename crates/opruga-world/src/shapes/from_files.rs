@@ -38,7 +38,7 @@ const OVERLAP: Field = Field::new(
     Allowed::Choice(&["refuse", "union", "even_odd"]),
     "",
     Default::Text("refuse"),
-    "What holds where outlines cross, touch or lie in one another: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told.",
+    "What holds where outlines cross, touch or lie in one another: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told. Areas that touch in points alone are apart there.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",
@@ -51,7 +51,7 @@ const DROP_BELOW: Field = Field::new(
 static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
-    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule.",
+    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are not read.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The SVG file, looked up relative to the scene."),
@@ -81,7 +81,7 @@ static SVG: Spec = Spec {
 static MAP: Spec = Spec {
     kind: "map",
     summary: "a country or any other polygons of a map",
-    documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Neighbours that share a border are joined with `overlap = \"union\"`.",
+    documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Outlines over the antimeridian are in one piece, beyond 180°; those around a pole are cut along the antimeridian and closed along the pole. Neighbours that share a border are joined with `overlap = \"union\"`.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The map, looked up relative to the scene."),
@@ -112,7 +112,7 @@ static MAP: Spec = Spec {
 static TEXT: Spec = Spec {
     kind: "text",
     summary: "a word in the letters of a font",
-    documentation: "The outlines of the letters of an OpenType or TrueType font, on one line; counters are holes.",
+    documentation: "The outlines of the letters of an OpenType or TrueType font, on one line, one by one from left to right; counters are holes.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The font, looked up relative to the scene."),

@@ -1,0 +1,258 @@
+//! Polygons of the globe laid out flat, in degrees.
+//!
+//! * A ring that steps over the antimeridian (from 179° to −179°) is drawn in one piece, beyond 180°.
+//! * A ring around a pole is cut along the antimeridian and closed along the pole.
+//! * Polygons lie side by side where that makes the map narrower: the longitudes of some then lie beyond 180°.
+//! * Polygons that were cut along the antimeridian, as RFC 7946 wants it, are one again.
+
+use super::curves::{Point, larger, smaller};
+use opruga_mesh::outline::{self, Overlap, Ring};
+
+/// A step between neighbours of at least so many degrees runs over the antimeridian: no edge is that long.
+const OVER: f64 = 270.0;
+/// A whole turn [°].
+const TURN: f64 = 360.0;
+/// Longitudes that differ by less are the same [°].
+const SAME: f64 = 1e-9;
+
+/// A polygon: its outline, then its holes.
+pub(super) type Polygon = Vec<Vec<Point>>;
+
+/// What had to be done.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct LaidOut {
+    /// Rings that step over the antimeridian.
+    pub(super) over: usize,
+    /// Rings around a pole.
+    pub(super) polar: usize,
+    /// Polygons that lie beyond 180°, so that they are beside the others.
+    pub(super) beside: usize,
+    /// Polygons that were cut along the antimeridian.
+    pub(super) cut: usize,
+}
+
+/// Lays polygons out, each with what belongs to it; `stitched` where the format leaves cuts along the antimeridian out, as
+/// topologies do: a step of exactly a turn is then one in place.
+pub(super) fn lay_out<T>(polygons: &mut Vec<(Polygon, T)>, stitched: bool) -> LaidOut {
+    let mut done = LaidOut::default();
+    for (polygon, _) in &mut *polygons {
+        let mut around: Option<[f64; 2]> = None;
+        for ring in polygon {
+            match unrolled(ring, stitched) {
+                Some((flat, winding)) => {
+                    done.over += usize::from(winding == 0.0);
+                    done.polar += usize::from(winding != 0.0);
+                    *ring = if winding == 0.0 { centred(flat) } else { closed_along_the_pole(&flat, winding) };
+                }
+                // Holes follow their outline.
+                None => {
+                    if let (Some([low, high]), Some(first)) = (around, ring.first()) {
+                        let turns = turns_into(first[0], low, high);
+                        ring.iter_mut().for_each(|p| p[0] += turns);
+                    }
+                }
+            }
+            around = around.or(Some(span(ring)));
+        }
+    }
+    done.beside = side_by_side(polygons);
+    done.cut = sewn(polygons);
+    done
+}
+
+fn is_same(p: Point, q: Point) -> bool {
+    (q[0] - p[0]).abs() < SAME && (q[1] - p[1]).abs() < SAME
+}
+
+/// Lowest and highest longitude.
+fn span(ring: &[Point]) -> [f64; 2] {
+    ring.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [smaller(low, p[0]), larger(high, p[0])])
+}
+
+/// What brings a longitude into a range, as far as whole turns can.
+fn turns_into(x: f64, low: f64, high: f64) -> f64 {
+    [0.0, TURN, -TURN].into_iter().find(|turn| low <= x + turn && x + turn <= high).unwrap_or(0.0)
+}
+
+/// A ring whose longitudes go on over the antimeridian, and by how much they have grown after one round (0, or a turn for
+/// a ring around a pole); none where no step runs over it.
+fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
+    let mut turns = 0.0;
+    let mut flat = Vec::with_capacity(ring.len());
+    let mut any = false;
+    for (k, p) in ring.iter().enumerate() {
+        flat.push([p[0] + turns, p[1]]);
+        let q = ring[(k + 1) % ring.len()];
+        let step = q[0] - p[0];
+        // Along a pole, and along a parallel around the whole globe, a ring may run a turn.
+        let whole = (step.abs() - TURN).abs() < SAME;
+        let along_pole = p[1].abs() == 90.0 && q[1].abs() == 90.0;
+        if step.abs() >= OVER && !along_pole && (stitched || !whole) {
+            turns -= TURN.copysign(step);
+            any = true;
+        }
+    }
+    // Longitudes at a step in place are the same: one of the two points is enough.
+    flat.dedup_by(|q, p| is_same(*q, *p));
+    let swept = flat.windows(2).any(|pair| {
+        let (o, a, b) = (flat[0], pair[0], pair[1]);
+        (a[0] - o[0]) * (b[1] - o[1]) != (b[0] - o[0]) * (a[1] - o[1])
+    });
+    (any && swept).then_some((flat, turns))
+}
+
+/// A ring whose middle lies between −180° and 180°.
+fn centred(mut ring: Vec<Point>) -> Vec<Point> {
+    let [low, high] = span(&ring);
+    let turns = -TURN * ((0.5 * (low + high) + 180.0) / TURN).floor();
+    ring.iter_mut().for_each(|p| p[0] += turns);
+    ring
+}
+
+/// A ring around a pole, whose longitudes grow by a turn of either sign from its first point to its first point: cut where it
+/// crosses the antimeridian first, and closed along the pole on whose half of the globe it lies in the mean.
+fn closed_along_the_pole(flat: &[Point], winding: f64) -> Vec<Point> {
+    let n = flat.len();
+    let at = |k: usize| if k < n { flat[k] } else { [flat[k - n][0] + winding, flat[k - n][1]] };
+    let turn_of = |x: f64| ((x + 180.0) / TURN).floor();
+    let cut = (0..n).find(|k| turn_of(at(*k)[0]) != turn_of(at(k + 1)[0])).unwrap_or(0);
+    let (p, q) = (at(cut), at(cut + 1));
+    let meridian = TURN * larger(turn_of(p[0]), turn_of(q[0])) - 180.0;
+    let share = if q[0] == p[0] { 0.0 } else { (meridian - p[0]) / (q[0] - p[0]) };
+    let latitude = p[1] + share * (q[1] - p[1]);
+    let mut ring = vec![[meridian, latitude]];
+    ring.extend((cut + 1..=cut + n).map(at));
+    ring.push([meridian + winding, latitude]);
+    let north = flat.iter().map(|p| p[1]).sum::<f64>() > 0.0;
+    let pole = if north { 90.0 } else { -90.0 };
+    ring.extend([[meridian + winding, pole], [meridian, pole]]);
+    ring.dedup_by(|q, p| is_same(*q, *p));
+    centred(ring)
+}
+
+/// Moves polygons by whole turns to where the map is narrowest; returns how many.
+fn side_by_side<T>(polygons: &mut [(Polygon, T)]) -> usize {
+    let mut spans: Vec<[f64; 2]> =
+        polygons.iter().filter_map(|(polygon, _)| polygon.first()).map(|ring| span(ring)).collect();
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let Some(first) = spans.first().copied() else { return 0 };
+    let high = spans.iter().fold(f64::NEG_INFINITY, |high, span| larger(high, span[1]));
+    if !(high - first[0] > 180.0 && high - first[0] <= 2.0 * TURN) {
+        return 0;
+    }
+    // The widest gap between polygons becomes the border of the map.
+    let (mut reach, mut widest, mut start) = (first[1], larger(first[0] + TURN - high, 0.0), first[0]);
+    for [low, far] in spans {
+        if low - reach > widest + SAME {
+            (widest, start) = (low - reach, low);
+        }
+        reach = larger(reach, far);
+    }
+    let mut moved = 0;
+    for (polygon, _) in polygons.iter_mut().filter(|(polygon, _)| !polygon.is_empty()) {
+        if span(&polygon[0])[0] < start {
+            polygon.iter_mut().flatten().for_each(|p| p[0] += TURN);
+            moved += 1;
+        }
+    }
+    moved
+}
+
+/// Joins polygons that share a border along the antimeridian; returns how many there were.
+fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
+    // Borders along the antimeridian: its longitude, from which latitude to which, and on which side the polygon lies.
+    let mut borders: Vec<(usize, f64, [f64; 2], bool)> = Vec::new();
+    for (number, (polygon, _)) in polygons.iter().enumerate() {
+        let Some(ring) = polygon.first() else { continue };
+        let [low, high] = span(ring);
+        for (k, p) in ring.iter().enumerate() {
+            let q = ring[(k + 1) % ring.len()];
+            let off = (p[0] - 180.0) / TURN;
+            if (q[0] - p[0]).abs() < SAME && (off - off.round()).abs() < SAME && p[1] != q[1] {
+                let west = p[0] - low > high - p[0];
+                borders.push((number, p[0], [smaller(p[1], q[1]), larger(p[1], q[1])], west));
+            }
+        }
+    }
+    let meets = |a: &(usize, f64, [f64; 2], bool), b: &(usize, f64, [f64; 2], bool)| {
+        a.3 != b.3 && (a.1 - b.1).abs() < SAME && a.2[0] < b.2[1] && b.2[0] < a.2[1]
+    };
+    let mut cut: Vec<usize> =
+        borders.iter().filter(|a| borders.iter().any(|b| meets(a, b))).map(|border| border.0).collect();
+    cut.sort_unstable();
+    cut.dedup();
+    let Some(first) = cut.first().copied() else { return 0 };
+    let mut rings: Vec<Ring> = Vec::new();
+    for number in &cut {
+        let own = core::mem::take(&mut polygons[*number].0);
+        rings.extend(own.into_iter().map(|points| Ring { points, part: *number as u32 }));
+    }
+    for ring in &mut rings {
+        // On both sides the same longitude, to the last bit.
+        for p in &mut ring.points {
+            let off = ((p[0] - 180.0) / TURN).round();
+            if (p[0] - 180.0 - TURN * off).abs() < SAME {
+                p[0] = 180.0 + TURN * off;
+            }
+        }
+    }
+    polygons[first].0 = outline::joined(&rings, Overlap::Union).into_iter().map(|ring| ring.points).collect();
+    polygons.retain(|(polygon, _)| !polygon.is_empty());
+    cut.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn box_of(x: [f64; 2], y: [f64; 2]) -> Vec<Point> {
+        vec![[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]
+    }
+
+    fn area(polygon: &Polygon) -> f64 {
+        polygon.iter().map(|points| Ring { points: points.clone(), part: 0 }.area()).sum::<f64>().abs()
+    }
+
+    #[test]
+    fn a_ring_over_the_antimeridian_is_in_one_piece() {
+        let mut one = vec![(vec![box_of([176.0, -176.0], [0.0, 4.0])], ())];
+        assert_eq!(lay_out(&mut one, false), LaidOut { over: 1, ..LaidOut::default() });
+        assert_eq!((area(&one[0].0), span(&one[0].0[0])), (32.0, [176.0, 184.0]));
+        // A band around the globe steps over nothing, and wide polygons have long edges.
+        for x in [[-180.0, 180.0], [-130.0, 130.0]] {
+            let mut band = vec![(vec![box_of(x, [-10.0, 10.0])], ())];
+            assert_eq!(lay_out(&mut band, false), LaidOut::default());
+            assert_eq!(band[0].0[0], box_of(x, [-10.0, 10.0]));
+        }
+    }
+
+    #[test]
+    fn a_polygon_that_was_cut_is_one_again() {
+        let mut two =
+            vec![(vec![box_of([176.0, 180.0], [0.0, 4.0])], 'a'), (vec![box_of([-180.0, -176.0], [1.0, 3.0])], 'b')];
+        assert_eq!(lay_out(&mut two, false), LaidOut { beside: 1, cut: 2, ..LaidOut::default() });
+        assert_eq!((two.len(), two[0].1, two[0].0.len()), (1, 'a', 1));
+        assert!((area(&two[0].0) - 24.0).abs() < 1e-6 && (span(&two[0].0[0])[1] - 184.0).abs() < 1e-6);
+        // Islands on both sides lie side by side, and stay two.
+        let mut islands =
+            vec![(vec![box_of([170.0, 175.0], [0.0, 4.0])], ()), (vec![box_of([-175.0, -170.0], [0.0, 4.0])], ())];
+        assert_eq!(lay_out(&mut islands, false), LaidOut { beside: 1, ..LaidOut::default() });
+        assert_eq!(span(&islands[1].0[0]), [185.0, 190.0]);
+    }
+
+    #[test]
+    fn a_ring_around_a_pole_is_closed_along_it() {
+        for (latitude, first) in [(-70.0, -150.0), (-70.0, -180.0), (80.0, 10.0)] {
+            let mut ring: Vec<Point> = (0..36).map(|k| [first + 10.0 * f64::from(k), latitude]).collect();
+            ring.iter_mut().for_each(|p| p[0] -= if p[0] >= 180.0 { TURN } else { 0.0 });
+            for _ in 0..2 {
+                let mut cap = vec![(vec![ring.clone()], ())];
+                assert_eq!(lay_out(&mut cap, true), LaidOut { polar: 1, ..LaidOut::default() });
+                assert_eq!(span(&cap[0].0[0]), [-180.0, 180.0]);
+                let wanted = TURN * (90.0 - f64::abs(latitude));
+                assert!((area(&cap[0].0) - wanted).abs() < 1e-9, "{latitude}, {first}: {}", area(&cap[0].0));
+                ring.reverse();
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! By which rule the parts of a drawing are filled.
+
+use crate::problem::SceneError;
+use opruga_mesh::outline::{self, Overlap, Ring};
+
+/// What is inside where the rings of a part lie over one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// The file does not say, and other programs take the non-zero rule then.
+    Unsaid,
+    /// What an odd number of rings enclose.
+    EvenOdd,
+    /// Points around which the rings wind.
+    NonZero,
+}
+
+/// Makes rings of parts with the non-zero rule into such that the even-odd rule bounds the same; says for how many of those
+/// that name no rule the two differ.
+pub(super) fn follow(rings: &mut Vec<Ring>, rules: &[Rule]) -> Option<SceneError> {
+    let mut differing = 0;
+    for (part, rule) in rules.iter().enumerate().filter(|(_, rule)| **rule != Rule::EvenOdd) {
+        // Rings come part by part.
+        let from = rings.partition_point(|ring| (ring.part as usize) < part);
+        let own = from..rings.partition_point(|ring| ring.part as usize <= part);
+        if own.is_empty() {
+            continue;
+        }
+        let (odd, mut wound) =
+            (outline::joined(&rings[own.clone()], Overlap::EvenOdd), outline::wound(&rings[own.clone()]));
+        let area = |rings: &[Ring]| rings.iter().map(Ring::area).sum::<f64>();
+        if (area(&wound) - area(&odd)).abs() <= 1e-9 * area(&wound).abs() {
+            continue;
+        }
+        if *rule == Rule::Unsaid {
+            differing += 1;
+            continue;
+        }
+        wound.iter_mut().for_each(|ring| ring.part = part as u32);
+        rings.splice(own, wound);
+    }
+    (differing > 0).then(|| {
+        let what = if differing == 1 { "shape names" } else { "shapes name" };
+        let message = format!("{differing} {what} no `fill-rule` and would have fewer holes by the non-zero rule");
+        let hint = "`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file says which is meant";
+        SceneError::new("svg.fill_rule", message).value(differing.to_string()).hint(hint)
+    })
+}

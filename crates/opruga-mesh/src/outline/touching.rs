@@ -1,0 +1,127 @@
+//! Rings that touch in points, taken apart there.
+//!
+//! Around a point in which rings touch, what is inside falls into sectors. Every sector gets a corner of its own, which lies
+//! in it a little beside the point: bodies do not hang together by points.
+
+use super::{Ring, bounds, distance};
+use std::collections::BTreeMap;
+
+/// Corners of different sectors lie about this part of the size of the drawing beside the point that they had in common.
+const APART: f64 = 1.0 / (1u64 << 32) as f64;
+
+/// Rings that bound the same inside and touch nowhere. They must have it to their left and meet in common points alone.
+pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
+    let Some((low, high)) = bounds(rings) else { return Vec::new() };
+    let step = distance(low, high) * APART;
+    let corners = Corners::of(rings);
+    let mut next = corners.next.clone();
+    let mut moved = corners.points.clone();
+    for here in corners.at_places().into_values().filter(|here| here.len() > 1) {
+        for &corner in &here {
+            let from = corners.direction(corner, corners.previous[corner]);
+            // The sector to the left of the edge that comes in ends at the first edge that goes out, clockwise.
+            let sector = |other: usize| clockwise(from, corners.direction(other, corners.next[other]));
+            let mut best = (f64::INFINITY, corner);
+            for &other in &here {
+                let angle = sector(other);
+                best = if angle < best.0 { (angle, other) } else { best };
+            }
+            next[corner] = corners.next[best.1];
+            let middle = from - 0.5 * best.0;
+            let [x, y] = corners.points[corner];
+            moved[corner] = [x + step * libm::cos(middle), y + step * libm::sin(middle)];
+        }
+    }
+    let mut seen = vec![false; next.len()];
+    let mut made = Vec::new();
+    for first in 0..next.len() {
+        let mut ring = Ring { points: Vec::new(), part: corners.parts[first] };
+        let mut at = first;
+        while !core::mem::replace(&mut seen[at], true) {
+            ring.points.push(moved[at]);
+            at = next[at];
+        }
+        if ring.points.len() > 2 {
+            made.push(ring);
+        }
+    }
+    made
+}
+
+/// Places where rings touch themselves or one another: for every ring the numbers of its points that lie next to a point
+/// which is no neighbour, ascending.
+pub(super) fn touching(rings: &[Ring]) -> Vec<Vec<usize>> {
+    let mut found = vec![Vec::new(); rings.len()];
+    let Some((low, high)) = bounds(rings) else { return found };
+    // Somewhat more than two corners that have been taken apart can be from one another.
+    let near = 4.0 * distance(low, high) * APART;
+    // Two that are near share a column of one of two gratings, and lie one after another in it.
+    for shift in [0.0, near] {
+        let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
+        for (number, ring) in rings.iter().enumerate() {
+            let column = |x: f64| ((x - low[0] + shift) / (2.0 * near)).floor();
+            order.extend(ring.points.iter().enumerate().map(|(place, p)| (column(p[0]), p[1], number, place)));
+        }
+        order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then((p.2, p.3).cmp(&(q.2, q.3))));
+        for (k, &(column, y, ring, place)) in order.iter().enumerate() {
+            let later = order[k + 1..].iter().take_while(|later| later.0 == column && later.1 - y <= near);
+            for &(_, _, other, beside) in later {
+                let n = rings[ring].points.len();
+                let neighbours = ring == other && [1, n - 1].contains(&place.abs_diff(beside));
+                if !neighbours && distance(rings[ring].points[place], rings[other].points[beside]) <= near {
+                    found[ring].push(place);
+                    found[other].push(beside);
+                }
+            }
+        }
+    }
+    for places in &mut found {
+        places.sort_unstable();
+        places.dedup();
+    }
+    found
+}
+
+/// The points of all rings, one after another.
+struct Corners {
+    points: Vec<[f64; 2]>,
+    parts: Vec<u32>,
+    next: Vec<usize>,
+    previous: Vec<usize>,
+}
+
+impl Corners {
+    fn of(rings: &[Ring]) -> Corners {
+        let mut all = Corners { points: Vec::new(), parts: Vec::new(), next: Vec::new(), previous: Vec::new() };
+        for ring in rings {
+            let (first, n) = (all.points.len(), ring.points.len());
+            all.points.extend(&ring.points);
+            all.parts.extend((0..n).map(|_| ring.part));
+            all.next.extend((0..n).map(|k| first + (k + 1) % n));
+            all.previous.extend((0..n).map(|k| first + (k + n - 1) % n));
+        }
+        all
+    }
+
+    /// Corners by their place.
+    fn at_places(&self) -> BTreeMap<[u64; 2], Vec<usize>> {
+        let mut places: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
+        for (corner, point) in self.points.iter().enumerate() {
+            // −0 is 0.
+            places.entry(point.map(|x| (x + 0.0).to_bits())).or_default().push(corner);
+        }
+        places
+    }
+
+    /// The angle of the way from one corner to another [rad].
+    fn direction(&self, from: usize, to: usize) -> f64 {
+        let (p, q) = (self.points[from], self.points[to]);
+        libm::atan2(q[1] - p[1], q[0] - p[0])
+    }
+}
+
+/// The angle from one direction clockwise to another [rad]: above 0, at most a whole turn.
+fn clockwise(from: f64, to: f64) -> f64 {
+    let angle = from - to;
+    if angle > 0.0 { angle } else { angle + core::f64::consts::TAU }
+}
