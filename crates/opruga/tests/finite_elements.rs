@@ -132,6 +132,7 @@ fn triangles_and_tetrahedra_of_finite_elements_are_quadratic_by_default() {
     assert_eq!(nodes(&format!("{grid}\nsimplices = true"), fem), 25);
     assert_eq!(nodes(&format!("{grid}\nsimplices = true\norder = 1"), loose), 9);
     assert_eq!(nodes(&format!("{grid}\nsimplices = true"), "kind = \"mass_spring\", stiffness = 1.0"), 9);
-    let heart = "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.2, filling = \"triangles\" }";
+    let heart =
+        "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.2, size = 1.0, filling = \"triangles\" }";
     assert!(nodes(heart, fem) > 3 * nodes(&format!("{heart}\norder = 1"), loose));
 }
