@@ -93,7 +93,7 @@ where
     let right: Vec<u32> =
         (0..mesh.positions.len() as u32).filter(|n| end(&mesh.positions[*n as usize], LENGTH)).collect();
     let shares = mesh.boundary_shares(&right);
-    let whole: f64 = shares.iter().map(|(_, share)| share).sum();
+    let whole: f64 = shares.values().sum();
     let mut load = vec![0.0; D * mesh.positions.len()];
     for (node, share) in &shares {
         load[D * *node as usize + up] = force * share / whole;
