@@ -130,3 +130,19 @@ fn surfaces_that_are_shipped_have_their_volumes() {
         assert_eq!(mesh.components().expect("closed").len(), 1, "{name}");
     }
 }
+
+/// The lengths that the README shows, and coarser ones: the shape stays, or an error says that it would not.
+#[test]
+fn spot_is_remeshed_where_the_length_keeps_its_shape() {
+    let spot = include_bytes!("../../../scenes/shapes/spot.obj");
+    let of = |length: f64| {
+        space(&format!("kind = \"surface\", file = \"a.obj\", size = 1.5, remesh = {length}"), &[("a.obj", spot)])
+    };
+    for length in [0.045, 0.05, 0.1] {
+        let (mesh, _) = of(length).unwrap_or_else(|e| panic!("{length}: {}", e[0]));
+        assert_eq!((mesh.euler_characteristic(), mesh.crossing_facets().pairs.len()), (2, 0), "{length}");
+    }
+    let error = &of(0.3).expect_err("its legs vanish")[0];
+    assert!(error.code == "scene.shape" && error.message.contains("of its volume"), "{error}");
+    assert!(error.hint.as_deref().is_some_and(|hint| hint.contains("remesh")), "{error}");
+}

@@ -19,6 +19,9 @@ const USUAL: [f64; 2] = [1e-4, 1e2];
 /// How much larger or smaller a surface may be for another unit to explain it.
 const UNITS: f64 = 1e5;
 
+/// A surface that is remeshed may lose or win this part of its volume.
+const DRIFT: f64 = 0.25;
+
 /// What a reader found.
 #[derive(Debug, Default)]
 pub(super) struct Triangles {
@@ -226,7 +229,7 @@ fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
 /// The surface with edges of a wanted length.
 ///
 /// # Errors
-/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself.
+/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself or lose its shape.
 pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
     let refuse = |message: String| SceneError::new("scene.shape", message).value(length.to_string());
     let made = mesh.remeshed(length).map_err(|e| refuse(e.to_string()))?;
@@ -236,6 +239,13 @@ pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneErro
         return Err(refuse(message)
             .allowed("a length below the finest parts of the surface")
             .hint("take a smaller `remesh`"));
+    }
+    // What is thinner than its edges shrinks with them.
+    let kept = made.enclosed_volume() / mesh.enclosed_volume();
+    if (kept - 1.0).abs() > DRIFT {
+        let message = format!("with edges of {length} m the surface would enclose {kept:.2} of its volume");
+        let allowed = format!("a length that keeps the volume within {} %", 100.0 * DRIFT);
+        return Err(refuse(message).allowed(allowed).hint("take a smaller `remesh`"));
     }
     Ok(made)
 }
