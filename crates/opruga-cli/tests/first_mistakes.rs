@@ -89,7 +89,7 @@ fn the_shift_out_of_an_obstacle_frees_the_body() {
 #[test]
 fn an_override_that_a_model_refuses_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
-    let body = "shape = { kind = \"grid\", size = [1, 1], cells = [2, 2] }\nsimplices = true\nmodels = [\n\
+    let body = "shape = { kind = \"grid\", size = [1, 1], cells = [2, 2] }\nsimplices = true\norder = 1\nmodels = [\n\
                 {\n kind = \"fem\", material = \"neo_hookean\",\n youngs_modulus = 1e4,\n poissons_ratio = 0.3 }]";
     write(folder.path(), &scene(2, body, ""));
     for path in ["body.it.models.fem.poissons_ratio", "body.0.models.0.poissons_ratio"] {

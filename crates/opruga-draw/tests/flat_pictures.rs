@@ -76,8 +76,13 @@ fn pressure_covers_no_neighbour_and_no_name() {
 
     let named = || vec![BodyPicture { label: "hard".into(), ..ring(0.0, 1.0) }, ring(2.2, 1.0)];
     let (plain, name) = (image(pair(), Vec::new(), &view), image(named(), Vec::new(), &view));
-    let down: Vec<ArrowPicture> = (-12..=12).map(|k| arrow([0.02 * f64::from(k), -1.0], [0.0, -0.4])).collect();
-    let (bare, crossed) = (image(pair(), down.clone(), &view), image(named(), down, &view));
+    // On all sides, so that the name finds no free one.
+    let around = |k: i32| {
+        let at = 0.02 * f64::from(k);
+        [([at, -1.0], [0.0, -0.4]), ([at, 1.0], [0.0, 0.4]), ([-1.0, at], [-0.4, 0.0]), ([1.0, at], [0.4, 0.0])]
+    };
+    let arrows: Vec<ArrowPicture> = (-12..=12).flat_map(around).map(|(from, vector)| arrow(from, vector)).collect();
+    let (bare, crossed) = (image(pair(), arrows.clone(), &view), image(named(), arrows, &view));
     let light = |image: &Image, [x, y]: [u32; 2]| image.pixel(x, y).iter().map(|c| u32::from(*c)).sum::<u32>();
     let dark: Vec<[u32; 2]> = changed(&name, &plain).into_iter().filter(|at| light(&name, *at) < 330).collect();
     let letters: Vec<[u32; 2]> = dark.into_iter().filter(|at| light(&plain, *at) > 500).collect();

@@ -61,6 +61,9 @@ impl Scene {
         let name = format!("mesh-{}.vtk", self.files.len());
         let bytes = written.files.into_iter().next().ok_or("no file of the mesh")?.1;
         self.files.push((name.clone(), bytes.into()));
+        // Meshes of linear cells are meant as they are.
+        let linear = !mesh.cells.triangles.is_empty() || !mesh.cells.tetrahedra.is_empty();
+        let rest = if linear { format!("order = 1\n{rest}") } else { rest.to_string() };
         Ok(self.add(&format!("[[body]]\nname = \"body\"\nshape = {{ kind = \"mesh\", file = \"{name}\" }}\n{rest}")))
     }
 }

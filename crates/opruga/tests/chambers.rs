@@ -46,7 +46,7 @@ fn every_chamber_has_volume_pressure_and_amount_of_its_own() {
 #[test]
 fn the_only_chamber_has_no_number() {
     let mut world = built(plane(&format!(
-        "{}[[body]]\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 40 }}\nmodels = [{{ kind = \"pressure\", nRT = 6.0 }}]\nmass = 1\n",
+        "{}[[body]]\nname = \"one\"\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 40 }}\nmodels = [{{ kind = \"pressure\", nRT = 6.0 }}]\nmass = 1\n",
         head(0.02, 20, 0.0, "symplectic_euler")
     )));
     let names: Vec<String> = world.readings(0).into_iter().map(|(name, _)| name.into_owned()).collect();

@@ -175,9 +175,10 @@ fn told_of_overlap(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<Sc
             Overlap::EvenOdd => ("what an odd number of them encloses is inside", "even_odd"),
         };
         let message = format!(
-            "{} or touch{} others (`overlap = \"{rule}\"`): {what}, {}",
+            "{} or touch{} others or {} (`overlap = \"{rule}\"`): {what}, {}",
             counted(changed as u64, "outline crosses, covers", "outlines cross, cover"),
             if changed == 1 { "es" } else { "" },
+            if changed == 1 { "itself" } else { "themselves" },
             counted(together.len() as u64, "outline is left", "outlines are left"),
         );
         SceneError::new("shape.overlap", message).value(changed.to_string())

@@ -98,13 +98,13 @@ fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
         let (o, a, b) = (flat[0], pair[0], pair[1]);
         (a[0] - o[0]) * (b[1] - o[1]) != (b[0] - o[0]) * (a[1] - o[1])
     });
-    (any && swept).then_some((flat, turns))
+    (any && (swept || turns != 0.0)).then_some((flat, turns))
 }
 
-/// A ring whose middle lies between −180° and 180°.
+/// A ring whose middle lies above −180° and at 180° at most.
 fn centred(mut ring: Vec<Point>) -> Vec<Point> {
     let [low, high] = span(&ring);
-    let turns = -TURN * ((0.5 * (low + high) + 180.0) / TURN).floor();
+    let turns = TURN * (1.0 - ((0.5 * (low + high) + 180.0) / TURN).ceil());
     ring.iter_mut().for_each(|p| p[0] += turns);
     ring
 }
