@@ -34,8 +34,9 @@ pub enum StepError {
     },
     /// An implicit rule has not found the end of the step.
     #[error(
-        "`{integrator}` did not converge in {iterations} iterations at t = {time} s: the forces are out of balance by \
-         {residual:.3e} N, and the last correction was {correction:.3e} m; allowed: {tolerance:.3e} m"
+        "`{integrator}` did not converge in {iterations} iterations at t = {time} s{}: the forces are out of balance by \
+         {residual:.3e} N, and the last correction was {correction:.3e} m; allowed: {tolerance:.3e} m",
+        beyond.as_ref().map_or_else(String::new, |part| format!(", beyond {part}"))
     )]
     NotConverged {
         /// The rule.
@@ -50,6 +51,10 @@ pub enum StepError {
         tolerance: f64,
         /// The time at the start of the step [s].
         time: f64,
+        /// Up to where it was found, such as `0.25 of the load`, where that was looked for in parts.
+        beyond: Option<String>,
+        /// What helps under the settings of the rule.
+        hint: &'static str,
     },
     /// A model has no meaning in this state.
     #[error("{model}: {message}")]

@@ -1,7 +1,8 @@
 //! The motions of a body as a whole that nothing holds.
 
+use super::restraint::free_motions;
 use opruga_core::error::BuildError;
-use opruga_core::potential::{Account, Definiteness, Sink};
+use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
@@ -25,13 +26,13 @@ pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<
 /// A motion of the whole: a translation and a rotation about the centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
-    translation: [f64; D],
+    pub(super) translation: [f64; D],
     /// One number in the plane, three in space.
-    rotation: Vec<f64>,
+    pub(super) rotation: Vec<f64>,
 }
 
 impl<const D: usize> Motion<D> {
-    fn turns(&self) -> bool {
+    pub(super) fn turns(&self) -> bool {
         self.rotation.iter().any(|x| x.abs() > 1e-6)
     }
     /// `translation along x`, `rotation`.
@@ -53,11 +54,17 @@ impl<const D: usize> Motion<D> {
 }
 
 /// Adds up φᵀ K ψ for all pairs of motions.
-struct Projection<'a> {
+pub(super) struct Projection<'a> {
     motions: &'a [Vec<f64>],
-    out: Vec<f64>,
-    /// The largest entry that was met.
-    largest: f64,
+    pub(super) out: Vec<f64>,
+    /// The largest entry of K that was met.
+    pub(super) largest: f64,
+}
+
+impl Projection<'_> {
+    pub(super) fn of(motions: &[Vec<f64>]) -> Projection<'_> {
+        Projection { motions, out: vec![0.0; motions.len() * motions.len()], largest: 0.0 }
+    }
 }
 
 impl<const D: usize> Sink<D> for Projection<'_> {
@@ -85,17 +92,7 @@ impl<const D: usize> Sink<D> for Projection<'_> {
     }
 }
 
-/// The motions of the whole that neither pins nor loads with a stiffness nor the weight of a pendulum hold, translations
-/// first.
-fn free_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let mut free = unheld_motions(system);
-    if free.iter().all(Motion::turns) {
-        free.retain(|motion| !swings(system, motion, &center(system)));
-    }
-    free
-}
-
-fn center<const D: usize>(system: &System<D>) -> [f64; D] {
+pub(super) fn center<const D: usize>(system: &System<D>) -> [f64; D] {
     let mut center = [0.0; D];
     for node in 0..system.nodes {
         let x = system.state.x.at(node);
@@ -108,17 +105,24 @@ fn center<const D: usize>(system: &System<D>) -> [f64; D] {
 
 /// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
 pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let nodes = system.nodes;
-    let position = |node: usize| system.state.x.at(node);
+    loose_motions(system, true)
+}
+
+/// The motions of the whole that pins do not hold, translations first.
+pub(super) fn unpinned_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
+    loose_motions(system, false)
+}
+
+/// All motions of the whole: translations, then rotations about the centre, each scaled to a mean displacement of one.
+fn all_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
     let center = center(system);
-    // Translations, then rotations about the centre, each scaled to a mean displacement of one.
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
-    for node in 0..nodes {
-        let x = position(node);
+    for node in 0..system.nodes {
+        let x = system.state.x.at(node);
         size += (0..D).map(|d| (x[d] - center[d]) * (x[d] - center[d])).sum::<f64>();
     }
-    let size = (size / nodes as f64).sqrt();
+    let size = (size / system.nodes as f64).sqrt();
     let mut motions: Vec<Motion<D>> = Vec::new();
     for d in 0..D {
         let mut translation = [0.0; D];
@@ -132,10 +136,13 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
             motions.push(Motion { translation: [0.0; D], rotation });
         }
     }
-    let shapes: Vec<Vec<f64>> = motions
-        .iter()
-        .map(|motion| (0..nodes).flat_map(|node| displacement(motion, &position(node), &center)).collect())
-        .collect();
+    motions
+}
+
+fn loose_motions<const D: usize>(system: &System<D>, by_stiffness: bool) -> Vec<Motion<D>> {
+    let nodes = system.nodes;
+    let motions = all_motions(system);
+    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_of(system, motion)).collect();
     let n = motions.len();
 
     // How much each combination moves held axes, or strains what acts from outside.
@@ -147,11 +154,13 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
             }
         }
     });
-    let mut projection = Projection { motions: &shapes, out: vec![0.0; n * n], largest: 0.0 };
-    system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
-    if projection.largest > 0.0 {
-        for (held, strained) in held.iter_mut().zip(&projection.out) {
-            *held += strained / projection.largest;
+    if by_stiffness {
+        let mut projection = Projection::of(&shapes);
+        system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
+        if projection.largest > 0.0 {
+            for (held, strained) in held.iter_mut().zip(&projection.out) {
+                *held += strained / projection.largest;
+            }
         }
     }
     // A rotation about the line on which all nodes lie moves nothing.
@@ -179,35 +188,37 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
         .filter(|(value, _)| **value <= 1e-10 * largest || largest == 0.0)
         .map(|(_, vector)| (0..n).map(|p| (0..m).map(|k| vector[k] * real[k][p]).sum()).collect())
         .collect();
-    simplest(loose, n).iter().map(|weights| combine(&motions, weights)).collect()
+    of_weights(&motions, loose)
+}
+
+/// The motions of sums of others, as simple as may be.
+pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec<f64>>) -> Vec<Motion<D>> {
+    // In parts of translations and of rotations, which are the same for all lists of motions.
+    let turns = if D == 2 { 1 } else { 3 };
+    let longest = |motion: &Motion<D>| motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let most = motions.iter().map(longest).fold(0.0, |most: f64, r| if r > most { r } else { most });
+    let scale = if most > 0.0 { most } else { 1.0 };
+    let rows = weights
+        .iter()
+        .map(|weights| combine(motions, weights))
+        .map(|motion| {
+            let row = motion.translation.iter().copied().chain(motion.rotation.iter().map(|r| r / scale));
+            row.collect::<Vec<f64>>()
+        })
+        .collect();
+    simplest(rows, D + turns)
+        .into_iter()
+        .map(|row| Motion {
+            translation: core::array::from_fn(|d| row[d]),
+            rotation: row[D..].iter().map(|r| r * scale).collect(),
+        })
+        .collect()
 }
 
 /// The displacements of all nodes in a motion, one coordinate after the other.
 pub fn shape_of<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Vec<f64> {
     let center = center(system);
     (0..system.nodes).flat_map(|node| displacement(motion, &system.state.x.at(node), &center)).collect()
-}
-
-/// Whether weight or loads bring a turning body to a place of its own, as that of a pendulum: they do work on the way, of
-/// first or of second order.
-fn swings<const D: usize>(system: &System<D>, motion: &Motion<D>, center: &[f64; D]) -> bool {
-    let (mut first, mut second, mut size) = (0.0, 0.0, 0.0);
-    for node in 0..system.nodes {
-        let way = displacement(motion, &system.state.x.at(node), center);
-        // The turn goes on: ω × (ω × r).
-        let turned: [f64; D] = core::array::from_fn(|d| way[d] + center[d]);
-        let still = Motion { translation: [0.0; D], rotation: motion.rotation.clone() };
-        let curve = displacement(&still, &turned, center);
-        let mass = system.mass.at(node);
-        for d in 0..D {
-            let weight = mass * system.gravity[d];
-            first += weight * way[d];
-            second += weight * curve[d];
-            size += (weight * way[d]).abs() + (weight * curve[d]).abs();
-        }
-    }
-    let loaded = system.members.iter().any(|member| member.potential.account() == Account::User);
-    loaded || first.abs() + second.abs() > 1e-9 * size
 }
 
 /// Row echelon form from the rotations backward: as many motions as possible are plain translations along axes.
@@ -249,7 +260,7 @@ fn combine<const D: usize>(motions: &[Motion<D>], weights: &[f64]) -> Motion<D> 
     out
 }
 
-fn displacement<const D: usize>(motion: &Motion<D>, x: &[f64; D], center: &[f64; D]) -> [f64; D] {
+pub(super) fn displacement<const D: usize>(motion: &Motion<D>, x: &[f64; D], center: &[f64; D]) -> [f64; D] {
     let mut out = motion.translation;
     let arm: [f64; D] = core::array::from_fn(|d| x[d] - center[d]);
     if D == 2 {

@@ -19,6 +19,7 @@
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
+//! | `standstill` | bodies that stand still flat, inside out or folded |
 //! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
@@ -46,4 +47,5 @@ pub(crate) mod newton;
 mod real_time;
 pub(crate) mod room;
 pub(crate) mod settings;
+pub(crate) mod standstill;
 pub(crate) mod step;

@@ -255,6 +255,12 @@ pub(crate) fn solve<const D: usize>(
             if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
                 system.history.numbers[number] = -CLAMPED;
             }
+            if !(size <= (ENOUGH * first).larger(floor)) {
+                let left = size / room.kept.stiffness().sqrt();
+                let work = &mut system.work.solver;
+                work.cut_off += 1;
+                work.left = left.larger(work.left);
+            }
             return Ok(solved);
         }
         if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {

@@ -76,6 +76,37 @@ pub(crate) const OTHERWISE: Field = Field::new(
 (these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
 );
 
+/// The number of Newton's iterations in statics.
+pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
+    "iterations",
+    Allowed::Integer { least: 1, greatest: 1000 },
+    "",
+    Default::Integer(200),
+    "Iterations of Newton's method at most, for every part of the load.",
+);
+/// The linear solver of statics.
+pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field::new(
+    "linear_solver",
+    Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
+    "",
+    Default::Text("auto"),
+    "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
+processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
+the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes. Without inertia the equations of a slender body \
+take conjugate gradients many products, most of all without a matrix. `arc_length` factors a matrix, and is refused with \
+\"matrix_free\".",
+);
+/// What to do without convergence in statics.
+pub(crate) const OTHERWISE_OF_STATICS: Field = Field::new(
+    "when_not_converged",
+    Allowed::Choice(&["error", "halve", "accept"]),
+    "",
+    Default::Text("error"),
+    "What happens where no balance is found: an error that leaves the state as it was, two steps of half the load and half the \
+way of what is held (these again, up to 1/256), or a state that counts all the same and is counted in a warning. With \
+`arc_length` the way along the curve is halved in any case.",
+);
+
 /// The fields of a rule that steps through time, or of statics: its own, and those that say how equations are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
@@ -83,8 +114,10 @@ macro_rules! fields {
         &[$($own,)* ACCURACY, ITERATIONS, TOLERANCE, LINEAR_SOLVER, OTHERWISE]
     }};
     (of_statics $(, $own:expr)*) => {{
-        use $crate::implicit::settings::{ITERATIONS, LINEAR_SOLVER, TOLERANCE};
-        &[$($own,)* ITERATIONS, TOLERANCE, LINEAR_SOLVER]
+        use $crate::implicit::settings::{
+            ITERATIONS_OF_STATICS, LINEAR_SOLVER_OF_STATICS, OTHERWISE_OF_STATICS, TOLERANCE,
+        };
+        &[$($own,)* ITERATIONS_OF_STATICS, TOLERANCE, LINEAR_SOLVER_OF_STATICS, OTHERWISE_OF_STATICS]
     }};
 }
 pub(crate) use fields;
@@ -143,6 +176,33 @@ impl Settings {
                 Some("accept") => Otherwise::Accept,
                 _ => Otherwise::Error,
             },
+        }
+    }
+}
+
+impl Settings {
+    /// What helps a step of a rule through time that did not converge.
+    pub(crate) fn hint(&self) -> &'static str {
+        match (self.real_time, self.otherwise) {
+            (true, _) => "more substeps, or `accuracy = \"exact\"`",
+            (_, Otherwise::Halve) => "more substeps, or more `iterations`; the step was already halved down to 1/256",
+            _ => "more substeps, more `iterations`, or `when_not_converged = \"halve\"`",
+        }
+    }
+    /// What helps where no balance is found; `alone` says that there are no obstacles.
+    pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> &'static str {
+        match (by_arc, self.otherwise, alone) {
+            (true, ..) => "a shorter `arc_length`, or more `iterations`",
+            (_, Otherwise::Halve, true) => {
+                "the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap"
+            }
+            (_, Otherwise::Halve, false) => {
+                "the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest"
+            }
+            (_, _, true) => {
+                "`when_not_converged = \"halve\"` or more `load_steps`; where a body gives way, `arc_length`"
+            }
+            (_, _, false) => "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
         }
     }
 }

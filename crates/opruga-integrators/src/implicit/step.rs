@@ -5,6 +5,7 @@ use super::newton::{self, Balance, Solved};
 use super::real_time;
 use super::room::Room;
 use super::settings::{Otherwise, Settings, Solver};
+use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
 use opruga_core::potential::Views;
@@ -67,7 +68,10 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn history(&self) -> HistorySize {
         let own = self.rule.history();
         let more = |here: usize| if self.settings.real_time { here } else { 0 };
-        HistorySize { columns: own.columns + more(real_time::COLUMNS), numbers: own.numbers + more(real_time::NUMBERS) }
+        HistorySize {
+            columns: own.columns + more(real_time::COLUMNS),
+            numbers: own.numbers + more(real_time::NUMBERS) + standstill::NUMBERS,
+        }
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         self.rule.amplification(omega, c, h)
@@ -91,7 +95,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
 }
 
 /// Halvings of a step at most.
-const MOST_HALVINGS: u32 = 8;
+pub(crate) const MOST_HALVINGS: u32 = 8;
 
 /// Makes a step of h, or two of half the length where it does not converge.
 fn advance_in<R: Rule<D>, const D: usize>(
@@ -168,7 +172,8 @@ fn attempt<R: Rule<D>, const D: usize>(
         real_time::remember(system, room, h);
     }
     system.end_implicit(h);
-    Ok(())
+    let slot = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
+    standstill::look(system, room, slot, h)
 }
 
 /// The factor by which what is much faster than a step falls in a step with contact, under rules that else damp nothing.
@@ -214,6 +219,8 @@ pub(crate) fn report<const D: usize>(
         correction: solved.correction,
         tolerance: settings.tolerance * room.extent,
         time: system.time,
+        beyond: None,
+        hint: settings.hint(),
     })
 }
 
