@@ -40,7 +40,8 @@ pub struct SolverWork {
     pub accepted: u64,
     /// Steps that were halved since they had not converged.
     pub halved: u64,
-    /// Steps of the real-time setting whose budget ended before they were as good as it promises.
+    /// Steps of the real-time setting that may be worse than it promises: a budget that was spent, or equations so slow to solve
+    /// that what is left says little.
     pub cut_off: u64,
     /// What was left out of balance at the end of such a step at most, as the way that it would move nodes if each stood
     /// alone [m].

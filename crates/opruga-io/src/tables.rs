@@ -180,7 +180,7 @@ pub struct SolverSummary {
     pub accepted: u64,
     /// Steps that were made in two halves.
     pub halved: u64,
-    /// Steps in real time whose budget ended before they were as good as that setting promises.
+    /// Steps in real time that may be worse than that setting promises.
     pub cut_off: u64,
     /// The most that such a step left out of balance, as the way that it would move nodes if each stood alone [m].
     pub largest_left: f64,

@@ -273,9 +273,9 @@ impl<const D: usize> World<D> {
         count(
             "step.cut_off",
             &format!(
-                "a step in real time spent its budget and left more than a fifth of what was out of balance, at most what \
-                 would move single nodes by {:.1e} m: the body is too stiff or too slender for the step; more substeps, or \
-                 `accuracy = \"exact\"`",
+                "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces \
+                 out of balance that would move single nodes by up to {:.1e} m; the body is too stiff or too slender for the \
+                 step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
                 solver.left
             ),
             solver.cut_off,

@@ -49,7 +49,7 @@ fn volumes(world: &World<3>, mesh: &Mesh<3>) -> (f64, f64) {
     (whole / at_rest, least)
 }
 
-/// What becomes of a body that starts in another shape, within sixty seconds.
+/// What becomes of a body that starts in another shape, within thirty seconds.
 #[derive(Debug, PartialEq)]
 enum End {
     /// It has its volume within 0.1 %, and no cell is turned inside out.
@@ -73,7 +73,8 @@ fn end<const D: usize>(blueprint: Blueprint<D>, name: &str, shape: &dyn Fn([f64;
     for (node, at) in positions.iter().enumerate() {
         world.place_node(0, node as u32, shape(*at, node), [0.0; D]).unwrap();
     }
-    for frame in 0..1800 {
+    let mut told = None;
+    for frame in 0..900 {
         if let Err(error) = world.frame() {
             let reason = error.to_string();
             assert!(reason.contains("did not converge") && reason.contains("hint"), "{name}: {reason}");
@@ -86,12 +87,17 @@ fn end<const D: usize>(blueprint: Blueprint<D>, name: &str, shape: &dyn Fn([f64;
         }
         if let Some(warning) = world.warnings().into_iter().find(|warning| warning.code == "step.odd_rest") {
             assert!(warning.message.contains("body `body`") && warning.message.contains("J = "), "{warning:?}");
-            return End::Reasoned(format!("after {frame} frames: {}", warning.message));
+            told.get_or_insert_with(|| format!("after {frame} frames: {}", warning.message));
+        }
+        // Some come back by themselves all the same.
+        if told.is_some() && frame >= 450 {
+            break;
         }
     }
+    if let Some(reason) = told {
+        return End::Reasoned(reason);
+    }
     let (whole, least) = ratios(&world);
-    let ends: Vec<[f64; D]> = (0..4).map(|node| world.velocity(0, node)).collect();
-    println!("{name}: {ends:?} {:?} {:?}", world.energy(), world.solver_work());
     End::Silent(whole, least)
 }
 
@@ -216,6 +222,134 @@ fn disturbances_are_repeatable_and_counted() {
     assert_eq!((a.state_hash(), a.solver_work()), (b.state_hash(), b.solver_work()));
     assert_eq!((a.state_hash(), a.solver_work()), (c.state_hash(), c.solver_work()));
     assert!(a.warnings().iter().any(|warning| warning.code == "step.disturbed"));
+}
+
+/// Steps that count though they did not converge may not lead beyond every measure.
+#[test]
+fn accepted_steps_that_blow_a_body_up_end_in_an_error() {
+    // Two iterations a step, a law that pushes flat cells far out, and a start that is random.
+    let mut blueprint = solid(
+        cube(3),
+        "newmark",
+        &[("when_not_converged", text("accept")), ("iterations", Value::Integer(1))],
+        &[
+            ("material", text("neo_hookean")),
+            ("youngs_modulus", Value::Number(1e5)),
+            ("poissons_ratio", Value::Number(-0.5)),
+        ],
+    );
+    blueprint.time.frame = 0.1;
+    let positions = blueprint.bodies[0].mesh.positions.clone();
+    let mut world = World::new(blueprint, Options::default()).unwrap();
+    for (node, _) in positions.iter().enumerate() {
+        world.place_node(0, node as u32, core::array::from_fn(|d| random(node, d)), [0.0; 3]).unwrap();
+    }
+    let mut refused = None;
+    for _ in 0..400 {
+        if let Err(error) = world.frame() {
+            refused = Some(error.to_string());
+            break;
+        }
+        let extent = (0..positions.len()).map(|n| world.position(0, n as u32)[0].abs()).fold(0.0, Lane::larger);
+        assert!(extent < 1e4, "{extent}");
+    }
+    let told = refused.expect("an error");
+    assert!(told.contains("a hundred times as large") && told.contains("`newmark` did not converge"), "{told}");
+}
+
+/// The largest distance between the same nodes of two worlds.
+fn apart<const D: usize>(a: &World<D>, b: &World<D>) -> f64 {
+    let distance = |node: u32| {
+        let (x, y) = (a.position(0, node), b.position(0, node));
+        (0..D).map(|d| (x[d] - y[d]) * (x[d] - y[d])).sum::<f64>().sqrt()
+    };
+    (0..a.node_count(0) as u32).map(distance).fold(0.0, Lane::larger)
+}
+
+fn hanging(mesh: Mesh<3>, rule: &str, frame: f64, damping: f64) -> World<3> {
+    let mut blueprint = solid(
+        mesh,
+        rule,
+        &[],
+        &[
+            ("youngs_modulus", Value::Number(1e5)),
+            ("poissons_ratio", Value::Number(0.3)),
+            ("damping", Value::Number(damping)),
+        ],
+    );
+    blueprint.time.frame = frame;
+    blueprint.surroundings.gravity = [0.0, -9.81, 0.0];
+    blueprint.bodies[0].pins = clamp();
+    World::new(blueprint, Options::default()).unwrap()
+}
+
+/// A clamped body under its weight, node by node: in long steps it comes to the rest that statics says, in short ones it
+/// moves as explicit steps move it.
+#[test]
+fn steps_from_ten_microseconds_to_two_seconds_lead_every_node_to_the_same_place() {
+    for h in [2.0, 0.1] {
+        let mut still = hanging(cube(3), "equilibrium", 1.0, 0.05);
+        still.frame().unwrap();
+        let mut world = hanging(cube(3), "backward_euler", h, 0.05);
+        let start = apart(&world, &still);
+        (0..100).for_each(|_| world.frame().unwrap());
+        let left = apart(&world, &still);
+        assert!(left < 1e-6 * start, "h = {h}: {left} of {start}");
+    }
+    for (h, rule) in [(1e-3, "newmark"), (1e-5, "newmark"), (1e-5, "backward_euler")] {
+        let (mut implicit, mut explicit) = (hanging(cube(3), rule, h, 0.0), hanging(cube(3), "verlet", h, 0.0));
+        let rest = hanging(cube(3), rule, h, 0.0);
+        (0..100).for_each(|_| {
+            implicit.frame().unwrap();
+            explicit.frame().unwrap();
+        });
+        let (way, left) = (apart(&rest, &explicit), apart(&implicit, &explicit));
+        assert!(left < 0.02 * way, "{rule}, h = {h}: {left} of {way}");
+    }
+}
+
+/// Layers of cells that are a thousand times wider than high, in a hanging bar without lateral contraction: each layer hangs where
+/// the closed form says, u(x) = ρ g (L x − x²/2)/E.
+#[test]
+fn layers_of_slivers_hang_where_the_closed_form_says() {
+    let (modulus, weight) = (1e6, 1000.0 * 9.81);
+    let mut mesh = Mesh::grid([0.0; 3], [1.0; 3], [4, 2, 2]).unwrap().into_simplices().unwrap();
+    for x in &mut mesh.positions {
+        // Two layers of 0.5 mm about the middle.
+        x[0] = if x[0] == 0.25 {
+            0.4995
+        } else if x[0] == 0.75 {
+            0.5005
+        } else {
+            x[0]
+        };
+    }
+    for rule in ["equilibrium", "backward_euler"] {
+        let mut blueprint = solid(
+            mesh.clone(),
+            rule,
+            &[],
+            &[
+                ("material", text("linear")),
+                ("youngs_modulus", Value::Number(modulus)),
+                ("poissons_ratio", Value::Number(0.0)),
+            ],
+        );
+        blueprint.time.frame = 1.0;
+        blueprint.surroundings.gravity = [9.81, 0.0, 0.0];
+        blueprint.bodies[0].pins = clamp();
+        let mut bar = World::new(blueprint, Options::default()).unwrap();
+        (0..if rule == "equilibrium" { 1 } else { 60 }).for_each(|_| bar.frame().unwrap());
+        for layer in [0.4995, 0.5, 0.5005, 1.0] {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (node, x) in mesh.positions.iter().enumerate().filter(|(_, x)| x[0] == layer) {
+                sum += bar.position(0, node as u32)[0] - x[0];
+                count += 1.0;
+            }
+            let wanted = weight / modulus * (layer - 0.5 * layer * layer);
+            assert!((sum / count / wanted - 1.0).abs() < 0.02, "{rule}, {layer}: {} {wanted}", sum / count);
+        }
+    }
 }
 
 /// A bent body comes to rest in steps of any length.

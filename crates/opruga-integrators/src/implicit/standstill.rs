@@ -20,11 +20,12 @@ use opruga_core::system::{Stage, System};
 use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_solve::blocks::nodes;
 
-/// Steps between two looks.
+/// Steps between two looks, and steps more after a look that found nothing: a look costs about as much as evaluating forces.
 const PERIOD: f64 = 24.0;
+const LEISURE: f64 = 72.0;
 
 /// Kinetic energy, and forces out of balance times the size, that count as rest, as parts of the stored energy.
-const REST: f64 = 1e-2;
+const REST: f64 = 1e-3;
 
 /// How long a disturbed body has to leave, in units of L √(M/U).
 const PATIENCE: f64 = 12.0;
@@ -36,7 +37,7 @@ const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
 const FLAT: f64 = 1e-3;
 
 /// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
-const STRAINED: f64 = 1e-2;
+const STRAINED: f64 = 1e-3;
 
 /// What the state remembers: steps since the last look, how often the body was disturbed since it was seen in a shape of its
 /// own, one more where that was in vain, and when it was disturbed last [s].
@@ -56,7 +57,7 @@ pub(crate) fn look<const D: usize>(
     }
     system.history.numbers[first] = 0.0;
     let Some(size) = odd_size(system, Stage::Current) else {
-        system.history.numbers[first + 1] = 0.0;
+        (system.history.numbers[first], system.history.numbers[first + 1]) = (-LEISURE, 0.0);
         return Ok(());
     };
     if times > SIZES.len() as f64 {

@@ -1,10 +1,11 @@
 //! A step of an implicit rule from start to ledger.
 
 use super::contact::SMALL;
+use super::growth;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
 use super::room::Room;
-use super::settings::{Otherwise, Settings, Solver};
+use super::settings::{Otherwise, Settings};
 use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
@@ -70,7 +71,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
         let more = |here: usize| if self.settings.real_time { here } else { 0 };
         HistorySize {
             columns: own.columns + more(real_time::COLUMNS),
-            numbers: own.numbers + more(real_time::NUMBERS) + standstill::NUMBERS,
+            numbers: own.numbers + more(real_time::NUMBERS) + growth::NUMBERS + standstill::NUMBERS,
         }
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
@@ -151,6 +152,9 @@ fn attempt<R: Rule<D>, const D: usize>(
     report(R::NAME, settings, system, room, &solved)?;
 
     rule.end(system, room, &balance, h);
+    let own = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
+    let time = system.time;
+    growth::check(system, room, own, &solved, |hint| refusal(R::NAME, settings, room, &solved, time, hint))?;
     if system.contacts.is_some() {
         let Room { contacting, mass, residual, x0, v0, u1, v1, struck, extent, .. } = room;
         contacting.expel(system, x0, u1, residual, h, *extent);
@@ -172,8 +176,7 @@ fn attempt<R: Rule<D>, const D: usize>(
         real_time::remember(system, room, h);
     }
     system.end_implicit(h);
-    let slot = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
-    standstill::look(system, room, slot, h)
+    standstill::look(system, room, own + growth::NUMBERS, h)
 }
 
 /// The factor by which what is much faster than a step falls in a step with contact, under rules that else damp nothing.
@@ -212,16 +215,28 @@ pub(crate) fn report<const D: usize>(
         work.accepted += 1;
         return Ok(());
     }
-    Err(StepError::NotConverged {
+    Err(refusal(integrator, settings, room, solved, system.time, settings.hint()))
+}
+
+/// The error of a step that did not converge.
+fn refusal<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    room: &Room<D>,
+    solved: &Solved,
+    time: f64,
+    hint: &'static str,
+) -> StepError {
+    StepError::NotConverged {
         integrator,
         iterations: solved.iterations,
-        residual,
+        residual: room.largest_residual(),
         correction: solved.correction,
         tolerance: settings.tolerance * room.extent,
-        time: system.time,
+        time,
         beyond: None,
-        hint: settings.hint(),
-    })
+        hint,
+    }
 }
 
 /// Writes the end of the step into the state.
@@ -239,7 +254,5 @@ pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
 /// Whether the same bits come out on every processor.
 pub(crate) fn same_bits_everywhere<const D: usize>(settings: &Settings, system: &System<D>) -> bool {
     let Settings { real_time, solver, .. } = *settings;
-    let direct: fn(Solver, usize) -> bool =
-        if real_time { Solver::is_direct_in_real_time::<D> } else { Solver::is_direct::<D> };
-    !direct(solver, system.nodes)
+    !if real_time { solver.is_direct_in_real_time(system) } else { solver.is_direct::<D>(system.nodes) }
 }
