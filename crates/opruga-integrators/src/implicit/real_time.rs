@@ -264,7 +264,8 @@ pub(crate) fn solve<const D: usize>(
             if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
                 system.history.numbers[number] = -CLAMPED;
             }
-            if slow || !(size <= (ENOUGH * first).larger(floor)) {
+            let as_promised = size <= (ENOUGH * first).larger(floor);
+            if slow || !as_promised {
                 let left = size / room.kept.stiffness().sqrt();
                 let work = &mut system.work.solver;
                 work.cut_off += 1;

@@ -66,7 +66,8 @@ pub(crate) fn look<const D: usize>(
     let energy = stored(system, &mut room.force)?;
     let (kinetic, push, mass) = motion(system, room, h);
     let patience = PATIENCE * size * (mass / energy).sqrt();
-    let waits = times > 0.0 && !(system.time - last > patience);
+    let had_time = system.time - last > patience;
+    let waits = times > 0.0 && !had_time;
     if waits || !(kinetic <= REST * energy && push * size <= REST * energy) {
         return Ok(());
     }
@@ -140,7 +141,8 @@ fn odd_size<const D: usize>(system: &System<D>, stage: Stage) -> Option<f64> {
 /// Whether a cell of a body that stands still has no shape of its own; `alone` says that nothing acts on the body.
 fn is_odd(cell: &CellState, alone: bool) -> bool {
     // Written so that what is no number is odd.
-    !(cell.volume_ratio > FLAT) || alone && (cell.volume_ratio - 1.0).abs() > STRAINED
+    let solid = cell.volume_ratio > FLAT;
+    !solid || alone && (cell.volume_ratio - 1.0).abs() > STRAINED
 }
 
 /// Whether nothing acts on the cells of a body that stands still but themselves.
