@@ -175,7 +175,7 @@ fn every_solver_is_taken_at_its_word_and_finds_the_same_balance() {
         &[("linear_solver", text("matrix_free")), ("arc_length", Value::Number(0.1))],
     );
     arc.bodies[0].pins = clamp();
-    let error = World::new(arc, Options::default()).err().expect("a refusal");
+    let error = World::new(arc, Options::default()).expect_err("a refusal");
     assert_eq!(error.code(), "integrator.no_matrix");
 }
 
@@ -201,7 +201,7 @@ fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
     };
     let (outcome, wanted, ..) = bent(200, "error", 10.0);
     outcome.unwrap();
-    let (outcome, _, ..) = bent(6, "error", 10.0);
+    let (outcome, ..) = bent(6, "error", 10.0);
     let told = outcome.expect_err("a refusal");
     assert!(
         told.contains("did not converge in 6 iterations") && told.contains("when_not_converged = \"halve\""),
