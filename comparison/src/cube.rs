@@ -33,8 +33,11 @@ fn exact_swing(values: &[(&str, String)], substeps: u32) -> Result<Option<Swing>
 /// All programs on the cube of n³ cells.
 pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, String> {
     let corotated = values(n, modulus, "corotated");
-    let of_one = Reference { rest: sag_at_rest(SCENE, &corotated)?, swing: exact_swing(&corotated, 1)?, frame: FRAME };
-    let of_four = Reference { swing: exact_swing(&corotated, rapier::SUBSTEPS)?, ..of_one };
+    let exact = |values: &[(&str, String)], substeps| -> Result<Option<Swing>, String> {
+        if settings.times_only { Ok(None) } else { exact_swing(values, substeps) }
+    };
+    let of_one = Reference { rest: sag_at_rest(SCENE, &corotated)?, swing: exact(&corotated, 1)?, frame: FRAME };
+    let of_four = Reference { swing: exact(&corotated, rapier::SUBSTEPS)?, ..of_one };
     let world = Held::new(SCENE, &corotated, REAL_TIME, 1)?;
     let (shape, nodes) = (world.shape(), world.nodes());
     let solvers = [SoftBodySolver::Fem, SoftBodySolver::Constraints];
@@ -54,13 +57,13 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     }
     let mut rows = Vec::new();
     for (k, (name, solver)) in ["Rapier, elements", "Rapier, constraints"].into_iter().zip(solvers).enumerate() {
-        let resting = rapier::run(&shape, modulus, solver, Damping::Full, REST_FRAMES, Run::is_still).at_rest();
+        let slow = || rapier::run(&shape, modulus, solver, Damping::Full, REST_FRAMES, Run::is_still);
+        let resting = if settings.times_only { None } else { slow().at_rest() };
         rows.push(Row::new(&format!("{name}, 4 steps"), nodes, &swinging[k], resting, &of_four));
     }
     if let Some(python) = &settings.mujoco {
         let kirchhoff = values(n, modulus, "st_venant_kirchhoff");
-        let reference =
-            Reference { rest: sag_at_rest(SCENE, &kirchhoff)?, swing: exact_swing(&kirchhoff, 1)?, frame: FRAME };
+        let reference = Reference { rest: sag_at_rest(SCENE, &kirchhoff)?, swing: exact(&kirchhoff, 1)?, frame: FRAME };
         let body = Body::Tetrahedra(&shape);
         let answer = mujoco::run(python, &body, [modulus, 0.4], FRAME, [settings.frames, REST_FRAMES])?;
         let name = format!("MuJoCo {}, 1 step, St. Venant–Kirchhoff", answer.version);
@@ -69,6 +72,9 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     let mut damped = corotated.clone();
     damped.push(("body.cube.models.fem.damping", format!("{DAMPING:?}")));
     let resting = |substeps| -> Result<Option<f64>, String> {
+        if settings.times_only {
+            return Ok(None);
+        }
         let run = Held::new(SCENE, &damped, REAL_TIME, substeps)?.run(REST_FRAMES, Run::is_still)?;
         Ok(run.at_rest())
     };

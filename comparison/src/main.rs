@@ -45,6 +45,9 @@ pub struct Settings {
     /// A Python with the package `mujoco`; MuJoCo is left out without
     #[arg(long, value_name = "PYTHON")]
     mujoco: Option<String>,
+    /// Times of the cubes without their errors, for which exact steps and rests of many cells take long
+    #[arg(long)]
+    times_only: bool,
     /// An object for programs
     #[arg(long)]
     json: bool,

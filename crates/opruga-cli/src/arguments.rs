@@ -131,9 +131,9 @@ pub(crate) struct BenchVertices {
     /// The integrator: one of those of `opruga list`
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
-    /// Only rows whose rings have this many vertices
-    #[arg(long, value_name = "VERTICES")]
-    pub(crate) only: Option<usize>,
+    /// Only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
+    #[arg(long, value_name = "[RINGSx]VERTICES")]
+    pub(crate) only: Option<String>,
     /// Processor time spent on each row, above 0 up to 600 [s]
     #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,
@@ -146,7 +146,7 @@ pub(crate) struct BenchVertices {
 pub(crate) struct Mesh {
     /// A surface (.obj, .stl, .ply, .gltf, .glb), a drawing (.svg, .png, .json map), or a mesh (.msh, .vtk, .vtu, .mesh, .mfem, .node, .ele)
     pub(crate) input: PathBuf,
-    /// The mesh to be written: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture lies beside it (.png)
+    /// The mesh to be written: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture lies beside it, with `.png` behind its name
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// About the length of edges of the cells [m]: surfaces and drawings need it
@@ -418,7 +418,7 @@ pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
     /// Compute every frame again and compare it bit by bit; exit code 1 where one differs
-    #[arg(long, conflicts_with_all = ["out", "fps", "gif", "arrows", "springs", "vtk", "vtu", "obj", "ply", "gltf", "pc2", "mdd", "no_pictures"])]
+    #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
@@ -426,11 +426,11 @@ pub(crate) struct Replay {
     /// The simulated time to end at [s] [default: the last frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
-    /// Pictures, and exported frames, for each second of simulated time
+    /// Pictures, and exported frames, for each second of simulated time [default: 20]
     ///
     /// Above 0 up to 240; never more than the recording has frames.
-    #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
-    pub(crate) fps: f64,
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) fps: Option<f64>,
     /// The folder for the output [default: out/SCENE-replay]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
@@ -479,9 +479,30 @@ pub(crate) struct Replay {
 }
 
 impl Replay {
+    /// The first option of the call that says what is to be written.
+    pub(crate) fn option_of_writing(&self) -> Option<&'static str> {
+        let options = [
+            ("--out", self.out.is_some()),
+            ("--fps", self.fps.is_some()),
+            ("--gif", self.gif),
+            ("--arrows", self.arrows),
+            ("--springs", self.springs),
+            ("--no-pictures", self.no_pictures),
+            ("--vtk", self.vtk),
+            ("--vtu", self.vtu),
+            ("--obj", self.obj),
+            ("--ply", self.ply),
+            ("--gltf", self.gltf),
+            ("--pc2", self.pc2),
+            ("--mdd", self.mdd),
+        ];
+        options.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
+    }
+
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
+        let fps = self.fps.unwrap_or(20.0);
+        Wanted { fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
     }
 }
 

@@ -8,6 +8,7 @@ use opruga::io::safe_write::{OutputFolder, WriteError};
 use opruga::io::scene;
 use opruga::io::tables::{NumberTable, WarningSummary};
 use opruga::io::{Files, SceneError};
+use opruga::math::words::number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -120,7 +121,7 @@ pub(crate) fn open(path: &Path) -> Result<(SavedRun, Source), Failure> {
         read(&older).ok().map(|(run, _)| {
             format!(
                 "the checkpoint before it is whole, at t = {} s: --resume {}",
-                run.time,
+                number(run.time),
                 argument(&older.display().to_string())
             )
         })

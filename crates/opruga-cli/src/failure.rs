@@ -62,9 +62,9 @@ impl Failure {
     }
 
     fn to_json(&self) -> Value {
-        let plain = |code: &str, message: String, file: &str, hint: Option<&str>| {
-            json!({"code": code, "message": message, "file": file, "line": null, "column": null,
-                   "path": "", "value": null, "allowed": null, "hint": hint})
+        let plain = |code: &str, message: String, hint: Option<&str>| {
+            json!({"code": code, "message": message, "file": null, "line": null, "column": null,
+                   "path": null, "value": null, "allowed": null, "hint": hint})
         };
         match self {
             Failure::Scene(errors) => {
@@ -77,10 +77,10 @@ impl Failure {
             }
             Failure::Run(error) => error.to_json(),
             Failure::Write(error) => error.to_json(),
-            Failure::Draw(message) => plain("draw.failed", message.clone(), "", None),
-            Failure::Output(message) => plain("write.failed", message.clone(), "", None),
-            Failure::Call { message, hint } => plain("call", message.clone(), "", hint.as_deref()),
-            Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), "", None),
+            Failure::Draw(message) => plain("draw.failed", message.clone(), None),
+            Failure::Output(message) => plain("write.failed", message.clone(), None),
+            Failure::Call { message, hint } => plain("call", message.clone(), hint.as_deref()),
+            Failure::Interrupted => plain("interrupted", "interrupted; the files are closed".into(), None),
             Failure::ClosedPipe => Value::Null,
         }
     }

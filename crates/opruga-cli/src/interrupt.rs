@@ -1,4 +1,4 @@
-//! Ctrl-C and signals to end: one flag for the whole program, which work looks at between its steps.
+//! Signals: Ctrl-C and those to end, one flag for the whole program, which work looks at between its steps.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,5 +36,15 @@ pub(crate) fn begin_work() {
     STOP.store(false, Ordering::SeqCst);
     if asked_to_end() {
         stop_work();
+    }
+}
+
+/// From here on a file that reaches the limit on the size of files (`ulimit -f`) is a failed write like a full disk, which is
+/// told with path and bytes, and no longer the end of the program.
+pub(crate) fn outlive_the_limit_on_files() {
+    #[cfg(unix)]
+    {
+        // Where the system gives us no handler, the signal ends the program as it always did.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::new(AtomicBool::new(false)));
     }
 }

@@ -6,6 +6,7 @@ mod bench;
 mod checkpoints;
 mod exports;
 mod failure;
+mod forecast;
 mod interrupt;
 mod mesh;
 mod modes;
@@ -28,6 +29,7 @@ use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    interrupt::outlive_the_limit_on_files();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {

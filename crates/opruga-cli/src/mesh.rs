@@ -3,12 +3,16 @@
 
 use crate::arguments::Mesh as Call;
 use crate::failure::{Failure, print_data};
-use opruga::blueprint::AnyBlueprint;
+use opruga::core::spec::{Value, Values};
 use opruga::draw::{self, BodyPicture, ColourMap, Facets, Legend, Picture};
 use opruga::io::problem::visible;
-use opruga::io::safe_write::safe_write;
-use opruga::io::{Files, Notice, SceneError, meshes, scene};
+use opruga::io::safe_write::{safe_write, try_write};
+use opruga::io::scene::Limits;
+use opruga::io::shapes::{Problem, body};
+use opruga::io::{Files, Notice, SceneError, meshes};
+use opruga::math::words::{counted, number, rounded};
 use opruga::mesh::{CellQuality, Element, Mesh, triangle_parts};
+use opruga::shapes;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -34,35 +38,32 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
         return Err(Failure::call(format!("{} is no name of a file in UTF-8", call.input.display())));
     };
     let (dimension, shape) = shape(call, folder, name, &ending(&call.input))?;
-
+    let files = Files::in_folder(folder);
     // One way from files to meshes: that of scenes.
-    let order = if call.order == 2 { 2 } else { 1 };
-    let text = format!(
-        "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n\
-         [[body]]\nname = \"mesh\"\nmass = 1\nshape = {{ {shape} }}\n"
-    );
-    let options = scene::Options { files: Files::in_folder(folder), ..scene::Options::default() };
-    let told = |error: SceneError| match error.file == name {
-        true => SceneError { file: call.input.display().to_string(), ..error },
-        false => error,
-    };
-    let (blueprint, notices) = scene::read(text.as_bytes(), "opruga mesh", &opruga::catalogue(), &options)
-        .map_err(|errors| Failure::Scene(errors.into_iter().map(told).collect()))?;
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => finish(call, &blueprint.bodies[0].mesh, order, &notices, out),
-        AnyBlueprint::Space(blueprint) => finish(call, &blueprint.bodies[0].mesh, order, &notices, out),
+    if dimension == 2 {
+        let (mesh, notices) = body::<2>(&shape, &files, &Limits::default()).map_err(|e| refused(call, name, e))?;
+        finish(call, mesh, &told(call, name, notices), out)
+    } else {
+        let (mesh, notices) = body::<3>(&shape, &files, &Limits::default()).map_err(|e| refused(call, name, e))?;
+        finish(call, mesh, &told(call, name, notices), out)
     }
 }
 
-/// The dimension of the scene, and the shape in it.
-fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, String), Failure> {
-    let file = format!("file = {}", json!(name));
-    let extent = call.scale_to.map_or(String::new(), |size| format!(", size = {size:e}"));
+/// What the call asks for in the words of scenes, and the dimension.
+fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, Values), Failure> {
     let needs = |what: &str, why: &str| Failure::Call {
         message: format!("{what} is missing"),
         hint: Some(format!("{what} {why}")),
     };
-    let edge = "H: about the length of edges [m]";
+    let size = || call.size.ok_or_else(|| needs("--size", "H: about the length of edges [m]"));
+    let word = |field, value: &str| (field, Value::Text(value.into()));
+    let number = |field, value| (field, Value::Number(value));
+    let surface = |weld: bool| -> Result<(usize, Values), Failure> {
+        let mut fields = vec![word("filling", "tetrahedra"), number("spacing", size()?)];
+        fields.extend(call.scale_to.map(|size| number("size", size)));
+        fields.extend(weld.then(|| number("weld", 0.0)));
+        Ok((3, shape_of("surface", 3, name, &fields)?))
+    };
     match ending {
         "svg" | "png" | "json" | "geojson" | "topojson" => {
             let kind = match ending {
@@ -70,10 +71,11 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
                 "png" => "bitmap",
                 _ => "map",
             };
-            let size = call.size.ok_or_else(|| needs("--size", edge))?;
+            let spacing = size()?;
             let long = call.scale_to.ok_or_else(|| needs("--scale-to", "L: the longer side of the drawing [m]"))?;
-            let more = format!("spacing = {size:e}, size = {long:e}, overlap = \"union\", filling = \"triangles\"");
-            Ok((2, format!("kind = \"{kind}\", {file}, {more}")))
+            let fill = [word("overlap", "union"), word("filling", "triangles")];
+            let fields = [&fill[..], &[number("spacing", spacing), number("size", long)]].concat();
+            Ok((2, shape_of(kind, 2, name, &fields)?))
         }
         _ if meshes::is_mesh(name) => {
             let path = folder.join(name);
@@ -86,13 +88,8 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
             let bytes = read(name).map_err(|e| Failure::Scene(vec![e]))?;
             let found = meshes::read(name, &bytes, &mut |other| read(other))
                 .map_err(|e| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..e }]))?;
-            let surface = found.dimension() == 2 && !found.is_plane();
-            if surface {
-                let size = call.size.ok_or_else(|| needs("--size", edge))?;
-                return Ok((
-                    3,
-                    format!("kind = \"surface\", {file}, filling = \"tetrahedra\", spacing = {size:e}{extent}"),
-                ));
+            if found.dimension() == 2 && !found.is_plane() {
+                return surface(false);
             }
             if call.size.is_some() || call.scale_to.is_some() {
                 return Err(Failure::Call {
@@ -100,48 +97,113 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
                     hint: Some("without --size and --scale-to it is shown, and written in another format".into()),
                 });
             }
-            let mending = match call.mend {
-                true => ", inverted = \"turn\", unreferenced = \"leave_out\"",
-                false => "",
-            };
-            Ok((if found.dimension() == 3 { 3 } else { 2 }, format!("kind = \"mesh\", {file}{mending}")))
+            let mending = [word("inverted", "turn"), word("unreferenced", "leave_out")];
+            let dimension = if found.dimension() == 3 { 3 } else { 2 };
+            Ok((dimension, shape_of("mesh", dimension, name, if call.mend { &mending } else { &[] })?))
         }
+        "obj" | "stl" | "ply" | "gltf" | "glb" => surface(call.mend),
         _ => {
-            let size = call.size.ok_or_else(|| needs("--size", edge))?;
-            let weld = if call.mend { ", weld = 0" } else { "" };
-            Ok((3, format!("kind = \"surface\", {file}, filling = \"tetrahedra\", spacing = {size:e}{extent}{weld}")))
+            let known =
+                format!(".obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, {}", meshes::ENDINGS);
+            let hint = match ending {
+                "ttf" | "otf" => "in a scene, `kind = \"text\"` writes words in a font".to_string(),
+                "toml" => "a scene is read by `opruga check` and `opruga run`".to_string(),
+                _ => format!("files that can be read end in {known}"),
+            };
+            let message = format!("{}: files ending in `.{}` hold no shape", call.input.display(), visible(ending));
+            Err(Failure::Call { message, hint: Some(hint) })
         }
     }
 }
 
+/// A shape with some of its fields; the others have their defaults.
+fn shape_of(kind: &str, dimension: usize, file: &str, fields: &[(&str, Value)]) -> Result<Values, Failure> {
+    let unknown = || Failure::call(format!("there is no shape `{kind}`"));
+    let spec = shapes::all().into_iter().find(|spec| spec.kind == kind).ok_or_else(unknown)?;
+    let mut values = Values::defaults(spec, dimension);
+    let file = ("file", Value::Text(file.into()));
+    for (field, value) in fields.iter().chain([&file]) {
+        values.set(spec, field, value.clone(), dimension).map_err(|error| Failure::call(error.to_string()))?;
+    }
+    Ok(values)
+}
+
+/// What a file or an option of the call is refused for: the words of scenes become those of the call.
+fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
+    let value = |option: &str, value: Option<f64>| value.map(|value| format!("{option} {value}"));
+    let option = match problem.field {
+        "spacing" => value("--size", call.size),
+        "size" => value("--scale-to", call.scale_to),
+        _ => None,
+    };
+    let error = in_words_of_the_call(call, name, problem.about);
+    Failure::Scene(vec![match option.filter(|_| error.line.is_none()) {
+        Some(file) => SceneError { file, ..error },
+        None => error,
+    }])
+}
+
+/// What is odd about the file.
+fn told(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
+    notices.into_iter().map(|about| Notice { about: in_words_of_the_call(call, name, about), count: 1 }).collect()
+}
+
+/// Fields of scenes and the options that stand for them here.
+const WORDS: [(&str, &str); 8] = [
+    ("`spacing`", "--size"),
+    ("`size`", "--scale-to"),
+    ("`weld = 0`", "--mend"),
+    ("`inverted = \"turn\"`", "--mend"),
+    ("`unreferenced = \"leave_out\"`", "--mend"),
+    (" (`overlap = \"union\"`)", ""),
+    ("the scene has", "the mesh would have"),
+    ("the scene would take", "the mesh would take"),
+];
+
+fn in_words_of_the_call(call: &Call, name: &str, error: SceneError) -> SceneError {
+    let said = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
+    // Other fields have no option: what they would do is said of scenes.
+    let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(said).map(|hint| {
+        let (here, in_scenes): (Vec<&str>, Vec<&str>) = hint.split("; ").partition(|part| !part.contains('`'));
+        match in_scenes.is_empty() {
+            true => hint,
+            false if here.is_empty() => format!("in a scene, {}", in_scenes.join("; ").trim_start_matches("or ")),
+            false => format!("{}; in a scene also {}", here.join("; "), in_scenes.join("; ").trim_start_matches("or ")),
+        }
+    });
+    let file = if error.file.is_empty() || error.file == name { call.input.display().to_string() } else { error.file };
+    let (message, allowed) = (said(error.message), error.allowed.map(said));
+    SceneError { file, message, allowed, hint, path: String::new(), ..error }
+}
+
 fn finish<const D: usize>(
     call: &Call,
-    mesh: &Mesh<D>,
-    order: u32,
+    mesh: Mesh<D>,
     notices: &[Notice],
     out: Option<(&Path, String)>,
 ) -> Result<u8, Failure> {
     let refuse = |error: opruga::mesh::MeshError| Failure::call(error.to_string());
-    let mesh = if order == 2 { mesh.clone().into_quadratic().map_err(refuse)? } else { mesh.clone() };
+    let mesh = if call.order == 2 { mesh.into_quadratic().map_err(refuse)? } else { mesh };
     let Some(quality) = mesh.cell_quality() else {
         return Err(Failure::call("the file holds nothing that fills a body"));
     };
-    let mut files = Vec::new();
-    let mut left_out = Vec::new();
+    let (mut written, mut left_out) = (Vec::new(), Vec::new());
     if let Some((path, ending)) = &out {
         let named = |error: SceneError| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
-        let written = meshes::write(&mesh, ending).map_err(named)?;
-        for (ending, bytes) in &written.files {
-            let path = path.with_extension(ending);
-            safe_write(&path, call.force, |out| out.write_all(bytes))?;
-            files.push(path.display().to_string());
-        }
-        left_out = written.left_out;
+        let mesh = meshes::write(&mesh, ending).map_err(named)?;
+        written.extend(mesh.files.into_iter().map(|(ending, bytes)| (path.with_extension(ending), bytes)));
+        left_out = mesh.left_out;
     }
-    let picture = call.picture.clone().or_else(|| out.as_ref().map(|(path, _)| path.with_extension("png")));
-    if let Some(path) = picture {
-        let png = drawn(&mesh, &call.input).map_err(|e| Failure::Draw(e.to_string()))?;
-        safe_write(&path, call.force, |out| out.write_all(&png))?;
+    // The picture has the whole name of the mesh: each format of a mesh may lie beside the others with its own.
+    let beside = || out.as_ref().map(|(path, ending)| path.with_extension(format!("{ending}.png")));
+    if let Some(path) = call.picture.clone().or_else(beside) {
+        written.push((path, drawn(&mesh, &call.input).map_err(|e| Failure::Draw(e.to_string()))?));
+    }
+    // All of them or none.
+    written.iter().try_for_each(|(path, _)| try_write(path, call.force))?;
+    let mut files = Vec::new();
+    for (path, bytes) in &written {
+        safe_write(path, call.force, |out| out.write_all(bytes))?;
         files.push(path.display().to_string());
     }
     print(call, &mesh, &quality, notices, &left_out, &files)?;
@@ -195,15 +257,15 @@ fn print<const D: usize>(
     let (of, unit) = if D == 2 { ("area", "m²") } else { ("volume", "m³") };
     let angle = if D == 2 { "angles of corners" } else { "angles between faces" };
     let mut text = format!(
-        "{} nodes, {}, {} inverted\n{of} {:.6} {unit}, {angle} {:.2}° to {:.2}°, edges {:.4} m to {:.4} m\n",
-        mesh.nodes(),
+        "{}, {}, {} inverted\n{of} {} {unit}, {angle} {:.2}° to {:.2}°, edges {} m to {} m\n",
+        counted(mesh.nodes() as u64, "node", "nodes"),
         cells.join(", "),
         quality.inverted,
-        quality.measure,
+        number(quality.measure),
         degrees(quality.smallest_angle),
         degrees(quality.largest_angle),
-        quality.shortest_edge,
-        quality.longest_edge
+        rounded(quality.shortest_edge, 4),
+        rounded(quality.longest_edge, 4)
     );
     let names = |list: Vec<&String>| list.iter().map(|n| visible(n)).collect::<Vec<_>>().join(", ");
     for (what, list) in [

@@ -2,16 +2,16 @@
 
 use crate::arguments::Modes;
 use crate::failure::{Failure, print_data};
-use crate::run::{default_folder, simd_from_environment};
-use crate::source::{Source, Whole, overrides};
+use crate::run::default_folder;
+use crate::source::{Opened, Source, open};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::Values;
 use opruga::draw;
 use opruga::io::safe_write::{Existing, OutputFolder};
-use opruga::io::scene;
+use opruga::math::words::{number, rounded};
 use opruga::pictures::Scenery;
 use opruga::world::modes::Mode;
-use opruga::{Options, Registry, World};
+use opruga::{Registry, World};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -27,17 +27,7 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }
-    let source = Source::find(&call.scene)?;
-    let reading = scene::Options {
-        overrides: overrides(&call.set)?,
-        files: source.files.clone().allow_outside(call.allow_outside),
-        ..scene::Options::default()
-    };
-    let options = Options { simd: simd_from_environment()?, ..Options::default() };
-    let Whole { blueprint, notices, .. } = source.read(&reading, &options)?;
-    if !call.json {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
-    }
+    let Opened { source, reading, options, blueprint } = open(&call.scene, &call.set, call.allow_outside, call.json)?;
     match blueprint {
         AnyBlueprint::Plane(mut blueprint) => {
             look_for_equilibrium(call, &mut blueprint);
@@ -88,7 +78,7 @@ fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) 
         .enumerate()
         .map(|(k, mode)| {
             json!({"mode": k + 1, "frequency": mode.frequency(), "omega": mode.omega(), "omega_squared": mode.square,
-                   "residual": mode.residual, "rigid": mode.rigid})
+                   "growth": growth(mode), "residual": mode.residual, "rigid": mode.rigid})
         })
         .collect();
     let mut files = Vec::new();
@@ -118,18 +108,25 @@ fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) 
     Ok(0)
 }
 
-/// For people.
+/// For people: frequencies to five digits. All digits are in `modes.json` and `modes.csv`.
 fn table<const D: usize>(name: &str, time: f64, modes: &[Mode<D>]) -> String {
-    let mut text = format!("`{name}` at t = {time} s\nmode   frequency [Hz]      ω [rad/s]\n");
+    let mut text = format!("`{name}` at t = {} s\nmode  frequency [Hz]     ω [rad/s]\n", number(time));
     for (k, mode) in modes.iter().enumerate() {
-        let remark = match &mode.rigid {
-            Some(motion) => format!("  rigid: {motion}"),
-            None if mode.square < 0.0 => format!("  unstable: ω² = {:.4e} 1/s²", mode.square),
-            None => String::new(),
+        let (times_i, remark) = match (&mode.rigid, growth(mode)) {
+            (Some(motion), _) => ("", format!("  rigid: {motion}")),
+            (None, Some(growth)) => (" i", format!("  unstable: grows as exp({} t/s)", rounded(growth, 5))),
+            (None, None) => ("", String::new()),
         };
-        let _ = writeln!(text, "{:4}  {:15.8e}  {:14.8e}{remark}", k + 1, mode.frequency(), mode.omega());
+        let omega = growth(mode).unwrap_or(mode.omega());
+        let shown = |x: f64| rounded(x, 5) + times_i;
+        let _ = writeln!(text, "{:4}{:>16}{:>14}{remark}", k + 1, shown(omega / core::f64::consts::TAU), shown(omega));
     }
     text
+}
+
+/// √(−ω²) of an unstable mode [1/s]: its displacement grows as exp(√(−ω²) t), since its frequency is imaginary.
+fn growth<const D: usize>(mode: &Mode<D>) -> Option<f64> {
+    (mode.rigid.is_none() && mode.square < 0.0).then(|| (-mode.square).sqrt())
 }
 
 /// `modes.csv`: the displacement of every node in every mode.
@@ -186,7 +183,13 @@ fn draw_shapes<const D: usize>(
         pictures.push(picture);
         captions.push(match &mode.rigid {
             Some(motion) => format!("{}: {motion}", k + 1),
-            None => format!("{}: {:.4} Hz", k + 1, mode.frequency()),
+            None => match growth(mode) {
+                Some(growth) => {
+                    let frequency = rounded(growth / core::f64::consts::TAU, 4);
+                    format!("{}: unstable, {frequency} i Hz", k + 1)
+                }
+                None => format!("{}: {} Hz", k + 1, rounded(mode.frequency(), 4)),
+            },
         });
     }
     let mut fitting = draw::Fitting::default();

@@ -4,13 +4,14 @@ use crate::checkpoints::{Keeper, NAME, PREVIOUS};
 use crate::failure::Failure;
 use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
-use opruga::World;
 use opruga::draw;
 use opruga::io::safe_write::OutputFolder;
 use opruga::io::tables::{
     EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
 };
+use opruga::math::words::{counted, number, rounded};
 use opruga::pictures::{Moment, Scenery};
+use opruga::{Warning, World};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most pictures that the view is fitted to.
@@ -215,30 +216,29 @@ impl Outputs<'_> {
         self.told.iter().cloned().chain(of_world).collect()
     }
 
-    /// A few lines for people.
-    pub(crate) fn talk<const D: usize>(&self, world: &World<D>) {
+    /// A few lines for people; warnings that were told early are not told again.
+    pub(crate) fn talk<const D: usize>(&self, world: &World<D>, early: &[Warning]) {
         let e = world.energy();
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
         let from = self.resumed_at.map_or(String::new(), |t| format!("{t:.3} s to "));
         let speed = match self.nanoseconds(nodes) {
-            Some(nanoseconds) => format!(" in {:.2} s ({nanoseconds:.2} ns per node and step)", self.wall),
+            Some(nanoseconds) => {
+                format!(" in {:.2} s ({} ns per node and step)", self.wall, rounded(nanoseconds, 3))
+            }
             None if self.steps == 0 => ", no steps".into(),
             None => format!(" in {:.2} s", self.wall),
         };
         eprintln!(
-            "{}: {from}{:.3} s of {}{speed}\n  energy {:.6} J; {:.6} J {} without a cause, {:.2e} of the most that was in motion",
+            "{}: {from}{:.3} s of {}{speed}\n  energy {} J; {} J {} without a cause, {} of the most that was in motion",
             world.blueprint().name,
             world.time(),
             counted(nodes as u64, "node", "nodes"),
-            e.total(),
-            e.loss_integrator.abs(),
+            number(e.total()),
+            number(e.loss_integrator.abs()),
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
-            e.closure,
+            rounded(e.closure, 2),
         );
-        for warning in world.warnings() {
-            let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
-            eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
-        }
+        world.warnings().iter().filter(|warning| !early.contains(warning)).for_each(crate::run::tell);
         self.say_where();
     }
 
@@ -263,9 +263,4 @@ fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
         disturbed: work.disturbed,
         odd_rests: work.odd_rests,
     })
-}
-
-/// `1 node`, `2 nodes`.
-pub(crate) fn counted(count: u64, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
 }

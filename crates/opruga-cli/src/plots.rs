@@ -128,13 +128,21 @@ impl Run<'_> {
     fn readings(&self, what: &str, published: bool) -> Vec<Line> {
         let mut lines = Vec::new();
         for (name, thickness, _) in self.columns.bodies.iter().filter(|body| body.2 == published) {
-            let Some(place) = self.place(&format!("{name}.{what}")) else { continue };
-            let mut line = self.line(place, "");
-            line.name.clone_from(name);
-            if what == "volume" && self.columns.dimension == 2 && !published {
-                line.points.iter_mut().for_each(|point| point[1] /= thickness);
+            // A body of several chambers says more by each of them than by their mean.
+            let chambers = (1..).map_while(|n| {
+                self.place(&format!("{name}.chamber{n}.{what}")).map(|place| (place, format!("{name}, chamber {n}")))
+            });
+            let mut places: Vec<(usize, String)> = chambers.collect();
+            if places.is_empty() {
+                places.extend(self.place(&format!("{name}.{what}")).map(|place| (place, name.clone())));
             }
-            lines.push(line);
+            for (place, name) in places {
+                let mut line = Line { name, ..self.line(place, "") };
+                if what == "volume" && self.columns.dimension == 2 && !published {
+                    line.points.iter_mut().for_each(|point| point[1] /= thickness);
+                }
+                lines.push(line);
+            }
         }
         if lines.len() > MOST_LINES { vec![mean_and_range(&lines)] } else { lines }
     }

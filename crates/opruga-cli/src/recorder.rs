@@ -5,6 +5,7 @@ use opruga::blueprint::{BodyBlueprint, Recorded};
 use opruga::io::tables::NumberTable;
 use opruga::pictures::{Moment, Scenery};
 use opruga::{World, draw};
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// The most memory that pictures may wait in [bytes]; longer or larger runs keep fewer of them.
@@ -78,7 +79,7 @@ impl Recorder {
         columns.extend(angular_axes::<D>().iter().map(|a| format!("angular_momentum{a}")));
         // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
         let (mut bodies, mut meanings) = (Vec::new(), Vec::new());
-        let mut add = |body: &BodyBlueprint<D>, readings: Vec<&'static str>| {
+        let mut add = |body: &BodyBlueprint<D>, readings: Vec<Cow<'static, str>>| {
             let published = body.models.iter().any(|model| model.kind() == "as_published");
             columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name)));
             meanings.push((body.name.clone(), body.thickness, published));
@@ -104,9 +105,9 @@ impl Recorder {
         let pictures = frames / wanted + 1;
         let bytes = pictures * (nodes * (D + 1) * 4) as u64;
         let every = wanted * bytes.div_ceil(PICTURE_BYTES).max(1);
-        if every > wanted {
+        if drawn && every > wanted {
             eprintln!(
-                "warning: pictures of {nodes} nodes would take {} MiB; every {every}th frame is kept",
+                "warning: pictures of {nodes} nodes would take {} MiB; one frame of {every} is kept",
                 bytes >> 20
             );
         }

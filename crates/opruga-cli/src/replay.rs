@@ -4,7 +4,7 @@ use crate::arguments::Replay;
 use crate::exports::{self, Tracks};
 use crate::failure::{Failure, print_data};
 use crate::interrupt;
-use crate::outputs::{Outputs, counted};
+use crate::outputs::Outputs;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::run::simd_from_environment;
@@ -16,6 +16,7 @@ use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::io::series::{Format, write_pvd, write_vtk_series};
 use opruga::io::tables::WarningSummary;
 use opruga::io::{SceneError, scene};
+use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
 use opruga::{Options, World};
 use serde_json::json;
@@ -25,13 +26,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Replays a recording.
 pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
+    if call.verify
+        && let Some(option) = call.option_of_writing()
+    {
+        return Err(Failure::Call {
+            message: format!(
+                "{option} has nothing to do with --verify, which computes the run again and writes nothing"
+            ),
+            hint: Some(
+                "call `opruga replay` twice: with --verify to compare, without it for pictures and files".into(),
+            ),
+        });
+    }
     for (option, time) in [("--from", call.from), ("--to", call.to)] {
         if let Some(time) = time.filter(|time| !(0.0..=1e9).contains(time)) {
             return Err(Failure::range(option, time, "0 to 1e9"));
         }
     }
-    if !(call.fps > 0.0 && call.fps <= 240.0) {
-        return Err(Failure::range("--fps", call.fps, "numbers above 0 up to 240"));
+    if let Some(fps) = call.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
+        return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
     }
     let simd = simd_from_environment()?;
     let (recording, source) = recordings::open(&call.file)?;
@@ -71,7 +84,7 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
         let before = last.filter(|last| call.to.is_none_or(|to| (to / length + 1e-9).floor() > *last as f64));
         if before.is_some() || last.is_none() {
             let hint = match last {
-                Some(last) => format!("the frames before are whole: --to {} shows them", time(last)),
+                Some(last) => format!("the frames before are whole: --to {} shows them", number(time(last))),
                 None => "no whole frame lies before".into(),
             };
             return Err(refused(call, SceneError::from(error).hint(hint)));
@@ -88,11 +101,12 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
     let to = call.to.map_or(last, |to| (to / length + 1e-9).floor() as u64).min(last);
     if from > to {
         let message = format!(
-            "no frame lies from {} s to {} s: the recording has those from {} s to {} s, {length} s apart",
+            "no frame lies from {} s to {} s: the recording has those from {} s to {} s, {} s apart",
             call.from.unwrap_or(0.0),
-            call.to.unwrap_or(time(last)),
-            time(frames.start),
-            time(last)
+            number(call.to.unwrap_or(time(last))),
+            number(time(frames.start)),
+            number(time(last)),
+            number(length)
         );
         return Err(Failure::call(message));
     }
@@ -110,9 +124,12 @@ fn oddities(recording: &Recording<File>) -> Vec<WarningSummary> {
         tell(
             "recording.open",
             format!(
-                "the recording has no end: its run was killed or still runs; {} up to t = {until} s are whole, {} behind them are no whole frame",
+                "the recording has no end: its run was killed or still runs; {} up to t = {} s {} whole, {} behind {} no whole frame",
                 counted(frames.end - frames.start, "frame", "frames"),
+                number(until),
+                if frames.end - frames.start == 1 { "is" } else { "are" },
                 counted(*lost, "byte", "bytes"),
+                if *lost == 1 { "it is" } else { "them are" },
             ),
         );
     }
@@ -230,7 +247,11 @@ impl Job<'_> {
                 true => "positions and velocities are the same, the rest of the state is not".to_string(),
                 false => format!("recorded {}, computed {}", hash(recorded), hash(computed)),
             };
-            eprintln!("{}: frame {frame}, t = {time} s, is the first kept one that differs: {what}", self.source.name);
+            eprintln!(
+                "{}: frame {frame}, t = {} s, is the first kept one that differs: {what}",
+                self.source.name,
+                number(time)
+            );
         }
         Ok(1)
     }

@@ -3,7 +3,6 @@
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
 use crate::failure::{Failure, print_data};
-use crate::outputs::counted;
 use crate::run::simd_from_environment;
 use crate::source::{Source, Whole, argument, overrides};
 use opruga::core::spec::{Spec, nearest};
@@ -12,6 +11,7 @@ use opruga::draw;
 use opruga::io::problem::visible;
 use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::{Notice, scene};
+use opruga::math::words::{counted, number};
 use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -94,19 +94,20 @@ impl core::fmt::Display for Found {
             (counted(self.bodies as u64, "body", "bodies"), counted(self.nodes as u64, "node", "nodes"));
         writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
         let substeps = counted(self.substeps.into(), "substep", "substeps");
-        writeln!(f, "{}: h = {:.6e} s, {substeps} a frame", self.integrator, self.h)?;
+        writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?;
         for (body, stability) in &self.stability {
             let limit = match stability.largest_stable_step {
                 None => "there is no stable step".into(),
                 Some(limit) if limit.is_infinite() => "every step is stable".into(),
-                Some(limit) => format!("largest stable step {limit:.4e} s"),
+                Some(limit) => format!("largest stable step {} s", number(limit)),
             };
             let s = &stability.spectrum;
-            let (omega, damping) = (s.omega, s.damping);
-            writeln!(f, "  `{body}`: ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s, {limit}")?;
+            let (omega, damping) = (number(s.omega), number(s.damping));
+            writeln!(f, "  `{body}`: ω = {omega} rad/s, damping {damping} 1/s, {limit}")?;
         }
         for warning in &self.warnings {
-            writeln!(f, "warning[{}]: {}", warning.code, warning.message)?;
+            let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
+            writeln!(f, "warning[{}]: {}{times}", warning.code, warning.message)?;
         }
         Ok(())
     }
@@ -236,21 +237,15 @@ fn bench_vertices(call: &BenchVertices) -> Result<u8, Failure> {
         let message = format!("there is no integrator `{}`", visible(&call.integrator));
         return Err(Failure::Call { message, hint: Some(hint) });
     }
-    if let Some(only) = call.only.filter(|only| !bench::ROWS.iter().any(|row| row.1 == *only)) {
-        let mut sizes: Vec<usize> = bench::ROWS.iter().map(|row| row.1).collect();
-        sizes.sort_unstable();
-        sizes.dedup();
-        let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
-        return Err(Failure::range("--only", only, &sizes.join(", ")));
-    }
+    let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {
         // Better now than after minutes of measuring.
-        try_write(path)?;
+        try_write(path, true)?;
     }
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };
     let mut rows = Vec::new();
     for (bodies, vertices) in bench::ROWS {
-        if call.only.is_some_and(|only| only != vertices) {
+        if chosen.is_some_and(|row| row != (bodies, vertices)) {
             continue;
         }
         if std::io::stderr().is_terminal() {

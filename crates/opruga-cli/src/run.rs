@@ -3,8 +3,9 @@
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
 use crate::failure::{Failure, print_data};
+use crate::forecast::{Forecast, duration};
 use crate::interrupt;
-use crate::outputs::{Outputs, counted};
+use crate::outputs::Outputs;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::source::{Source, Whole, overrides};
@@ -12,7 +13,8 @@ use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
 use opruga::io::scene;
 use opruga::io::tables::WarningSummary;
-use opruga::{Options, Simd};
+use opruga::math::words::{counted, number, rounded};
+use opruga::{Options, Simd, Warning};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -163,7 +165,13 @@ impl Job<'_> {
         let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
         let stop = interrupt::asked_to_stop();
+        // What is odd from the start is told before the run, the rest behind it.
+        let early = world.warnings();
+        if !call.json {
+            early.iter().for_each(tell);
+        }
         let bar = progress_bar(frames);
+        let mut forecast = Forecast::default();
         let start = Instant::now();
         let first = world.frames();
         let (mut failure, mut told_at, mut looked_at) = (None, 0.0, false);
@@ -182,21 +190,28 @@ impl Job<'_> {
             failure = tape.as_mut().and_then(|tape| tape.push(&mut world).err()).map(unrecorded);
             looking += recorder.record(&mut world);
             if let Some(problem) = keeper.on_the_way(&mut world, &recorder.table) {
-                bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", world.time()));
+                bar.suspend(|| eprintln!("warning: no checkpoint at t = {} s: {problem}", number(world.time())));
             }
             bar.set_position(world.frames());
             let wall = start.elapsed().as_secs_f64();
             if wall > 0.0 {
                 let ratio = (world.frames() - first) as f64 * frame / wall;
-                bar.set_message(format!("t = {:.2} s, {ratio:.1} × real time", world.time()));
+                bar.set_message(format!("t = {:.2} s, {} × real time", world.time(), rounded(ratio, 2)));
+                let (done, left) = (world.frames() - first, frames - world.frames());
+                if !call.json
+                    && let Some(said) = forecast.of(&world, done, left, wall)
+                {
+                    bar.suspend(|| eprintln!("{said}"));
+                    told_at = wall;
+                }
                 if bar.is_hidden() && !call.json && wall - told_at >= TALK_EVERY {
                     told_at = wall;
-                    let done = world.frames() - first;
-                    let left = wall * (frames - world.frames()) as f64 / done.max(1) as f64;
                     eprintln!(
-                        "{}/{frames} frames, t = {:.2} s, {ratio:.1} × real time, {left:.0} s left",
+                        "{}/{frames} frames, t = {:.2} s, {} × real time, {} left",
                         world.frames(),
-                        world.time()
+                        world.time(),
+                        rounded(ratio, 2),
+                        duration(wall * left as f64 / done.max(1) as f64)
                     );
                 }
             }
@@ -225,7 +240,7 @@ impl Job<'_> {
         if call.json {
             print_data(&format!("{summary}\n"))?;
         } else {
-            outputs.talk(&world);
+            outputs.talk(&world, &early);
         }
         Ok(0)
     }
@@ -237,12 +252,22 @@ fn unrecorded(error: WriteError) -> Failure {
     Failure::Write(WriteError { hint: Some(hint.into()), ..error })
 }
 
+/// A warning for people.
+pub(crate) fn tell(warning: &Warning) {
+    let times = if warning.count > 1 { format!(" ({} times)", warning.count) } else { String::new() };
+    eprintln!("warning[{}]: {}{times}", warning.code, warning.message);
+}
+
 /// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.
 fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
     let time = saved.time;
     Failure::Call {
-        message: format!("the checkpoint is at t = {time} s, and the run ends at {seconds} s: nothing is left to do"),
-        hint: Some(format!("--seconds is the simulated time at which the run ends: give one above {time}")),
+        message: format!(
+            "the checkpoint is at t = {} s, and the run ends at {} s: nothing is left to do",
+            number(time),
+            number(seconds)
+        ),
+        hint: Some(format!("--seconds is the simulated time at which the run ends: give one above {}", number(time))),
     }
 }
 

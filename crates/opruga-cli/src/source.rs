@@ -1,11 +1,13 @@
 //! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
 
 use crate::failure::Failure;
+use crate::run::simd_from_environment;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::core::spec::nearest;
+use opruga::core::spec::all_near;
 use opruga::io::problem::visible;
 use opruga::io::refusals::in_scene;
 use opruga::io::{Files, Notice, SceneError, scene};
+use opruga::math::words::number;
 use opruga::{Options, World, WorldError};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,6 +31,30 @@ pub(crate) struct Whole {
     pub(crate) notices: Vec<Notice>,
     /// The files that it names.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
+}
+
+/// A scene of a call that has no options of its own for reading it.
+pub(crate) struct Opened {
+    pub(crate) source: Source,
+    pub(crate) reading: scene::Options,
+    pub(crate) options: Options,
+    pub(crate) blueprint: AnyBlueprint,
+}
+
+/// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
+pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool) -> Result<Opened, Failure> {
+    let source = Source::find(scene)?;
+    let reading = scene::Options {
+        overrides: overrides(set)?,
+        files: source.files.clone().allow_outside(allow_outside),
+        ..scene::Options::default()
+    };
+    let options = Options { simd: simd_from_environment()?, ..Options::default() };
+    let Whole { blueprint, notices, .. } = source.read(&reading, &options)?;
+    if !quiet {
+        notices.iter().for_each(|notice| eprintln!("{notice}"));
+    }
+    Ok(Opened { source, reading, options, blueprint })
 }
 
 impl Source {
@@ -112,7 +138,7 @@ impl Source {
         })?;
         let warnings = built.warnings();
         if options.strict && !warnings.is_empty() {
-            let error = |w| SceneError { file: self.file.clone(), ..SceneError::from(w) };
+            let error = |w| in_scene(SceneError::from(w), self.text(), &self.file, &options.overrides);
             return Err(Failure::Scene(warnings.iter().map(error).collect()));
         }
         Ok(built)
@@ -121,9 +147,11 @@ impl Source {
     /// An error that ends a run at a time, such as that of a command; it is not the fault of a line.
     pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
         let said = SceneError::from(error);
+        // Some say themselves when it was.
         let message = match error {
-            WorldError::Diverged { .. } | WorldError::Snapshot(_) => said.message.clone(),
-            _ => format!("at t = {time} s: {}", said.message),
+            WorldError::Snapshot(_) => said.message.clone(),
+            _ if said.message.contains("t = ") => said.message.clone(),
+            _ => format!("at t = {} s: {}", number(time), said.message),
         };
         Failure::Run(Box::new(SceneError { file: self.file.clone(), message, ..said }))
     }
@@ -141,15 +169,21 @@ fn missing(name: &str) -> SceneError {
         .map(|file| folder.map_or(file.clone(), |folder| folder.join(&file).display().to_string()))
         .collect();
     let with_ending = format!("{name}.toml");
-    let near = files.iter().find(|file| **file == with_ending).cloned();
-    let near = near.or_else(|| {
-        let scenes = opruga::scenes::names().map(String::from);
-        let known: Vec<String> = scenes.chain(files).collect();
-        nearest(name, known.iter().map(String::as_str))
-    });
+    let near: Vec<String> = match files.iter().find(|file| **file == with_ending) {
+        Some(file) => vec![file.clone()],
+        None => {
+            let scenes = opruga::scenes::names().map(String::from);
+            let known: Vec<String> = scenes.chain(files).collect();
+            all_near(name, known.iter().map(String::as_str))
+        }
+    };
     let scenes = || opruga::scenes::names().collect::<Vec<_>>().join(", ");
-    SceneError::new("read.failed", "there is no such file, and no such scene comes with the program").hint(match near {
-        Some(near) => format!("did you mean `{}`?", visible(&near)),
+    let quoted: Vec<String> = near.iter().map(|near| format!("`{}`", visible(near))).collect();
+    SceneError::new("read.failed", "there is no such file, and no such scene comes with the program").hint(match quoted
+        .split_last()
+    {
+        Some((last, [])) => format!("did you mean {last}?"),
+        Some((last, others)) => format!("did you mean {} or {last}?", others.join(", ")),
         None => format!("scenes that come with the program: {}", scenes()),
     })
 }

@@ -7,6 +7,7 @@ use crate::run::simd_from_environment;
 use opruga::core::spec::nearest;
 use opruga::io::problem::visible;
 use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::math::words::counted;
 use opruga_verify::{Case, Check, Family, Lab, Row};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -113,7 +114,7 @@ fn list(cases: &[&Case]) -> String {
                 writeln!(text, "  {}\n    {}\n    {}; {}", case.name, case.quantity, case.passes_when(), case.source);
         }
     }
-    let _ = writeln!(text, "{} cases", cases.len());
+    let _ = writeln!(text, "{}", counted(cases.len() as u64, "case", "cases"));
     text
 }
 

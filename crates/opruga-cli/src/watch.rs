@@ -2,11 +2,11 @@
 
 use crate::arguments::{Check, Run};
 use crate::failure::Failure;
-use crate::outputs::counted;
 use crate::source::Source;
 use crate::{interrupt, reports};
 use opruga::io::problem::visible;
 use opruga::io::scene;
+use opruga::math::words::counted;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 

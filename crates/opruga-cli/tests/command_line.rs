@@ -146,6 +146,16 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
     for key in ["code", "message", "file", "line", "column", "path", "value", "allowed", "hint"] {
         assert!(error.get(key).is_some(), "the error lacks {key}");
     }
+    // What an error does not have is null.
+    for (arguments, absent) in [
+        (&["run", "ball", "--fps", "-3", "--json"][..], &["file", "line", "column", "path", "value"][..]),
+        (&["run", "bad.toml", "--json", "--out", "bad.toml"], &["allowed"]),
+    ] {
+        let output = at(arguments);
+        let error: Value = serde_json::from_slice(&output.stderr).expect("stderr is JSON");
+        assert!(absent.iter().all(|key| error[key].is_null()), "{arguments:?}: {error}");
+        assert!(error.as_object().expect("an object").values().all(|value| value != ""), "{arguments:?}: {error}");
+    }
     assert_eq!(code(&at(&["run", "nothing-of-that-name"])), 4);
     assert!(said(&at(&["run", "presures"])).contains("did you mean `pressures`"));
     assert_eq!(code(&at(&["run", "--fps", "-3"])), 2);
@@ -243,6 +253,44 @@ fn a_full_disk_is_an_error_of_writing() {
     assert_eq!(output.status.code(), Some(4), "{}", said(&output));
 }
 
+/// A kind that exists in the plane and in space stands once: links to headings lead to one place, and a table fits one of
+/// the alternatives of the schema.
+#[test]
+fn every_kind_stands_once_in_the_reference_and_in_the_schema() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let reference = printed(&opruga(folder.path(), &["reference"]));
+    let mut headings: Vec<&str> = reference.lines().filter(|line| line.starts_with('#')).collect();
+    headings.sort_unstable();
+    assert!(headings.windows(2).all(|pair| pair[0] != pair[1]), "{headings:?}");
+    let half_space = reference.split("### Collider `kind = \"half_space\"`").nth(1).expect("an obstacle");
+    let half_space = half_space.split("\n### ").next().expect("its section");
+    assert!(!half_space.contains("D only"), "{half_space}");
+    assert_eq!(half_space.matches("| `spin` (").count(), 2, "a number and a vector: {half_space}");
+
+    fn alternatives(value: &Value, visit: &mut dyn FnMut(&[Value])) {
+        match value {
+            Value::Object(fields) => {
+                if let Some(Value::Array(tables)) = fields.get("oneOf") {
+                    visit(tables);
+                }
+                fields.values().for_each(|value| alternatives(value, visit));
+            }
+            Value::Array(items) => items.iter().for_each(|item| alternatives(item, visit)),
+            _ => {}
+        }
+    }
+    let schema: Value =
+        serde_json::from_str(&printed(&opruga(folder.path(), &["reference", "--schema"]))).expect("JSON");
+    let mut seen = 0;
+    alternatives(&schema, &mut |tables| {
+        let mut kinds: Vec<&str> = tables.iter().filter_map(|t| t["properties"]["kind"]["const"].as_str()).collect();
+        seen += kinds.len();
+        kinds.sort_unstable();
+        assert!(kinds.windows(2).all(|pair| pair[0] != pair[1]), "{kinds:?}");
+    });
+    assert!(seen > 40, "{seen} kinds");
+}
+
 /// The pages of the scene format in `docs/` are what the program prints: `opruga reference > docs/scene-file.md` and
 /// `opruga reference --schema > docs/scene.schema.json`.
 #[test]
@@ -306,7 +354,7 @@ fn modes_about_the_equilibrium_keep_what_statics_understands() {
     };
     // One iteration does not lead from the line to the chain that hangs.
     let refused = call("integrator.iterations=1");
-    assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iterations"), "{}", said(&refused));
+    assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iteration at"), "{}", said(&refused));
     let output = call("integrator.iterations=200");
     assert_eq!(code(&output), 0, "{}", said(&output));
 }

@@ -88,11 +88,8 @@ fn a_full_disk_leaves_no_half_file() {
     assert_eq!(code(&opruga(folder.path(), &[&longer[..], &["whole"]].concat())), 0);
     let after = contents(&folder.path().join("whole"));
     for kilobytes in [0, 1, 2, 4, 8] {
-        let call = format!(
-            "ulimit -f {kilobytes}; trap '' XFSZ; exec {} {} o --force",
-            env!("CARGO_BIN_EXE_opruga"),
-            longer.join(" ")
-        );
+        let call =
+            format!("ulimit -f {kilobytes}; exec {} {} o --force", env!("CARGO_BIN_EXE_opruga"), longer.join(" "));
         let output = Command::new("bash").args(["-c", &call]).current_dir(folder.path()).output().expect("a shell");
         assert_eq!(code(&output), 4, "{kilobytes}: {}", said(&output));
         assert!(said(&output).contains("error[write."), "{}", said(&output));
@@ -303,9 +300,9 @@ fn calls_that_make_no_sense_are_explained() {
         (run("time.frame=1e-18"), "time would stand still"),
         (
             run("time.frame=1e6"),
-            "error[step.unstable]: the step h = 2.500000e4 s of `symplectic_euler` is unstable for body `soft`",
+            "error[step.unstable]: the step h = 25000 s of `symplectic_euler` is unstable for body `soft`",
         ),
-        (run("time.substeps=1"), "error[step.unstable]: the step h = 1.666667e-2 s"),
+        (run("time.substeps=1"), "error[step.unstable]: the step h = 0.0166667 s"),
         (run("time.seconds=1e300"), "error[scene.range]"),
         (run("world.gravity=[0, nan]"), "error[scene.not_finite]"),
         (run("world.gravity=[0]"), "error[scene.length]"),

@@ -39,12 +39,21 @@ fn a_surface_becomes_tetrahedra_with_a_picture_and_goes_from_format_to_format() 
     assert!((0.66..0.72).contains(&number(&row, "measure")), "{row}");
     assert!(number(&row, "smallest_angle") > 10.7 && number(&row, "largest_angle") < 164.8, "{row}");
     assert_eq!((row["inverted"].as_u64(), row["dimension"].as_u64()), (Some(0), Some(3)));
-    assert_eq!(row["files"], serde_json::json!(["spot.msh", "spot.png"]));
-    let png = std::fs::read(folder.path().join("spot.png")).expect("a picture");
+    assert_eq!(row["files"], serde_json::json!(["spot.msh", "spot.msh.png"]));
+    let png = std::fs::read(folder.path().join("spot.msh.png")).expect("a picture");
     assert!(png.starts_with(b"\x89PNG") && png.len() > 20_000);
 
     // What was written is not replaced; through all formats it stays the same mesh.
     assert_eq!(code(&run(&["mesh", "spot.obj", "--size", "0.15", "-o", "spot.msh"])), 4);
+    // All files of a call or none: a picture that is in the way leaves no mesh behind.
+    std::fs::write(folder.path().join("other.vtk.png"), "mine").expect("a file");
+    let refused = run(&["mesh", "spot.msh", "-o", "other.vtk"]);
+    assert_eq!(code(&refused), 4, "{}", text(&refused.stderr));
+    assert!(text(&refused.stderr).contains("other.vtk.png"), "{}", text(&refused.stderr));
+    assert!(!folder.path().join("other.vtk").exists());
+    // The second format of a mesh lies beside the first, each with its picture.
+    let beside = json(&run(&["mesh", "spot.msh", "-o", "spot.vtk", "--json"]));
+    assert_eq!(beside["files"], serde_json::json!(["spot.vtk", "spot.vtk.png"]));
     let mut from = "spot.msh".to_string();
     for ending in ["vtk", "vtu", "mesh", "mfem", "node", "msh"] {
         let to = format!("again.{ending}");
@@ -68,7 +77,7 @@ fn a_drawing_becomes_triangles() {
     let call = ["mesh", "heart.svg", "--size", "0.05", "--scale-to", "1", "-o", "heart.vtk", "--json"];
     let row = json(&opruga(folder.path(), &call));
     assert!(row["smallest_angle"].as_f64().expect("a number") >= 24.9, "{row}");
-    assert!(folder.path().join("heart.png").is_file());
+    assert!(folder.path().join("heart.vtk.png").is_file());
 }
 
 #[test]
@@ -86,6 +95,9 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
         (&["mesh", "cut.msh"], 2, "cut.msh:5:"),
         (&["mesh", "box.mesh"], 2, "box.mesh:3:"),
         (&["mesh", "none.msh"], 4, "none.msh"),
+        (&["mesh", "letters.ttf"], 2, "writes words in a font"),
+        (&["mesh", "scene.toml"], 2, "`opruga check`"),
+        (&["mesh", "picture.jpg"], 2, "files that can be read end in .obj, "),
         (&["mesh", "none.obj", "--size", "1"], 4, "none.obj"),
     ] {
         let output = opruga(folder.path(), arguments);
@@ -93,4 +105,76 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
         assert_eq!(code(&output), exit, "{arguments:?}: {told}");
         assert!(told.contains(said), "{arguments:?}: {told}");
     }
+}
+
+/// Errors of the command speak of the file and its options, not of a scene that nobody has written.
+#[test]
+fn errors_of_mesh_speak_of_the_call() {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
+    let svg = |inner: &str| format!("<svg xmlns=\"http://www.w3.org/2000/svg\">\n{inner}\n</svg>\n");
+    write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
+    let circle = |r: f64| format!("M{r} 0 A{r} {r} 0 1 1 -{r} 0 A{r} {r} 0 1 1 {r} 0 Z");
+    write("thin.svg", &svg(&format!("<path d=\"{} {}\"/>", circle(10.0), circle(9.9))));
+    write("strokes.svg", &svg("<path d=\"M0 0 L5 0\"/>"));
+    for (call, place, said) in [
+        (&["mesh", "spot.obj", "--size", "9"][..], "--size 9: error[", "no tetrahedron fits"),
+        (&["mesh", "spot.obj", "--size", "1e-9"], "--size 0.000000001: error[limit.", "the mesh would have"),
+        (&["mesh", "open.obj", "--size", "0.1"], "open.obj: error[mesh.open]", "in a scene, `open = "),
+        (&["mesh", "strokes.svg", "--size", "0.1", "--scale-to", "1"], "strokes.svg: error[shape.no_area]", ""),
+        (
+            &["mesh", "thin.svg", "--size", "0.3", "--scale-to", "1"],
+            "--size 0.3: error[shape.spacing]",
+            "a smaller --size",
+        ),
+    ] {
+        let output = opruga(folder.path(), call);
+        let told = text(&output.stderr);
+        assert_eq!(code(&output), 2, "{call:?}: {told}");
+        assert!(told.contains(place) && told.contains(said), "{call:?}: {told}");
+        assert!(!told.contains("[[body]]") && !told.contains("opruga mesh:") && !told.contains("`spacing`"), "{told}");
+    }
+}
+
+/// Areas of a drawing that overlap are made one, and it is said how many; an outline that crosses itself has a place.
+#[test]
+fn overlapping_areas_are_united_with_a_message() {
+    let folder = folder();
+    let write = |name: &str, inner: &str| {
+        let text = format!("<svg xmlns=\"http://www.w3.org/2000/svg\">\n{inner}\n</svg>\n");
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    };
+    let boxes = "<rect width=\"4\" height=\"4\"/>\n<rect x=\"2\" y=\"2\" width=\"4\" height=\"4\"/>\n";
+    write("two.svg", &format!("{boxes}<rect x=\"8\" width=\"2\" height=\"2\"/>"));
+    write("apart.svg", "<rect width=\"4\" height=\"4\"/>\n<rect x=\"8\" width=\"2\" height=\"2\"/>");
+    write("bow.svg", "<path d=\"M0 0 L4 4 L4 0 L0 4 Z\"/>");
+    write("open.svg", "<path d=\"M0 0 L4 0 L4 4\"/>");
+    let mesh = |name: &str| opruga(folder.path(), &["mesh", name, "--size", "0.1", "--scale-to", "1"]);
+    let united = text(&mesh("two.svg").stderr);
+    assert!(united.contains("note[shape.overlap]: 2 outlines cross, cover or touch others: "), "{united}");
+    assert!(united.contains("2 outlines are left"), "{united}");
+    let apart = mesh("apart.svg");
+    assert_eq!((code(&apart), text(&apart.stderr)), (0, String::new()));
+    let open = text(&mesh("open.svg").stderr);
+    assert!(open.contains("1 open path is closed by a straight line"), "{open}");
+    // The halves of a bow tie meet in a point, which is told, here and in a scene that allows no crossing.
+    let bow = text(&mesh("bow.svg").stderr);
+    assert!(
+        bow.contains("bow.svg:2:1: error[shape.crossing]: an outline crosses or touches itself near (2, 2)"),
+        "{bow}"
+    );
+    let scene = "format = \"opruga-1\"\ndimension = 2\nintegrator = \"verlet\"\n[time]\nseconds = 1\n[[body]]\nname = \"b\"\nmass = 1\n\
+                 shape = { kind = \"svg\", file = \"FILE\", spacing = 0.1, size = 1 }\n";
+    for (file, what, more) in [
+        ("bow.svg", "error[shape.crossing]: an outline crosses or touches itself near (2, 2)", ""),
+        ("two.svg", "two outlines cross or touch near (4, 2)", "overlap = \"union\""),
+    ] {
+        std::fs::write(folder.path().join("s.toml"), scene.replace("FILE", file)).expect("a file");
+        let told = text(&opruga(folder.path(), &["check", "s.toml"]).stderr);
+        assert!(told.contains(&format!("{file}:")) && told.contains(what) && told.contains(more), "{told}");
+    }
+    std::fs::write(folder.path().join("s.toml"), scene.replace("FILE\"", "two.svg\", overlap = \"union\""))
+        .expect("a file");
+    let told = text(&opruga(folder.path(), &["check", "s.toml"]).stderr);
+    assert!(told.contains("2 outlines cross, cover or touch others (`overlap = \"union\"`)"), "{told}");
 }

@@ -97,7 +97,7 @@ fn errors_of_fields_indices_and_models_come_at_once() {
             ("scene.range", line("node = 99")),
             ("model.open_surface", line("kind = \"pressure\"")),
             ("scene.length", line("copies")),
-            ("collider.no_direction", line("[[collider]]")),
+            ("collider.no_direction", line("normal = [0, 0]")),
             ("scene.range", line("friction = -1")),
             ("scene.range", line("node = 24")),
         ];
@@ -124,7 +124,7 @@ fn an_unstable_step_is_explained_line_by_line() {
     assert_eq!(lines.len(), 5, "{text}");
     assert_eq!(
         lines[0],
-        "s.toml:5:12: error[step.unstable]: the step h = 1.666667e-2 s of `verlet` is unstable for body `ring`"
+        "s.toml:5:12: error[step.unstable]: the step h = 0.0166667 s of `verlet` is unstable for body `ring`"
     );
     assert_eq!(lines[1], " 5 | substeps = 1");
     assert!(lines[3].starts_with("  = allowed: h <= ") && lines[3].contains("rad/s"), "{text}");
@@ -146,7 +146,7 @@ fn what_is_not_there_is_no_error_in_a_scene() {
     for name in ["ball", "unser"] {
         std::fs::create_dir(folder.path().join(name)).expect("a folder");
     }
-    let cases: [(&[&str], i32, &str); 11] = [
+    let cases: [(&[&str], i32, &str); 14] = [
         (&["run", "zebra"], 4, "= hint: scenes that come with the program: ball, ball-as-published, "),
         (&["run", "qqqqqqqqqqqqqqqqqqqqqqqq"], 4, "= hint: scenes that come with the program: ball, "),
         (&["check", "unser"], 4, "= hint: did you mean `unser.toml`?"),
@@ -158,6 +158,13 @@ fn what_is_not_there_is_no_error_in_a_scene() {
         (&["new", ""], 2, "allowed: the name of a file"),
         (&["bench", "vertices", "--plot", "nowhere/speed.svg"], 4, "= hint: the folder around it is missing"),
         (&["bench", "vertices", "--only", "7"], 2, "--only is 7; allowed: 8, 16, 36, "),
+        (&["bench", "vertices", "--only", "2x36"], 2, "100x36, 1000x36, 27778x36"),
+        (
+            &["check", "ball", "--set", "time.substeps=8,16"],
+            2,
+            "= hint: `opruga sweep` takes lists (8,16,32) and ranges",
+        ),
+        (&["check", "ball", "--set", "body.ball.mass=0.5..4:log:7"], 2, "= hint: `opruga sweep` takes lists"),
     ];
     for (arguments, exit, text) in cases {
         let output = opruga(folder.path(), arguments);
@@ -381,6 +388,23 @@ fn one_slip_of_syntax_is_one_error() {
         let said = said(&output);
         assert_eq!(said.matches("error[scene.syntax]").count(), 1, "{said}");
         assert!(said.contains(message) && said.contains(hint), "{said}");
+    }
+    // A list that is never closed swallows what follows; the error stands where that begins to make no sense.
+    let path = "[[command]]\ndo = \"drag\"\nat = 0\nuntil = 1\nbody = \"ring\"\nnode = 0\npath = [\n  [0, 0, 1],\n  [1, 0, 1\n  [2, 0, 1],\n]\n";
+    let more = "[[probe]]\nname = \"p\"\nbody = \"ring\"\nselect = { node = 1 }\nrecord = [\"position\"]\n";
+    for (text, place) in [
+        (scene(&format!("{path}{more}")), "s.toml:24:"),
+        (scene(&path.replace("1\n  [2", "1],\n  [2").replace("],\n]\n", "],\n")), "s.toml:2"),
+    ] {
+        std::fs::write(folder.path().join("s.toml"), &text).expect("a file");
+        let said = said(&opruga(folder.path(), &["check", "s.toml"]));
+        assert_eq!(said.matches("error[").count(), 1, "{text}\n{said}");
+        assert!(
+            said.starts_with(place)
+                && said.contains("the list that opens in line ")
+                && said.contains("a `]` is missing"),
+            "{said}"
+        );
     }
     // Two slips are two errors, also in lines that follow each other.
     let two = good.replace("dimension = 2\n", "dimension = = 2\nseed = 1 2\n");

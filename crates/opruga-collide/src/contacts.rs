@@ -75,6 +75,15 @@ impl<const D: usize> Colliders<D> {
             collider.parts.iter().any(|part| collider.may_touch(part, &reach, min, max))
         })
     }
+    /// The collider that a surface belongs to; surfaces are numbered part by part.
+    pub(crate) fn collider_of(&self, surface: usize) -> usize {
+        let mut parts = 0;
+        let behind = |collider: &Collider<D>| {
+            parts += collider.parts.len();
+            parts > surface
+        };
+        self.0.iter().position(behind).unwrap_or(0)
+    }
     /// Where the colliders are at a time [s], in order.
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
         self.0.iter().map(|collider| picture(collider, time)).collect()
@@ -292,7 +301,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             let x = lanes!(P, d => tile.x.load::<P>(d, k));
             let nodes = P::first(used - k);
             let close = P::both((shape.gap(&x) - thickness).less(P::splat(largest_rounding(law))), nodes);
-            let before = self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k)));
+            let from = lanes!(P, d => tile.before.load::<P>(d, k));
+            let before = self.carry.along(&from);
             let way = subtract(&x, &before);
             let fast = P::both(far.less(dot(&way, &way)), nodes);
             let any_fast = has_far_side && P::any(fast);
@@ -311,8 +321,9 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             let v = lanes!(P, d => tile.v.load::<P>(d, k));
             let mass = tile.mass.load::<P>(k);
             let obstacle = self.pose.velocity_at(&x);
-            let meeting =
-                Meeting { x, v, before, mass, gap, normal, obstacle, held: self.held.pack(k), h: P::splat(*h) };
+            let force = lanes!(P, d => tile.force.load::<P>(d, k));
+            let held = self.held.pack(k);
+            let meeting = Meeting { x, v, before, from, force, mass, gap, normal, obstacle, held, h: P::splat(*h) };
             let hit = P::both(meets(law, &meeting), nodes);
             if !P::any(hit) {
                 continue;
@@ -320,7 +331,6 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             touched = true;
             self.held.note(k, P::select(hit, P::one(), P::zero()));
             let parting = respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting);
-            let against = dot(&lanes!(P, d => tile.force.load::<P>(d, k)), &subtract(&x, &parting.x));
             for d in 0..D {
                 tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
                 tile.v.store(d, k, P::select(hit, parting.v[d], v[d]));
@@ -328,7 +338,7 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             losses += P::select(hit, parting.loss_contact, P::zero());
             frictions += P::select(hit, parting.loss_friction, P::zero());
             works += P::select(hit, parting.work, P::zero());
-            corrections += P::select(hit, against, P::zero());
+            corrections += P::select(hit, parting.correction, P::zero());
         }
         losses.store(&mut **loss_contact);
         frictions.store(&mut **loss_friction);

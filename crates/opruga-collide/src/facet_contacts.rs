@@ -37,7 +37,8 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     for k in 0..used {
         let place = moved.range.start + k;
         let (x, v) = (moved.x.at(place), moved.v.at(place));
-        let before: [f64; D] = carry.along(&lanes!(f64, d => moved.before[d][k]));
+        let start: [f64; D] = lanes!(f64, d => moved.before[d][k]);
+        let before: [f64; D] = carry.along(&start);
         let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
         let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
         if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
@@ -51,8 +52,10 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
         let obstacle = surface.pose.velocity_at(&x);
         let bit = 1u8 << (k % WIDTH);
         let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+        let force = lanes!(f64, d => moved.force[d][k]);
+        let was_held = f64::from(u8::from(was_held));
         let meeting =
-            Meeting { x, v, before, mass, gap, normal, obstacle, held: f64::from(u8::from(was_held)), h: moved.h };
+            Meeting { x, v, before, from: start, force, mass, gap, normal, obstacle, held: was_held, h: moved.h };
         if !meets(law, &meeting) {
             continue;
         }
@@ -63,16 +66,16 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
         let mut parting = respond(surface, law, true, &meeting);
         // Pushed out of one facet and through another: the motion of this step is undone.
         if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
+            parting.correction += dot(&force, &subtract(&parting.x, &before));
             parting.x = before;
         }
-        let against = dot(&lanes!(f64, d => moved.force[d][k]), &subtract(&x, &parting.x));
         moved.x.set(place, parting.x);
         moved.v.set(place, parting.v);
         let lane = place % WIDTH;
         moved.loss_contact[lane] += parting.loss_contact;
         moved.loss_friction[lane] += parting.loss_friction;
         moved.work_colliders[lane] += parting.work;
-        moved.work_correction[lane] += against;
+        moved.work_correction[lane] += parting.correction;
     }
     touched
 }

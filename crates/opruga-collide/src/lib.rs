@@ -21,10 +21,11 @@
 //! alone, to the bit. With friction a node that does not bounce goes from where it was (carried along by the collider)
 //! with its new tangential velocity, and then onto the surface; so what sticks does not creep by h² g sin θ per step.
 //!
-//! **Energy.** The kinetic energy of the node changes by exactly −loss_contact − loss_friction + work_colliders, with
-//! ½ m (u_n² − u_n'²), ½ m (u_t² − u_t'²) and m Δv·v_c. The change of potential energy by moving the node onto the
-//! surface is O(h) and appears in the remainder of the ledger; so does the kinetic energy ½ m (g h)² that a node at rest
-//! wins and loses in every step.
+//! **Energy.** With v₀ before the step, v₁ after it, v̄ = ½ (v₀ + v₁) and the impulse J of the obstacle, the kinetic energy
+//! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction, J·v_c and −J·(v̄ − v_c) along the normal and
+//! the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) where no force acts. What is left of the potential energy,
+//! F·(h v̄ − x₁ + x₀), is work_correction: what putting the node back on the surface did. A node that lies still takes and gives
+//! nothing. v₀ is taken as v − hF/m with the force that was evaluated last: O(h) where the force changes within the step.
 //!
 //! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a
 //! step is stopped where it came in. Polylines and triangle meshes are thin and hold on both sides: the segment from
@@ -46,6 +47,7 @@ mod contacts;
 mod facet_contacts;
 mod facets;
 mod hull;
+mod inside;
 mod motion;
 mod picture;
 mod response;
@@ -55,5 +57,6 @@ mod touch;
 mod vector;
 
 pub use contacts::Colliders;
+pub use inside::Buried;
 pub use picture::Picture;
 pub use spec::all;

@@ -19,6 +19,10 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) v: [S; D],
     /// Position before it, carried along with the collider [m].
     pub(crate) before: [S; D],
+    /// Position before it, where the node was [m].
+    pub(crate) from: [S; D],
+    /// Force on it, where the step was evaluated last [N].
+    pub(crate) force: [S; D],
     /// Mass [kg].
     pub(crate) mass: S,
     /// The gap, below zero where there is contact [m].
@@ -33,7 +37,12 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) h: S,
 }
 
-/// The node afterwards, and what became of its kinetic energy: ΔE = −loss_contact − loss_friction + work.
+/// The node afterwards, and what became of its energy.
+///
+/// The obstacle gives an impulse J, the force F has given hF. With v₀ before the step, v₁ after it and v̄ = ½(v₀ + v₁) the
+/// kinetic energy changes by (J + hF)·v̄, exactly; J·v̄ is the work of the obstacle's own motion less the two losses. The
+/// potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has gone into motion: the rest is what putting the node back on
+/// the surface did. So a node that lies still takes and gives nothing, however large the step.
 pub(crate) struct Parting<S, const D: usize> {
     /// Position [m].
     pub(crate) x: [S; D],
@@ -45,6 +54,8 @@ pub(crate) struct Parting<S, const D: usize> {
     pub(crate) loss_friction: S,
     /// Work of a collider that moves [J].
     pub(crate) work: S,
+    /// Given by putting the node back on the surface [J].
+    pub(crate) correction: S,
 }
 
 /// The distance [m] below which a gap is nothing but rounding.
@@ -111,7 +122,6 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     // Out along the normal; without friction the motion along the surface is left as it is, to the bit.
     let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
     let mut v = add(&node.v, &scaled(&node.normal, change));
-    let mut loss_friction = zero;
     if law.friction > 0.0 {
         // Coulomb: the tangential change is at most µ times the normal one, and stops the sliding at most.
         let slide = lanes!(S, d => u[d] - un * node.normal[d]);
@@ -119,7 +129,6 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
         let most = S::splat(law.friction) * change;
         let keep = S::select(pace.less_or_equal(most), zero, S::one() - most / pace);
         let slide_after = scaled(&slide, keep);
-        loss_friction = S::select(closing, half * node.mass * (pace * pace - dot(&slide_after, &slide_after)), zero);
         v = lanes!(S, d => (node.obstacle[d] + slide_after[d]) + back * node.normal[d]);
 
         // A node that rests or slides goes where the new velocity takes it from where it was, and then onto the surface:
@@ -136,12 +145,23 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     }
     v = choose(closing, &v, &node.v);
 
+    // Where another contact has acted before in this step, it has counted what the force did.
+    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
+    let kick = S::select(weighs, node.h / node.mass, zero);
+    let start = subtract(&node.v, &scaled(&node.force, kick));
+    let mean = scaled(&add(&start, &v), half);
     let gained = subtract(&v, &node.v);
+    let along = dot(&gained, &node.normal);
+    let pace = subtract(&mean, &node.obstacle);
+    let pace_out = dot(&pace, &node.normal);
+    let moved =
+        choose(zero.less(node.held), &subtract(&node.x, &x), &add(&subtract(&node.from, &x), &scaled(&mean, node.h)));
     Parting {
         x,
         v,
-        loss_contact: half * node.mass * (speed * speed - back * back),
-        loss_friction,
+        loss_contact: -(node.mass * along * pace_out),
+        loss_friction: -(node.mass * (dot(&gained, &pace) - along * pace_out)),
         work: node.mass * dot(&gained, &node.obstacle),
+        correction: dot(&node.force, &moved),
     }
 }

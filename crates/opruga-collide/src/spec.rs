@@ -110,13 +110,13 @@ normal (in 2D left of the direction in which the points run, in 3D by the right-
 
 collider! {
     /// The parameters of `polyline` (2D).
-    POLYLINE, "polyline", 2, Allowed::ANY, "a thin curve of straight segments, open or closed (2D)", THIN;
+    POLYLINE, "polyline", 2, Allowed::ANY, "a thin curve of straight segments, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "Two or more points, each another than the one before."),
     Field::new("closed", Allowed::Boolean, "", NO, "Whether the last point is joined to the first; needs three points."),
 }
 collider! {
     /// The parameters of `triangle_mesh` (3D).
-    TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, "a thin surface of triangles, open or closed (3D)", THIN;
+    TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, "a thin surface of triangles, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
     Field::new("triangles", Allowed::Integers, "", Default::Required, "Three numbers of points per triangle, counted from 0."),
 }

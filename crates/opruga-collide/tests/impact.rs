@@ -16,7 +16,7 @@ fn floor(fields: &[(&str, Value)]) -> Values {
     values::<2>("half_space", &all)
 }
 
-/// What the pass took and gave is the change of kinetic energy, for any shape, motion and state.
+/// What the pass took and gave is the change of kinetic energy, for any shape, motion and state (no force acts).
 fn one_pass<const D: usize>(
     list: &[Values],
     x: &[[f64; D]],
@@ -60,7 +60,7 @@ fn one_pass<const D: usize>(
     let change = energy(&cv) - start;
     let entered = sum(&work) - sum(&contact) - sum(&friction);
     assert!((change - entered).abs() < 1e-12 * (1.0 + start), "{change} {entered}");
-    assert!(contact.iter().chain(&friction).all(|l| *l >= 0.0));
+    assert!(contact.iter().chain(&friction).all(|l| *l >= -1e-15 * (1.0 + start)), "nothing but rounding is given");
     (cx, cv, change)
 }
 

@@ -28,13 +28,14 @@ pub struct Moved<'a, const D: usize> {
     pub time: f64,
     /// The substep [s].
     pub h: f64,
-    /// Kinetic energy taken out along the normal [J], eight partial sums.
+    /// Energy taken out along the normal [J], eight partial sums.
     pub loss_contact: &'a mut [f64; WIDTH],
-    /// Kinetic energy taken out by friction [J], eight partial sums.
+    /// Energy taken out by friction [J], eight partial sums.
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
-    /// Work done against the forces by putting nodes back on the surface, −Σ F·Δx [J], eight partial sums.
+    /// Energy given by putting nodes back on the surface: what their way did beyond their mean velocity, Σ F·(h v̄ − Δx) [J],
+    /// eight partial sums.
     pub work_correction: &'a mut [f64; WIDTH],
 }
 

@@ -1,5 +1,7 @@
 //! What can go wrong while a world is built or stepped.
 
+use opruga_math::words::{counted, number};
+
 /// Why a model, integrator or collider could not be built from its parameters and the body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{kind}: {message}")]
@@ -23,7 +25,7 @@ impl BuildError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// A position or velocity is not finite any more.
-    #[error("node {node} of body {body} left the finite numbers at t = {time} s")]
+    #[error("node {node} of body {body} left the finite numbers at t = {} s", number(*time))]
     Diverged {
         /// The body, by its place in the island.
         body: usize,
@@ -34,9 +36,11 @@ pub enum StepError {
     },
     /// An implicit rule has not found the end of the step.
     #[error(
-        "`{integrator}` did not converge in {iterations} iterations at t = {time} s{}: the forces are out of balance by \
-         {residual:.3e} N, and the last correction was {correction:.3e} m; allowed: {tolerance:.3e} m",
-        beyond.as_ref().map_or_else(String::new, |part| format!(", beyond {part}"))
+        "`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction \
+         was {} m; allowed: {} m",
+        counted(u64::from(*iterations), "iteration", "iterations"), number(*time),
+        beyond.as_ref().map_or_else(String::new, |part| format!(", beyond {part}")), number(*residual), number(*correction),
+        number(*tolerance)
     )]
     NotConverged {
         /// The rule.

@@ -1,7 +1,7 @@
 //! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
 
 use crate::error::{BuildError, StepError};
-use crate::potential::Views;
+use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
 use crate::system::System;
 use core::fmt::Debug;
@@ -37,12 +37,21 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
         Ok(())
     }
     /// Names and values of what a reader may want to see, such as the part of the load that is on.
-    fn readings(&self, _system: &System<D>) -> Vec<(&'static str, f64)> {
+    fn readings(&self, _system: &System<D>) -> Vec<Reading> {
         Vec::new()
     }
     /// Whether the same bits come out on every processor, and not only on those of one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
+    }
+    /// Whether a step ends where forces balance, however far that is from where it begins and whatever the velocities.
+    fn is_static(&self) -> bool {
+        false
+    }
+    /// Whether it takes energy out of fast motion by itself, as implicit rules do: what then is lost is no sign of a step that is
+    /// too long.
+    fn damps_by_itself(&self) -> bool {
+        false
     }
     /// Whether its steps spread the work on one system over [`System::threads`].
     fn shares_threads(&self) -> bool {

@@ -8,6 +8,7 @@ use core::fmt::Debug;
 use core::ops::Range;
 use opruga_math::{Simd, WIDTH};
 use opruga_mesh::Mesh;
+use std::borrow::Cow;
 
 /// Which questions a model answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -46,6 +47,9 @@ pub enum Definiteness {
     /// Each block made positive semi-definite.
     Clamped,
 }
+
+/// The name and the value of something that a reader may want to see of a body: `volume`, `chamber2.pressure`.
+pub type Reading = (Cow<'static, str>, f64);
 
 /// How often something happened in a model, per substep and body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,7 +208,11 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
         self.hessian(view, scratch, Definiteness::Exact, &mut product);
     }
     /// Names and values per body of what a reader may want to see (`volume`, `pressure`), body by body.
-    fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<(&'static str, f64)> {
+    fn readings(&self, _view: &View<D>, _scratch: &[f64], _memory: &[f64], _body: usize) -> Vec<Reading> {
+        Vec::new()
+    }
+    /// The pressure of the gas [Pa] that each node of a body bounds, in any order; nothing where the model holds no gas.
+    fn node_pressures(&self, _view: &View<D>, _scratch: &[f64], _body: usize) -> Vec<(u32, f64)> {
         Vec::new()
     }
     /// Stress and volume ratio of the cells of a body, in any order; nothing where the model knows none.

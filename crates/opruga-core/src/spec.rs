@@ -19,7 +19,7 @@ pub struct Spec {
 }
 
 /// One parameter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// The word in the scene file.
     pub name: &'static str,
@@ -423,6 +423,36 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .filter(|(distance, c)| *distance <= limit && *distance < c.chars().count())
         .min()
         .map(|(_, c)| c.to_string())
+}
+
+/// The most words that are offered for another one.
+const MOST_OFFERED: usize = 4;
+
+/// All candidates that may be meant by a word, the nearest first: those a few letters away as a whole or up to a part of
+/// them, as `balloon-in-a-box` is to `ballon`; of equally near ones, the one that begins like the word longer.
+pub fn all_near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let candidates: Vec<&str> = candidates.collect();
+    let limit = word.chars().count() / 3 + 1;
+    let mut found: Vec<(usize, usize, &str)> = Vec::new();
+    for candidate in &candidates {
+        let parts = candidate.match_indices(['-', '_', '.']).map(|(at, _)| &candidate[..at]);
+        let near = parts.filter(|part| part.chars().count() > 2).map(|part| letters_apart(word, part) + 1);
+        let distance = near.chain([letters_apart(word, candidate)]).min().unwrap_or(usize::MAX);
+        let common = word.chars().zip(candidate.chars()).take_while(|(a, b)| a == b).count();
+        if distance <= limit && distance < candidate.chars().count() && common > 0 || distance <= 1 {
+            found.push((distance, usize::MAX - common, candidate));
+        }
+    }
+    found.sort_unstable();
+    let first = nearest(word, candidates.into_iter());
+    let closest = found.first().map_or(0, |best| best.0);
+    let offered =
+        found.into_iter().filter(|(distance, ..)| *distance <= closest + 1).map(|(.., near)| near.to_string());
+    let mut offered: Vec<String> = offered.take(MOST_OFFERED).collect();
+    if offered.is_empty() {
+        offered.extend(first);
+    }
+    offered
 }
 
 /// The number of letters to insert, delete, replace or swap between two words.

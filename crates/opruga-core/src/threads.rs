@@ -1,79 +1,109 @@
 //! Pieces of work on several threads. Which piece is done by which thread changes no bits: every piece has its own room.
 //!
-//! There is one door for all of it. Callers run in a pool (the world's); `threads` says how many of it they may use.
+//! There is one door for all of it. [`together`] calls the threads of the pool that the caller runs in (the world's), and
+//! they stay awake as long as it lasts; what goes through this door meanwhile is handed to them. `threads` says whether
+//! work may be.
 
-use rayon::prelude::*;
+use opruga_math::Team;
+use std::cell::RefCell;
+use std::sync::Arc;
 
-/// Does the work on every piece; where `threads` is more than one, on the pool of threads that the caller runs in.
-pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
-    if threads > 1 && pieces.len() > 1 {
-        pieces.par_iter_mut().for_each(work);
-    } else {
-        pieces.iter_mut().for_each(work);
+thread_local! {
+    /// The team that this thread leads.
+    static TEAM: RefCell<Option<Arc<Team>>> = const { RefCell::new(None) };
+}
+
+/// Whoever leads a team leads it no longer, and its members go home.
+struct Leading;
+
+impl Drop for Leading {
+    fn drop(&mut self) {
+        if let Some(team) = TEAM.take() {
+            team.close();
+        }
     }
 }
 
-/// The same with the part of a column that belongs to a piece: `length` numbers each.
-pub fn each_with<T: Send>(
+/// Does something while so many threads are at hand for its pieces, the caller's among them.
+pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
+    if threads < 2 || team().is_some() {
+        return work();
+    }
+    let team = Arc::new(Team::new(threads));
+    rayon::in_place_scope(|scope| {
+        for number in 1..threads {
+            let team = Arc::clone(&team);
+            scope.spawn(move |_| {
+                // A leader that waits for the end of all this may find this here still to be done.
+                if TEAM.with_borrow(Option::is_none) {
+                    team.serve(number);
+                }
+            });
+        }
+        TEAM.set(Some(team));
+        let _leading = Leading;
+        work()
+    })
+}
+
+fn team() -> Option<Arc<Team>> {
+    TEAM.with_borrow(Option::clone)
+}
+
+/// The team that the caller leads, where work on so many pieces may be handed out.
+fn team_for(threads: usize, pieces: usize) -> Option<Arc<Team>> {
+    if threads > 1 && pieces > 1 { team() } else { None }
+}
+
+/// Does the work on every piece.
+pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + Sync) {
+    match team_for(threads, pieces.len()) {
+        Some(team) => team.each(pieces, work),
+        None => pieces.iter_mut().for_each(work),
+    }
+}
+
+/// The same with the part of a slice that belongs to a piece: `length` entries each.
+pub fn each_with<T: Send, U: Send>(
     threads: usize,
     pieces: &mut [T],
-    column: &mut [f64],
+    slice: &mut [U],
     length: usize,
-    work: impl Fn(&mut T, &mut [f64]) + Sync + Send,
+    work: impl Fn(&mut T, &mut [U]) + Sync,
 ) {
-    if threads > 1 && pieces.len() > 1 {
-        pieces.par_iter_mut().zip(column.par_chunks_mut(length)).for_each(|(piece, part)| work(piece, part));
-    } else {
-        pieces.iter_mut().zip(column.chunks_mut(length)).for_each(|(piece, part)| work(piece, part));
+    match team_for(threads, pieces.len()) {
+        Some(team) => team.each_with(pieces, slice, length, work),
+        None => pieces.iter_mut().zip(slice.chunks_mut(length)).for_each(|(piece, part)| work(piece, part)),
     }
 }
 
-/// Does the work on every item with its part of a column, whose lengths differ from item to item; asks for no memory.
-///
-/// # Errors
-/// Of the errors of the items that were looked at, the first in their order.
-pub fn each_in_column<T: Sync, E: Send>(
-    threads: usize,
-    items: &[T],
-    column: &mut [f64],
-    length: &(impl Fn(&T) -> usize + Sync),
-    work: &(impl Fn(&T, &mut [f64]) -> Result<(), E> + Sync),
-) -> Result<(), E> {
-    match items {
-        [] => Ok(()),
-        [item] => work(item, &mut column[..length(item)]),
-        _ => {
-            // Halves of halves: a thread that has nothing to do takes one over.
-            let (first, second) = items.split_at(items.len() / 2);
-            let (own, other) = column.split_at_mut(first.iter().map(length).sum());
-            if threads > 1 {
-                let (a, b) = rayon::join(
-                    || each_in_column(threads, first, own, length, work),
-                    || each_in_column(threads, second, other, length, work),
-                );
-                a.and(b)
-            } else {
-                each_in_column(threads, first, own, length, work)?;
-                each_in_column(threads, second, other, length, work)
+/// Does the work on parts of a slice that begin at the given places, which rise from 0 on.
+pub fn each_part<T: Send>(threads: usize, slice: &mut [T], starts: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
+    match team_for(threads, starts.len()) {
+        Some(team) => team.each_part(slice, starts, work),
+        None => {
+            for (number, start) in starts.iter().enumerate() {
+                let end = starts.get(number + 1).map_or(slice.len(), |next| *next);
+                work(number, &mut slice[*start..end]);
             }
         }
     }
 }
 
-/// Does the work on parts of a slice that begin at the given places, on several threads; gives what each part came to.
-pub fn each_part<T: Send, R: Send>(
-    slice: &mut [T],
-    starts: &[usize],
-    work: impl Fn(usize, &mut [T]) -> R + Sync + Send,
-) -> Vec<R> {
-    let mut parts = Vec::with_capacity(starts.len());
-    let (mut rest, mut at) = (slice, 0);
-    for (number, start) in starts.iter().enumerate() {
-        let until = starts.get(number + 1).map_or(rest.len(), |next| next - at);
-        debug_assert_eq!(*start, at, "parts follow one another from the start on");
-        let (part, behind) = rest.split_at_mut(until);
-        parts.push((number, part));
-        (rest, at) = (behind, at + until);
+/// Nodes in a block of vectors that are worked on by one thread.
+const BLOCK: usize = 512;
+
+/// Does the work on blocks of some vectors with so many numbers a node; it is told where its block begins. All end with the
+/// shortest.
+pub fn each_block<T: Send, const N: usize>(
+    threads: usize,
+    numbers: usize,
+    vectors: [&mut [T]; N],
+    work: impl Fn(usize, [&mut [T]; N]) + Sync,
+) {
+    let end = vectors.iter().map(|vector| vector.len()).min().unwrap_or(0);
+    match team_for(threads, end.div_ceil(BLOCK * numbers)) {
+        Some(team) => team.each_block(vectors, BLOCK * numbers, work),
+        None => work(0, vectors.map(|vector| &mut vector[..end])),
     }
-    parts.into_par_iter().map(|(number, part)| work(number, part)).collect()
 }

@@ -147,6 +147,21 @@ impl<'a> Canvas<'a> {
         [self.pixmap.width() as f32, self.pixmap.height() as f32]
     }
 
+    /// How many pixels of a rectangle (left, top, width, height) are of another colour than wanted, to the eye.
+    pub(crate) fn differing(&self, [left, top, width, height]: [f32; 4], colour: [u8; 3]) -> usize {
+        let [wide, tall] = self.size().map(|size| size as usize);
+        let (columns, rows) = (
+            left.max(0.0) as usize..((left + width).ceil().max(0.0) as usize).min(wide),
+            top.max(0.0) as usize..((top + height).ceil().max(0.0) as usize).min(tall),
+        );
+        let bytes = self.pixmap.as_ref().data().to_vec();
+        let other = |x: usize, y: usize| {
+            let pixel = &bytes[4 * (y * wide + x)..][..3];
+            pixel.iter().zip(&colour).any(|(a, b)| a.abs_diff(*b) > 20)
+        };
+        rows.map(|y| columns.clone().filter(|x| other(*x, y)).count()).sum()
+    }
+
     /// Writes a text whose base line goes through a point.
     pub(crate) fn text(&mut self, text: &str, point: [f32; 2], size: f32, anchor: Anchor, colour: [u8; 3]) {
         let shift = match anchor {

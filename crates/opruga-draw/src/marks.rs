@@ -2,7 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, paint, text_width};
 use crate::colour::{INK, OKABE_ITO, RUBBER};
-use crate::picture::{ArrowKind, Picture};
+use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
@@ -52,12 +52,13 @@ pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     }
 }
 
-/// Draws all arrows, pins and rubber lines of a picture; `project` gives the pixel of a point, and `in_sight` says
-/// whether a point of a surface is seen.
+/// Draws the pins, the names and the rubber lines of a picture, and some arrows; `project` gives the pixel of a point, and
+/// `in_sight` says whether a point of a surface is seen.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
-    picture: &Picture,
+    (picture, arrows): (&Picture, &[ArrowPicture]),
     view: &View,
+    background: [u8; 3],
     unit: f32,
     project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
     in_sight: &dyn Fn([f64; 3]) -> bool,
@@ -82,11 +83,27 @@ pub(crate) fn draw_marks(
             }
         }
     }
-    for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
-        label(canvas, &body.label, body.positions.iter().filter_map(|x| project(*x)), unit);
+    draw_arrows(canvas, arrows, view, unit, project, in_sight);
+    for pull in &picture.pulls {
+        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
+            rubber_line(canvas, node, pointer, unit);
+        }
     }
-    let width = if picture.arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
-    for mark in &picture.arrows {
+    // Names are read over everything else.
+    labels(canvas, picture, background, unit, project);
+}
+
+/// Draws arrows.
+pub(crate) fn draw_arrows(
+    canvas: &mut Canvas,
+    arrows: &[ArrowPicture],
+    view: &View,
+    unit: f32,
+    project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+    in_sight: &dyn Fn([f64; 3]) -> bool,
+) {
+    let width = if arrows.len() > CROWD { 1.2 } else { 1.8 } * unit;
+    for mark in arrows {
         let scale = view.arrow_scale(mark.kind);
         let to = std::array::from_fn(|axis| mark.from[axis] + scale * mark.vector[axis]);
         if !in_sight(mark.from) {
@@ -97,31 +114,90 @@ pub(crate) fn draw_marks(
             arrow(canvas, [from, to], width, arrow_colour(mark.kind), long > 16.0 * unit);
         }
     }
-    for pull in &picture.pulls {
-        if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
-            rubber_line(canvas, node, pointer, unit);
+}
+
+/// A name and the box of pixels of its body.
+struct Label<'a> {
+    text: &'a str,
+    low: [f32; 2],
+    high: [f32; 2],
+}
+
+/// Where a name lies relative to its body.
+#[derive(Clone, Copy)]
+enum Side {
+    Above,
+    Below,
+    Right,
+    Left,
+}
+
+/// Writes the names of bodies: all above them or all below, where less lies under them, so that none is taken for that of a
+/// neighbour; those that still cover something at a free side; on a light ground where nothing is free.
+fn labels(
+    canvas: &mut Canvas,
+    picture: &Picture,
+    background: [u8; 3],
+    unit: f32,
+    project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
+) {
+    let scene = canvas.size();
+    let mut all: Vec<Label<'_>> = Vec::new();
+    for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
+        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+        for pixel in body.positions.iter().filter_map(|x| project(*x)) {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(pixel[axis]);
+                high[axis] = high[axis].max(pixel[axis]);
+            }
         }
+        if (0..2).all(|axis| high[axis] >= 0.0 && low[axis] <= scene[axis] && (high[axis] - low[axis]).is_finite()) {
+            all.push(Label { text: &body.label, low, high });
+        }
+    }
+    let place = |label: &Label<'_>, side: Side| label.place(side, scene, unit);
+    let covered = |canvas: &Canvas, side: Side| -> usize {
+        all.iter().map(|label| canvas.differing(place(label, side), background)).sum()
+    };
+    // Above unless much more is covered there: names do not jump from picture to picture.
+    let area: f32 = all.iter().map(|label| place(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
+    let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
+    let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
+    for label in &all {
+        let own = place(label, side);
+        // A corner of something else under it is no reason to leave the row.
+        let enough = (0.1 * own[2] * own[3]) as usize;
+        let free = [Side::Right, Side::Left].map(|side| place(label, side));
+        let free = free.into_iter().find(|place| canvas.differing(*place, background) == 0);
+        let at = match free {
+            Some(free) if canvas.differing(own, background) > enough => free,
+            _ => own,
+        };
+        if canvas.differing(at, background) > 0 {
+            canvas.rectangle(at, [255; 3], 0.8);
+        }
+        let size = LABEL * unit;
+        canvas.text(label.text, [at[0] + 0.5 * at[2], at[1] + 0.85 * size], size, Anchor::Middle, INK);
     }
 }
 
-/// Writes a name under the pixels of a body, within the scene and on a light ground.
-fn label(canvas: &mut Canvas, text: &str, pixels: impl Iterator<Item = [f32; 2]>, unit: f32) {
-    let (mut left, mut right, mut bottom) = (f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY);
-    for [x, y] in pixels {
-        left = left.min(x);
-        right = right.max(x);
-        bottom = bottom.max(y);
+/// The size of names.
+const LABEL: f32 = 12.0;
+
+impl Label<'_> {
+    /// Left, top, width and height of the name at a side of its body, within the scene.
+    fn place(&self, side: Side, scene: [f32; 2], unit: f32) -> [f32; 4] {
+        let size = LABEL * unit;
+        let (wide, tall, gap) = (text_width(self.text, size) + 4.0 * unit, 1.15 * size, 4.0 * unit);
+        let middle = [0.5 * (self.low[0] + self.high[0]), 0.5 * (self.low[1] + self.high[1])];
+        let [left, top] = match side {
+            Side::Above => [middle[0] - 0.5 * wide, self.low[1] - gap - tall],
+            Side::Below => [middle[0] - 0.5 * wide, self.high[1] + gap],
+            Side::Right => [self.high[0] + gap, middle[1] - 0.5 * tall],
+            Side::Left => [self.low[0] - gap - wide, middle[1] - 0.5 * tall],
+        };
+        [left.min(scene[0] - wide - unit).max(unit), top.min(scene[1] - tall - unit).max(unit), wide, tall]
     }
-    let [width, height] = canvas.size();
-    let (middle, size) = (0.5 * (left + right), 12.0 * unit);
-    if !middle.is_finite() || middle < 0.0 || middle > width || bottom < 0.0 || bottom > height {
-        return;
-    }
-    let half = 0.5 * text_width(text, size) + 2.0 * unit;
-    let base = (bottom + 15.0 * unit).min(height - 5.0 * unit);
-    let middle = middle.min(width - half).max(half);
-    canvas.rectangle([middle - half, base - 0.85 * size, 2.0 * half, 1.15 * size], [255; 3], 0.7);
-    canvas.text(text, [middle, base], size, Anchor::Middle, INK);
 }
 
 /// Draws an arrow with a filled head, and a light rim where it lies over a scene.

@@ -97,6 +97,9 @@ pub struct BodyPicture {
     pub colour: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
+    /// How far apart neighbours were at the start [m]: where that leaves no room for dots in a flat picture there are none,
+    /// in all pictures of a run alike. Dots are drawn in any case where this is absent.
+    pub node_spacing: Option<f64>,
     /// The areas which are drawn in two dimensions instead of the outline, one over another; may be empty.
     pub areas: Vec<AreaPicture>,
     /// The nodes which are held in place.
@@ -115,6 +118,7 @@ impl Default for BodyPicture {
             scalar: Vec::new(),
             colour: None,
             nodes_drawn: false,
+            node_spacing: None,
             areas: Vec::new(),
             pinned: Vec::new(),
             label: String::new(),

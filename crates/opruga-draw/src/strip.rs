@@ -142,6 +142,11 @@ pub fn captioned_strip(
         Some(columns) => Grid::new(pictures.len(), columns, aspect, room, unit),
         None => Grid::best(pictures.len(), aspect, room, unit),
     };
+    // Captions that are longer than their panels are wide take several lines.
+    let (mut grid, size, line) = (grid, 15.0 * unit, 18.0 * unit);
+    let captions: Vec<Vec<String>> =
+        captions.iter().take(pictures.len()).map(|text| lines_of(text, grid.panel[0], size)).collect();
+    grid.line += line * captions.iter().map(|lines| lines.len().saturating_sub(1)).max().unwrap_or(0) as f32;
     let [panel, tall] = grid.panel;
     if panel < 8.0 {
         return Err(DrawError::Size { width: panel.max(0.0) as u32, height: 0 });
@@ -159,11 +164,14 @@ pub fn captioned_strip(
         scale = found;
     }
     let mut canvas = Canvas::new(&mut image);
-    for (index, caption) in captions.iter().enumerate().take(pictures.len()) {
+    for (index, lines) in captions.iter().enumerate() {
         let [left, top] = grid.place(index, [margin, head]);
         canvas.frame([left - 1.0, top - 1.0, panel + 2.0, tall + 2.0], crate::colour::FRAME);
-        let point = [left + 0.5 * panel, top + tall + 19.0 * unit];
-        canvas.text(caption, point, 15.0 * unit, Anchor::Middle, INK);
+        for (number, text) in lines.iter().enumerate() {
+            let point = [left + 0.5 * panel, top + tall + 19.0 * unit + line * number as f32];
+            let fits = (panel + 0.8 * grid.gap) / text_width(text, size).max(1.0);
+            canvas.text(text, point, size * fits.min(1.0), Anchor::Middle, INK);
+        }
     }
     let fits = (whole - 2.0 * margin) / text_width(&first.title, title).max(1.0);
     canvas.text(&first.title, [margin, head - 16.0 * unit], title * fits.min(1.0), Anchor::Start, INK);
@@ -179,9 +187,34 @@ pub fn captioned_strip(
     Ok(image)
 }
 
+/// A text in lines that are no wider than a width, but where a single word is.
+fn lines_of(text: &str, width: f32, size: f32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if text_width(line, size) + text_width(" ", size) + text_width(word, size) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_captions_take_several_lines() {
+        let width = text_width("translation along", 15.0) + 1.0;
+        let lines = lines_of("12: translation along (0.577, 0.577, 0.577)", width, 15.0);
+        assert_eq!(lines.join(" "), "12: translation along (0.577, 0.577, 0.577)");
+        assert!(lines.len() > 2 && lines.iter().all(|line| text_width(line, 15.0) <= width), "{lines:?}");
+        assert_eq!(lines_of("t = 0.5 s", width, 15.0), ["t = 0.5 s"]);
+        assert_eq!(lines_of("", width, 15.0), [""]);
+    }
 
     #[test]
     fn nothing_is_cropped_at_the_border() {

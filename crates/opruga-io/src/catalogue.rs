@@ -1,6 +1,6 @@
 //! What the caller offers to scenes: the models, integrators and colliders that exist.
 
-use opruga_core::spec::Spec;
+use opruga_core::spec::{Field, Spec};
 
 /// The specifications that a scene may name by `kind`.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +11,44 @@ pub struct Catalogue {
     pub integrators: Vec<&'static Spec>,
     /// Rigid obstacles.
     pub colliders: Vec<&'static Spec>,
+}
+
+/// The specifications of each kind together, in the order of the first of each: several where dimensions differ in a field.
+pub(crate) fn by_kind(list: &[&'static Spec]) -> Vec<Vec<&'static Spec>> {
+    let mut kinds: Vec<Vec<&'static Spec>> = Vec::new();
+    for spec in list {
+        match kinds.iter_mut().find(|kind| kind[0].kind == spec.kind) {
+            Some(kind) => kind.push(spec),
+            None => kinds.push(vec![spec]),
+        }
+    }
+    kinds
+}
+
+/// The dimensions in which a kind exists, ascending.
+pub(crate) fn dimensions(kind: &[&'static Spec]) -> Vec<usize> {
+    let mut dimensions: Vec<usize> = kind.iter().flat_map(|spec| spec.dimensions).copied().collect();
+    dimensions.sort_unstable();
+    dimensions.dedup();
+    dimensions
+}
+
+/// The fields of a kind in their order: one of each name and meaning, with the specifications that have it.
+pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'static Spec>)> {
+    let mut fields: Vec<(&'static Field, Vec<&'static Spec>)> = Vec::new();
+    for spec in kind {
+        for field in spec.fields {
+            match fields.iter_mut().find(|(known, _)| **known == *field) {
+                Some((_, of)) => of.push(spec),
+                None => {
+                    // Beside the field of the same name, if another dimension has one.
+                    let place = fields.iter().rposition(|(known, _)| known.name == field.name);
+                    fields.insert(place.map_or(fields.len(), |place| place + 1), (field, vec![spec]));
+                }
+            }
+        }
+    }
+    fields
 }
 
 /// The specification of a kind, if it is in the list: of several (one per dimension) the one that exists in `dimension`.

@@ -1,5 +1,6 @@
 //! A parsed scene as a tree of values, each of which knows where it was written.
 
+use crate::brackets::unclosed;
 use crate::problem::{SceneError, visible};
 use crate::scene::MOST_ERRORS;
 use crate::source::Source;
@@ -100,8 +101,25 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let (mut broken, mut broken_line) = (false, None);
     let mut problems: Vec<_> = problems.iter().collect();
     problems.sort_by_key(|problem| problem.span().map_or(0, |span| span.start));
+    let (open, mut told) = (if problems.is_empty() { None } else { unclosed(source.text) }, false);
     for problem in problems.into_iter().take(MOST_ERRORS) {
         let span = problem.span().unwrap_or(0..0);
+        // All that is read as part of a list that is never closed makes no sense: that is one slip.
+        if let Some(open) = open.filter(|open| span.start >= open.open) {
+            if !std::mem::replace(&mut told, true) {
+                let (from, until) = (source.position(open.open).0, source.position(open.until).0);
+                let what = if open.wanted == ']' { "list" } else { "table" };
+                let message = format!("the text is no TOML: the {what} that opens in line {from} is not closed");
+                let hint = format!("a `{}` is missing between here and line {until}", open.wanted);
+                // The parser stumbles first where the bracket is missing, or where what follows begins.
+                let place = if span.start < open.until { span.start } else { open.open };
+                let hint =
+                    if place == open.open { hint } else { format!("a `{}` is missing before here", open.wanted) };
+                errors.push(source.mark(SceneError::new("scene.syntax", message).hint(hint), place, place + 1));
+            }
+            broken = true;
+            continue;
+        }
         if problem.message() == "duplicate key" {
             errors.push(duplicate(source, &root, span.start, span.end));
             continue;

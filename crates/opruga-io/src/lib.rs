@@ -4,6 +4,7 @@
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 pub mod base64;
+mod brackets;
 pub mod catalogue;
 pub mod checkpoint;
 mod document;

@@ -42,10 +42,13 @@ fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), 
         return Err(SceneError::new("set.value", "the value is missing").path(path).allowed("PATH=VALUE"));
     }
     let value = document::parse_value(value, number).map_err(|why| {
-        SceneError::new("set.value", format!("the value is no TOML: {why}"))
-            .path(path)
-            .value(visible(value))
-            .hint("texts with spaces need quotes")
+        let error = SceneError::new("set.value", format!("the value is no TOML: {why}")).path(path).value(visible(value));
+        let several = value.contains(',') || value.contains("..");
+        if several && !value.contains(['[', '{', '"', '\'']) {
+            let hint = "`opruga sweep` takes lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector stands in brackets";
+            return error.allowed("one value").hint(hint);
+        }
+        error.hint("texts with spaces need quotes")
     })?;
     let parts: Vec<&str> = path.split('.').collect();
     if parts.len() > 32 || parts.iter().any(|p| p.is_empty()) {

@@ -95,15 +95,17 @@ impl SceneError {
         }
         self
     }
-    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`.
+    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`; what an
+    /// error does not have is null.
     pub fn to_json(&self) -> serde_json::Value {
+        let there = |text: &String| Some(text.clone()).filter(|text| !text.is_empty());
         serde_json::json!({
             "code": self.code,
             "message": self.message,
-            "file": self.file,
+            "file": there(&self.file),
             "line": self.line,
             "column": self.column,
-            "path": self.path,
+            "path": there(&self.path),
             "value": self.value,
             "allowed": self.allowed,
             "hint": self.hint,
@@ -123,9 +125,19 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
+/// What is told of because the scene itself asks for it: worth knowing, and no error where warnings are errors.
+const ASKED_FOR: [&str; 2] = ["shape.overlap", "shape.dropped"];
+
+impl Notice {
+    /// Whether a notice of this code tells of nothing but what was asked for.
+    pub(crate) fn is_asked_for(code: &str) -> bool {
+        ASKED_FOR.contains(&code)
+    }
+}
+
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, &self.about, "warning")?;
+        describe(f, &self.about, if Notice::is_asked_for(self.about.code) { "note" } else { "warning" })?;
         if self.count > 1 { write!(f, "\n  = {} times", self.count) } else { Ok(()) }
     }
 }

@@ -1,6 +1,6 @@
 //! The reference page of the scene format, made from the same descriptions as the reader.
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{self, Catalogue};
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
 use opruga_world::schema::{Child, Holds, SCENE, SELECTORS, Section};
 use opruga_world::shapes;
@@ -65,15 +65,54 @@ fn table(out: &mut String, level: &str, section: &Section, tag: Option<&str>) {
     rows(out, section, tag);
 }
 
+/// A section for each kind, under a heading that no other chapter has; a field that differs between the dimensions has a
+/// row for each.
 fn kinds(out: &mut String, title: &str, place: &str, specs: &[&'static Spec]) {
     let _ = writeln!(out, "## {title}: `{place}`\n");
-    for spec in specs {
-        table(out, "### ", &Section { spec, children: &[] }, Some("kind"));
+    for kind in catalogue::by_kind(specs) {
+        let dimensions = catalogue::dimensions(&kind);
+        let one = title.strip_suffix('s').unwrap_or(title);
+        let text = sentence_of(kind[0], &dimensions);
+        let _ = writeln!(out, "### {one} `kind = \"{}\"`\n\n{text}\n", kind[0].kind);
+        let fields = catalogue::fields(&kind);
+        if fields.is_empty() {
+            out.push_str("No fields but `kind`.\n\n");
+            continue;
+        }
+        out.push_str(HEAD);
+        for (field, of) in fields {
+            let note = match (of.len() < kind.len(), catalogue::dimensions(&of).as_slice()) {
+                (true, [dimension]) => format!(" ({dimension}D)"),
+                _ => String::new(),
+            };
+            row(out, field, &note);
+        }
+        out.push('\n');
     }
 }
 
+/// The head of a table of fields.
+const HEAD: &str = "| field | unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
+
+/// The row of a field.
+fn row(out: &mut String, field: &Field, note: &str) {
+    let _ = writeln!(
+        out,
+        "| `{}`{note} | {} | {} | {} | {} |",
+        field.name,
+        field.unit,
+        escape(&allowed(&field.range)),
+        default(field),
+        escape(field.documentation)
+    );
+}
+
 fn sentence(spec: &Spec) -> String {
-    let dimensions = match spec.dimensions {
+    sentence_of(spec, spec.dimensions)
+}
+
+fn sentence_of(spec: &Spec, dimensions: &[usize]) -> String {
+    let dimensions = match dimensions {
         [2] => " (2D only)",
         [3] => " (3D only)",
         _ => "",
@@ -87,18 +126,8 @@ fn rows(out: &mut String, section: &Section, tag: Option<&str>) {
         let _ = writeln!(out, "No fields{}.\n", tag.map(|t| format!(" but `{t}`")).unwrap_or_default());
         return;
     }
-    out.push_str("| field | unit | allowed | default | meaning |\n|---|---|---|---|---|\n");
-    for field in section.spec.fields {
-        let _ = writeln!(
-            out,
-            "| `{}` | {} | {} | {} | {} |",
-            field.name,
-            field.unit,
-            escape(&allowed(&field.range)),
-            default(field),
-            escape(field.documentation)
-        );
-    }
+    out.push_str(HEAD);
+    section.spec.fields.iter().for_each(|field| row(out, field, ""));
     for child in section.children {
         let default = if child.required { "required" } else { "" };
         let _ =

@@ -1,9 +1,10 @@
 //! What a world refuses, said as errors of the scene: with the place of the part that is meant.
 
-use crate::document::{self, Data, Node, Place};
+use crate::document::{self, Data, Entry, Node, Place};
 use crate::overrides;
 use crate::problem::SceneError;
 use crate::source::Source;
+use opruga_math::words::number;
 use opruga_world::{Warning, WorldError};
 
 impl From<&WorldError> for SceneError {
@@ -14,21 +15,23 @@ impl From<&WorldError> for SceneError {
         match error {
             WorldError::UnstableStep { integrator, body, h, limit, omega, damping, substeps } => {
                 let fastest = match damping {
-                    0.0 => format!("its fastest motion: {omega:.4e} rad/s"),
-                    _ => format!("its fastest motion: {omega:.4e} rad/s, damping {damping:.4e} 1/s"),
+                    0.0 => format!("its fastest motion: {} rad/s", number(*omega)),
+                    _ => format!("its fastest motion: {} rad/s, damping {} 1/s", number(*omega), number(*damping)),
                 };
-                say(format!("the step h = {h:.6e} s of `{integrator}` is unstable for body `{body}`"))
-                    .value(format!("{h:e}"))
-                    .allowed(format!("h <= {limit:.6e} s ({fastest})"))
+                let (h, limit) = (number(*h), number(*limit));
+                say(format!("the step h = {h} s of `{integrator}` is unstable for body `{body}`"))
+                    .value(h)
+                    .allowed(format!("h <= {limit} s ({fastest})"))
                     .hint(format!(
                         "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
                     ))
             }
             WorldError::Diverged { body, node, time, last } => say(format!(
-                "body `{body}` diverged: node {node} left the finite numbers in the substep from t = {time} s"
+                "body `{body}` diverged: node {node} left the finite numbers in the substep from t = {} s",
+                number(*time)
             ))
             .value(time.to_string())
-            .hint(format!("the output ends with the last good frame, t = {last} s; more substeps may help")),
+            .hint(format!("the output ends with the last good frame, t = {} s; more substeps may help", number(*last))),
             WorldError::NotConverged { body, message, hint } => {
                 let said = split(say(format!("body `{body}`: {message}")));
                 let message = format!("{}; the world is at its last good frame", said.message);
@@ -82,14 +85,16 @@ fn path_of(error: &WorldError) -> String {
 /// A warning of a world as an error, for those who want no warnings.
 impl From<&Warning> for SceneError {
     fn from(warning: &Warning) -> SceneError {
-        const CODES: [&str; 3] = ["units.sag", "step.no_stable_step", "step.unstable"];
+        const CODES: [&str; 4] = ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside"];
         let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
-        SceneError::new(code, warning.message.clone()).hint("without --strict this is a warning")
+        let body = warning.message.strip_prefix("body `").and_then(|rest| rest.split(['`', '[']).next());
+        let path = body.map_or(String::new(), |body| format!("body.{body}"));
+        SceneError::new(code, warning.message.clone()).path(path).hint("without --strict this is a warning")
     }
 }
 
-/// Gives an error its file, and the line of its path in the text of the scene: that of the nearest part around it where
-/// the path itself is not written; or the override that has set it.
+/// Gives an error its file, and the line of its path in the text of the scene: that of the field that its message names
+/// first, or of the nearest part around it where the path itself is not written; or the override that has set it.
 #[must_use]
 pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String, String)]) -> SceneError {
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
@@ -97,25 +102,31 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     if error.path.is_empty() {
         return error;
     }
-    if let Some((path, value)) = overrides.iter().rev().find(|(path, _)| *path == error.path) {
+    let Some(mut root) = document::parse(&source).0 else { return error };
+    // What an override could not set has been an error before any world was built.
+    let _ = overrides::apply_all(&mut root, overrides);
+    // Its step is as long as any part of `time` has made it.
+    let of_time = |(path, _): &(String, String)| error.code == "step.unstable" && path.starts_with("time.");
+    if let Some((path, value)) = overrides.iter().rfind(|set| of_time(set)) {
         return SceneError { file: overrides::named(path, value), ..error };
     }
-    match document::parse(&source).0.and_then(|root| place(&root, &error.path)) {
+    let fields: Vec<&str> = error.message.split('`').skip(1).step_by(2).collect();
+    match place(&root, &error.path, &fields) {
         Some(Place::Bytes(start, end)) => source.mark(error, start, end),
-        _ => error,
+        Some(Place::Override(number)) => match overrides.get(number) {
+            Some((path, value)) => SceneError { file: overrides::named(path, value), ..error },
+            None => error,
+        },
+        None => error,
     }
 }
 
-/// The place of the last part of a path that is written; none where nothing of it is.
-fn place(root: &Node, path: &str) -> Option<Place> {
+/// The place of the last part of a path that is written, or of a field in it; none where nothing of it is.
+fn place(root: &Node, path: &str, fields: &[&str]) -> Option<Place> {
     let (mut node, mut place) = (root, None);
     for part in path.split('.') {
         let next = match &node.data {
-            Data::Table(_) => node.entry(part).map(|entry| {
-                // A table is shown by its key, a value by itself.
-                let header = matches!(entry.value.data, Data::Table(_) | Data::Array(_));
-                (&entry.value, if header { entry.place } else { entry.value.place })
-            }),
+            Data::Table(_) => node.entry(part).map(|entry| (&entry.value, shown_at(entry))),
             Data::Array(items) => {
                 let named = |n: &&Node| ["name", "kind"].iter().any(|k| n.get(k).and_then(Node::text) == Some(part));
                 let found = part.parse::<usize>().ok().and_then(|k| items.get(k)).or_else(|| items.iter().find(named));
@@ -126,5 +137,16 @@ fn place(root: &Node, path: &str) -> Option<Place> {
         let Some((next, at)) = next else { break };
         (node, place) = (next, Some(at));
     }
-    place
+    let named = fields.iter().find_map(|field| node.entry(field)).map(shown_at);
+    // A part of which an override has changed something is as that has made it.
+    let changed = || node.entries().iter().map(|entry| entry.value.place).rfind(|at| matches!(at, Place::Override(_)));
+    named.or_else(changed).or(place)
+}
+
+/// A table is shown by its key, a value by itself.
+fn shown_at(entry: &Entry) -> Place {
+    match entry.value.data {
+        Data::Table(_) | Data::Array(_) => entry.place,
+        _ => entry.value.place,
+    }
 }

@@ -23,6 +23,10 @@ impl WriteError {
     pub(crate) fn new(code: &'static str, path: &Path, message: impl Into<String>) -> WriteError {
         WriteError { code, message: message.into(), path: path.to_path_buf(), bytes: 0, hint: None }
     }
+    fn exists(path: &Path) -> WriteError {
+        let error = WriteError::new("write.exists", path, "the file is already there");
+        WriteError { hint: Some("--force replaces it".into()), ..error }
+    }
     pub(crate) fn failed(path: &Path, bytes: u64, error: &io::Error) -> WriteError {
         WriteError {
             bytes,
@@ -41,7 +45,7 @@ impl WriteError {
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "code": self.code, "message": self.message, "file": self.path.display().to_string(), "line": null, "column": null,
-            "path": "", "value": self.bytes, "allowed": null, "hint": self.hint,
+            "path": null, "value": self.bytes, "allowed": null, "hint": self.hint,
         })
     }
 }
@@ -76,11 +80,14 @@ pub fn safe_write(
 /// The ending of files that are written to see whether they can be.
 const TRIAL: &str = ".opruga-trial";
 
-/// Tries whether a file could be written by [`safe_write`] with `force`; leaves what is there as it is.
+/// Tries whether a file could be written by [`safe_write`]; leaves what is there as it is.
 ///
 /// # Errors
-/// `write.failed`.
-pub fn try_write(path: &Path) -> Result<(), WriteError> {
+/// `write.exists` where the file is there and `force` is not given; `write.failed`.
+pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
+    if !force && path.exists() && !path.is_dir() {
+        return Err(WriteError::exists(path));
+    }
     let mut trial = path.as_os_str().to_owned();
     trial.push(TRIAL);
     let trial = PathBuf::from(trial);
@@ -139,12 +146,8 @@ fn write_aside<'a>(
     if path.is_dir() {
         return Err(WriteError::new("write.failed", path, "this is a folder"));
     }
-    let exists = || {
-        let error = WriteError::new("write.exists", path, "the file is already there");
-        WriteError { hint: Some("--force replaces it".into()), ..error }
-    };
     if !force && path.exists() {
-        return Err(exists());
+        return Err(WriteError::exists(path));
     }
     let Some(name) = path.file_name() else {
         return Err(WriteError::new("write.failed", path, "this is no name of a file"));
@@ -166,7 +169,7 @@ fn write_aside<'a>(
     drop(file);
     let result = result.and_then(|bytes| {
         if !force && path.exists() {
-            return Err(exists());
+            return Err(WriteError::exists(path));
         }
         last()?;
         fs::rename(&aside, path).map_err(|e| WriteError::failed(path, bytes, &e))?;
@@ -384,7 +387,7 @@ impl OutputFolder {
             }
         }
         let folder = OutputFolder { path: path.to_path_buf(), force: existing != Existing::Refuse, lock: Some(lock) };
-        try_write(&folder.path("trial")).map_err(|e| WriteError {
+        try_write(&folder.path("trial"), true).map_err(|e| WriteError {
             code: "write.folder",
             path: path.to_path_buf(),
             ..e

@@ -1,6 +1,6 @@
 //! The JSON Schema of scenes, for editors: made from the same descriptions as the reader.
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{self, Catalogue};
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
 use opruga_world::schema::{Child, FORMAT, Holds, SCENE, Section};
 use opruga_world::shapes;
@@ -53,10 +53,34 @@ fn describe(spec: &Spec) -> String {
     }
 }
 
-/// Tables of which `kind` chooses one.
+/// Tables of which `kind` chooses one: each kind once, since a table that fits two of `oneOf` fits none. Where a field
+/// differs between the dimensions, what either allows is allowed.
 fn kinds(specs: &[&'static Spec], catalogue: &Catalogue) -> Value {
-    let tables: Vec<Value> =
-        specs.iter().map(|spec| section(&Section { spec, children: &[] }, Some("kind"), catalogue)).collect();
+    let table = |kind: Vec<&'static Spec>| {
+        let mut schema = section(&Section { spec: kind[0], children: &[] }, Some("kind"), catalogue);
+        let fields = catalogue::fields(&kind);
+        for name in fields.iter().map(|(field, _)| field.name) {
+            let same: Vec<_> = fields.iter().filter(|(field, _)| field.name == name).collect();
+            if let [(field, _)] = same[..] {
+                schema["properties"][name] = plain(field);
+                continue;
+            }
+            let choices: Vec<Value> = same
+                .iter()
+                .map(|(field, of)| {
+                    let mut choice = plain(field);
+                    let dimensions: Vec<String> =
+                        catalogue::dimensions(of).iter().map(|dimension| format!("{dimension}D")).collect();
+                    let text = choice["description"].as_str().unwrap_or_default();
+                    choice["description"] = format!("In {}: {text}", dimensions.join(" and ")).into();
+                    choice
+                })
+                .collect();
+            schema["properties"][name] = json!({ "anyOf": choices });
+        }
+        schema
+    };
+    let tables: Vec<Value> = catalogue::by_kind(specs).into_iter().map(table).collect();
     json!({ "oneOf": tables })
 }
 

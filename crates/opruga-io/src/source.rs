@@ -217,7 +217,7 @@ impl<'a> Source<'a> {
 }
 
 /// One past the end of a string that begins at `at`; an unclosed one ends with its line or the text.
-fn end_of_string(bytes: &[u8], at: usize) -> usize {
+pub(crate) fn end_of_string(bytes: &[u8], at: usize) -> usize {
     let quote = bytes[at];
     let long = bytes[at..].starts_with(&[quote; 3]);
     let mut k = at + if long { 3 } else { 1 };

@@ -12,7 +12,9 @@ pub mod simd;
 pub mod singular;
 pub mod strip;
 pub mod symmetric;
+mod team;
 mod twin;
+pub mod words;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
@@ -20,4 +22,5 @@ pub use column::Column;
 pub use lane::{Lane, Pack, ROW, Register, WIDTH, sum_in_fixed_order};
 pub use simd::{Simd, Work};
 pub use strip::{RepeatStrip, Strip, StripMut};
+pub use team::Team;
 pub use twin::Twin;

@@ -2,6 +2,7 @@
 
 use crate::geometry::{Point, cross, dot, lift, norm, subtract};
 use crate::{Element, Mesh, MeshError};
+use opruga_math::words::{counted, number};
 
 /// An edge shorter than this fraction of the body's extent counts as degenerate [−].
 pub const SHORT_EDGE: f64 = 1e-12;
@@ -25,7 +26,7 @@ pub enum Problem {
     #[error(transparent)]
     Topology(#[from] MeshError),
     /// An element has, for its size, no length, area or volume.
-    #[error("{element} {index} is degenerate: its measure is {measure}")]
+    #[error("{element} {index} is degenerate: its measure is {}", number(*measure))]
     Degenerate {
         /// Kind of the element.
         element: Element,
@@ -35,7 +36,7 @@ pub enum Problem {
         measure: f64,
     },
     /// A filled cell has negative area or volume, or a negative Jacobian at one of its nodes.
-    #[error("{element} {index} is inverted: its measure is {measure}")]
+    #[error("{element} {index} is inverted: its measure is {}", number(*measure))]
     Inverted {
         /// Kind of the cell.
         element: Element,
@@ -53,7 +54,7 @@ pub enum Problem {
         second: u32,
     },
     /// No element names these nodes.
-    #[error("{} nodes belong to no element, the first is node {}", nodes.len(), nodes.first().copied().unwrap_or(0))]
+    #[error("{} to no element, the first is node {}", counted(nodes.len() as u64, "node belongs", "nodes belong"), nodes.first().copied().unwrap_or(0))]
     UnreferencedNodes {
         /// The nodes, ascending.
         nodes: Vec<u32>,

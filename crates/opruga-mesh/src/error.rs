@@ -1,5 +1,6 @@
 //! What can be wrong with a mesh or with the numbers that a generator is given.
 
+use opruga_math::words::{counted, number};
 use std::fmt;
 
 /// The kinds of element that a mesh is made of; used to say where something is wrong.
@@ -168,7 +169,7 @@ pub enum MeshError {
         why: &'static str,
     },
     /// A filling does not hold together as its surface does: it is too coarse.
-    #[error("with a spacing of {spacing} m the filling of {parts} closed {} falls into {pieces} pieces", if *parts == 1 { "surface" } else { "surfaces" })]
+    #[error("with a spacing of {} m the filling of {} falls into {pieces} pieces", number(*spacing), counted(*parts as u64, "closed surface", "closed surfaces"))]
     Torn {
         /// Side of the cubes of the lattice [m].
         spacing: f64,
@@ -192,7 +193,7 @@ pub enum MeshError {
         index: u32,
     },
     /// The boundary has free ends: open chains in the plane, boundary loops of an open surface in space.
-    #[error("the boundary is not closed: {loops} free {}, through nodes {nodes:?}", if *loops == 1 { "boundary" } else { "boundaries" })]
+    #[error("the boundary is not closed: {}, through nodes {nodes:?}", counted(*loops as u64, "free boundary", "free boundaries"))]
     Open {
         /// Number of open chains (plane) or boundary loops (space).
         loops: usize,
@@ -218,14 +219,15 @@ pub enum MeshError {
         facet: u32,
     },
     /// Neighbouring facets face opposite ways; [`crate::Mesh::orient_outward`] repairs it.
-    #[error("{} facets face against their neighbours, the first is facet {}", facets.len(), facets.first().copied().unwrap_or(0))]
+    #[error("{} against their neighbours, the first is facet {}", counted(facets.len() as u64, "facet faces", "facets face"), facets.first().copied().unwrap_or(0))]
     InconsistentOrientation {
         /// The minority of each connected component, in ascending order.
         facets: Vec<u32>,
     },
     /// A component with negative volume lies in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
     #[error(
-        "the component through facet {facet} is inside out: its volume is {signed_volume} and no other component encloses it"
+        "the component through facet {facet} is inside out: its volume is {} and no other component encloses it",
+        number(*signed_volume)
     )]
     InsideOut {
         /// Lowest facet of the component.

@@ -2,7 +2,7 @@
 
 use crate::edges::ascending;
 use crate::lattice_bcc::{Key, Lattice};
-use crate::skin::{Inside, Skin, weights};
+use crate::skin::{Inside, Skin, refined, weights};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
@@ -68,8 +68,11 @@ impl Mesh<3> {
             }
         };
         let number = |key: &Key| number(&keys, key);
-        let mut skin = Skin { triangles: self.facets.clone(), ..Skin::default() };
-        for (position, holder) in self.positions.iter().zip(&holders) {
+        // A surface that is coarser than the lattice could not follow it: points are added to it that only pictures show.
+        let (points, triangles) = refined(&self.positions, &self.facets, spacing);
+        holders.extend(points.iter().skip(holders.len()).map(|point| kept_holder(*point, &kept, &lattice)));
+        let mut skin = Skin { triangles, ..Skin::default() };
+        for (position, holder) in points.iter().zip(&holders) {
             skin.carriers.push(holder.map(|key| number(&key)));
             skin.weights.push(weights(holder.map(|key| lattice.at(key)), *position));
         }
@@ -139,19 +142,50 @@ fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     found
 }
 
+/// The tetrahedron of the body that holds a point, or of those around it the one that it is least outside of.
+fn kept_holder(point: [f64; 3], kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> [Key; 4] {
+    let ideal = holder(point, lattice);
+    if kept.contains_key(&ideal) {
+        return ideal;
+    }
+    let cube = cube_of(point, lattice);
+    let mut best = (ideal, f64::NEG_INFINITY);
+    for shift in 0..125 {
+        let center: [i32; 3] =
+            core::array::from_fn(|d| 2 * (cube[d] + [shift % 5, shift / 5 % 5, shift / 25][d] - 2) + 1);
+        for tetrahedron in (0..3).flat_map(|axis| lattice.beyond(center, axis)) {
+            if kept.contains_key(&tetrahedron) {
+                let least = least_weight(&tetrahedron, point, lattice);
+                if least > best.1 {
+                    best = (tetrahedron, least);
+                }
+            }
+        }
+    }
+    best.0
+}
+
+/// The cube of the lattice that a point lies in.
+fn cube_of(point: [f64; 3], lattice: &Lattice) -> [i32; 3] {
+    core::array::from_fn(|d| ((point[d] - lattice.origin[d]) / lattice.spacing).floor() as i32)
+}
+
+/// The least weight of a point in a tetrahedron; negative outside.
+fn least_weight(tetrahedron: &[Key; 4], point: [f64; 3], lattice: &Lattice) -> f64 {
+    let weights = weights(tetrahedron.map(|key| lattice.at(key)), point);
+    weights.into_iter().fold(f64::INFINITY, |m, w| if w < m { w } else { m })
+}
+
 /// The tetrahedron of the lattice that holds a point: of those around the point's cube the one in which its least weight is largest.
 fn holder(point: [f64; 3], lattice: &Lattice) -> [Key; 4] {
-    let cube: [i32; 3] = core::array::from_fn(|d| ((point[d] - lattice.origin[d]) / lattice.spacing).floor() as i32);
-    let center = cube.map(|c| 2 * c + 1);
+    let center = cube_of(point, lattice).map(|c| 2 * c + 1);
     let mut best = ([center; 4], f64::NEG_INFINITY);
     for axis in 0..3 {
         let mut before = center;
         before[axis] -= 2;
         for from in [before, center] {
             for tetrahedron in lattice.beyond(from, axis) {
-                let least = weights(tetrahedron.map(|key| lattice.at(key)), point)
-                    .into_iter()
-                    .fold(f64::INFINITY, |m, w| if w < m { w } else { m });
+                let least = least_weight(&tetrahedron, point, lattice);
                 if least > best.1 {
                     best = (tetrahedron, least);
                 }

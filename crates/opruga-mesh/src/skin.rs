@@ -2,6 +2,7 @@
 
 use crate::geometry::{dot, subtract, tetrahedron_volume};
 use crate::{Mesh, MeshError};
+use std::collections::BTreeMap;
 
 /// Points that move with a body without being part of its physics: each is a mean of four of its nodes.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -66,6 +67,47 @@ pub(crate) fn weights([a, b, c, d]: [[f64; 3]; 4], point: [f64; 3]) -> [f64; 4] 
         tetrahedron_volume(a, b, point, d) / whole,
         tetrahedron_volume(a, b, c, point) / whole,
     ]
+}
+
+/// More points than this are not added to a skin.
+const MOST_ADDED: usize = 1 << 20;
+
+/// A surface with edges no longer than a length: longer ones are halved, and the triangles at them cut, again and again.
+/// The points that were there keep their numbers.
+pub(crate) fn refined(positions: &[[f64; 3]], triangles: &[[u32; 3]], longest: f64) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let (mut points, mut cut) = (positions.to_vec(), triangles.to_vec());
+    while points.len() < positions.len() + MOST_ADDED {
+        let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        for [a, b, c] in &cut {
+            for (p, q) in [(*a, *b), (*b, *c), (*c, *a)] {
+                let edge = if p < q { [p, q] } else { [q, p] };
+                let [x, y] = edge.map(|node| points[node as usize]);
+                let way = subtract(y, x);
+                if dot(way, way) > longest * longest && !middles.contains_key(&edge) {
+                    middles.insert(edge, points.len() as u32);
+                    points.push(core::array::from_fn(|d| 0.5 * (x[d] + y[d])));
+                }
+            }
+        }
+        if middles.is_empty() {
+            break;
+        }
+        let middle = |p: u32, q: u32| middles.get(&if p < q { [p, q] } else { [q, p] }).copied();
+        cut = cut.iter().flat_map(|triangle| pieces(*triangle, &middle)).collect();
+    }
+    (points, cut)
+}
+
+/// The triangles into which one is cut whose edges may have a middle.
+fn pieces([a, b, c]: [u32; 3], middle: &impl Fn(u32, u32) -> Option<u32>) -> Vec<[u32; 3]> {
+    match (middle(a, b), middle(b, c), middle(c, a)) {
+        (None, None, None) => vec![[a, b, c]],
+        (Some(m), None, None) => vec![[a, m, c], [m, b, c]],
+        (Some(m), Some(n), None) => vec![[m, b, n], [a, m, n], [a, n, c]],
+        (Some(m), Some(n), Some(o)) => vec![[a, m, o], [m, b, n], [o, n, c], [m, n, o]],
+        // The same, begun from another corner.
+        (None, ..) | (Some(_), None, Some(_)) => pieces([b, c, a], middle),
+    }
 }
 
 /// Whether a ray from a point upwards (z) meets closed facets an odd number of times. Facets are found by a grid in x and y.

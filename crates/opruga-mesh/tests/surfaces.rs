@@ -145,12 +145,13 @@ fn a_lattice_fills_its_surface_and_carries_it() {
                     + u[2] * (v[0] * w[1] - v[1] * w[0]);
                 assert!((det / 6.0 / (spacing * spacing * spacing / 12.0) - 1.0).abs() < 1e-9);
             }
-            // The skin lies on the surface, by means of weights between 0 and 1.
+            // The skin lies on the surface, by means of weights between 0 and 1 at the points of the file.
             let skin = body.skin.as_ref().expect("a skin");
             for (p, q) in skin.positions(&body.positions).iter().zip(&surface.positions) {
                 assert!((0..3).all(|d| (p[d] - q[d]).abs() < 1e-12));
             }
-            assert!(skin.weights.iter().flatten().all(|w| (-1e-12..1.0 + 1e-12).contains(w)));
+            let own = skin.weights.iter().take(surface.nodes());
+            assert!(own.flatten().all(|w| (-1e-12..1.0 + 1e-12).contains(w)));
             assert!(skin.weights.iter().all(|w| (w.iter().sum::<f64>() - 1.0).abs() < 1e-12));
         }
         assert!(last < 1.35, "{last}");
@@ -175,6 +176,41 @@ fn a_skin_follows_its_body() {
     for (z, q) in skin.values(&heights).iter().zip(&wanted.positions) {
         assert!((z - q[2]).abs() < 1e-12, "linear quantities are carried exactly");
     }
+}
+
+/// Large triangles of a surface are cut, so that pictures show how the body bends: the points added lie on the surface, and
+/// the nodes of the body are those that it had without them.
+#[test]
+fn a_skin_is_no_coarser_than_its_body() {
+    let corner = |k: u32| [f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2 & 1)];
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cube = Mesh::<3> {
+        positions: (0..8).map(corner).collect(),
+        facets: sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect(),
+        ..Mesh::default()
+    };
+    let body = cube.lattice_filling(0.25).expect("a filling");
+    let skin = body.skin.as_ref().expect("a skin");
+    let points = skin.positions(&body.positions);
+    let apart = |p: u32, q: u32| {
+        let (p, q) = (points[p as usize], points[q as usize]);
+        (0..3).map(|d| (p[d] - q[d]).powi(2)).sum::<f64>().sqrt()
+    };
+    assert!(
+        skin.triangles.iter().all(|[a, b, c]| [(a, b), (b, c), (c, a)].iter().all(|(p, q)| apart(**p, **q) < 0.251))
+    );
+    for (point, own) in points.iter().zip(&cube.positions) {
+        assert!((0..3).all(|d| (point[d] - own[d]).abs() < 1e-12), "those of the file come first");
+    }
+    let on_surface = |p: &[f64; 3]| {
+        p.iter().any(|x| x.abs() < 1e-12 || (x - 1.0).abs() < 1e-12)
+            && p.iter().all(|x| (-1e-12..1.0 + 1e-12).contains(x))
+    };
+    assert!(points.iter().all(on_surface) && points.len() > 100);
+    // It is closed, and encloses the cube: each edge belongs to two triangles, once in either direction.
+    let surface = Mesh::<3> { positions: points.clone(), facets: skin.triangles.clone(), ..Mesh::default() };
+    assert!((surface.enclosed_volume() - 1.0).abs() < 1e-12);
+    assert_eq!(surface.components().expect("closed").len(), 1);
 }
 
 #[test]

@@ -58,12 +58,12 @@ fn quadratic_triangles_bend_as_they_should_in_plane_stress() {
     let found: Vec<f64> = [4, 8, 16].iter().map(|n| pulled(&membrane(*n, Kind::Quadratic), values(), 1.0)[0]).collect();
     assert!((found[1] / 23.9676 - 1.0).abs() < 0.006 && (found[2] / 23.9676 - 1.0).abs() < 0.003, "{found:?}");
     assert!(found.windows(2).all(|w| w[0] < w[1] && w[1] < 23.9676), "{found:?}");
-    // Boxes converge too, from farther below; linear triangles of the same nodes are stiffer still.
+    // Boxes come as near; linear triangles of the same nodes are much stiffer.
     let boxes = pulled(&membrane(16, Kind::Boxes), values(), 1.0)[0];
     let triangles = pulled(&membrane(16, Kind::Triangles), values(), 1.0)[0];
     println!("plane stress, middle: quadratic 4, 8, 16: {found:?}, boxes 16: {boxes}, triangles 16: {triangles}");
-    assert!((boxes / 23.9676 - 1.0).abs() < 0.03, "{boxes}");
-    assert!(triangles < 0.99 * boxes && boxes < 0.99 * found[2], "{triangles} {boxes}");
+    assert!((boxes / 23.9676 - 1.0).abs() < 0.005, "{boxes}");
+    assert!(triangles < 0.97 * boxes, "{triangles} {boxes}");
 }
 
 /// Neo-Hookean in plane strain, E = 240.565, F = 100: the corner and the middle of the right side.

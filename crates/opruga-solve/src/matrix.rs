@@ -244,7 +244,7 @@ impl<const D: usize> BlockMatrix<D> {
         rows.retain(|row| *row < self.rows());
         let starts: Vec<usize> = rows.iter().map(|row| self.start[*row] as usize).collect();
         let factor = self.factor;
-        each_part(&mut self.values, &starts, |part, values| {
+        each_part(threads, &mut self.values, &starts, |part, values| {
             let rows = rows[part]..rows.get(part + 1).map_or(usize::MAX, |row| *row);
             let mut landing = Landing { values, first: starts[part], factor };
             packs.deliver(&rows, &mut |number, pack| {

@@ -4,6 +4,7 @@ use super::*;
 use crate::{
     BlockJacobi, Cholesky, Directions, Factors, IncompleteCholesky, Packed, Preconditioner, conjugate_gradients,
 };
+use opruga_core::threads::together;
 use opruga_math::{Lane, Simd};
 
 /// A chain of springs in the plane with a gas that couples all of its nodes; `order` reverses the calls.
@@ -126,20 +127,22 @@ fn every_solver_finds_the_same_solution() {
         let mut bits = Vec::new();
         for simd in Simd::available() {
             for threads in [1, 2, 3] {
-                let mut packed = Packed::default();
-                packed.take(&matrix, threads);
-                packed.hold(threads, &matrix, &vec![true; nodes], &vec![isotropic(1.0); nodes]).unwrap();
-                let mut x = vec![0.0; 2 * nodes];
-                let size = packed.begin(simd, threads, &b);
-                let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
-                check(&x, "packed");
-                // The same method with sums in another order, which tells once vectors are no longer conjugate.
-                assert!(reached.iterations.abs_diff(counts[0]) <= counts[0] / 10, "{reached:?}");
-                bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
-                let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
-                matrix.multiply(&b, &mut whole);
-                packed.multiply(simd, threads, &b, &mut product);
-                assert!(whole.iter().zip(&product).all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + a.abs())));
+                together(threads, || {
+                    let mut packed = Packed::default();
+                    packed.take(&matrix, threads);
+                    packed.hold(threads, &matrix, &vec![true; nodes], &vec![isotropic(1.0); nodes]).unwrap();
+                    let mut x = vec![0.0; 2 * nodes];
+                    let size = packed.begin(simd, threads, &b);
+                    let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
+                    check(&x, "packed");
+                    // The same method with sums in another order, which tells once vectors are no longer conjugate.
+                    assert!(reached.iterations.abs_diff(counts[0]) <= counts[0] / 10, "{reached:?}");
+                    bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+                    let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
+                    matrix.multiply(&b, &mut whole);
+                    packed.multiply(simd, threads, &b, &mut product);
+                    assert!(whole.iter().zip(&product).all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + a.abs())));
+                });
             }
         }
         assert!(bits.iter().all(|x| *x == bits[0]));

@@ -1,5 +1,7 @@
 //! The window: what is where, shortcuts, messages.
 
+mod message;
+
 use crate::canvas::{Canvas, Tool};
 use crate::differences::Difference;
 use crate::hand::{Arrived, Hand};
@@ -9,10 +11,11 @@ use crate::panels::plots::Plots;
 use crate::panels::properties::Properties;
 use crate::panels::{bars, palette};
 use crate::runner::Link;
+use crate::said::Said;
 use crate::session::{Edit, Placed, Request, Session};
-use crate::shown::{Offer, Severity, Show, Shown};
+use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, CornerRadius, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Stroke, Ui};
+use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Ui};
 use std::sync::Arc;
 
 /// The scene that comes first.
@@ -20,9 +23,6 @@ pub const FIRST_SCENE: &str = "ball";
 
 /// The width up to which the properties are in a drawer [points]: a phone held upright.
 const NARROW: f32 = 700.0;
-
-/// How long it stays on the screen that something was done [s].
-const TOLD_FOR: f64 = 6.0;
 
 /// The whole window.
 #[derive(Debug)]
@@ -51,6 +51,8 @@ pub struct Studio {
     told: (String, f64),
     /// Seconds of the interface for a frame, without the time of the graphics card.
     rate: f64,
+    /// What draws, and on which device, where there is a choice.
+    drawn_by: Option<[String; 2]>,
 }
 
 impl Studio {
@@ -80,12 +82,15 @@ impl Studio {
             closed: 0,
             told: (String::new(), 0.0),
             rate: 60.0,
+            drawn_by: None,
         })
     }
 
     /// Goes on in another context, on another device: pictures that were handed to the last one are handed over anew.
+    /// `drawn_by` says what draws there, and on which device.
     #[cfg(target_arch = "wasm32")]
-    pub fn move_to(&mut self, context: &egui::Context) {
+    pub fn move_to(&mut self, context: &egui::Context, drawn_by: [String; 2]) {
+        self.drawn_by = Some(drawn_by);
         crate::theme::apply(context);
         let waker = context.clone();
         self.link.wake_by(move || waker.request_repaint());
@@ -104,8 +109,8 @@ impl Studio {
     }
 
     /// Says something to the person.
-    pub fn tell(&mut self, severity: Severity, text: String) {
-        self.keeping.tell(severity, text);
+    pub fn tell(&mut self, severity: Severity, said: Said) {
+        self.keeping.tell(severity, said);
     }
 
     /// The simulation.
@@ -135,9 +140,10 @@ impl Studio {
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
         let narrow = ui.available_width() <= NARROW;
         Panel::top("tools").frame(bar).show(ui, |ui| {
-            let chosen = bars::tools(ui, &shown, words, narrow, self.keeping.is_working(), &mut asks);
+            let chosen = bars::tools(ui, &shown, words, narrow, &mut asks);
             self.choose(ui, chosen);
-            bars::status(ui, &shown, words, self.rate);
+            let making = self.keeping.working();
+            bars::status(ui, &shown, words, self.rate, narrow, self.drawn_by.as_ref(), making);
         });
         Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));
         let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));
@@ -223,10 +229,10 @@ impl Studio {
         use bars::Chosen;
         match chosen {
             Chosen::Nothing => {}
-            Chosen::Gallery => self.gallery.open = !self.gallery.open,
+            Chosen::Gallery => (self.gallery.open, self.help_open) = (!self.gallery.open, false),
             Chosen::Plots => self.plots_open = !self.plots_open,
             Chosen::Properties => self.drawer_open = !self.drawer_open,
-            Chosen::Help => self.help_open = !self.help_open,
+            Chosen::Help => (self.help_open, self.gallery.open) = (!self.help_open, false),
             Chosen::Language => {
                 self.language = match self.language {
                     Language::English => Language::Croatian,
@@ -261,7 +267,9 @@ impl Studio {
                                 self.canvas.tool = tool;
                             }
                         }
-                        ui.separator();
+                        if rect.width() > NARROW {
+                            ui.separator();
+                        }
                         palette::menu(ui, shown, words, self.canvas.middle(shown), asks);
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
@@ -283,82 +291,6 @@ impl Studio {
             let font = FontId::proportional(22.0);
             painter.text(rect.center(), Align2::CENTER_CENTER, words.drop_here(), font, Color32::WHITE);
         }
-    }
-
-    /// The last message, at the bottom of the scene, with what would help.
-    fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
-        let words = self.language;
-        let own = self.canvas.refused.map(|why| match why {
-            "crossing" => words.crossing(),
-            "only_plane" => words.only_plane(),
-            _ => words.too_small(),
-        });
-        let message = shown.message.as_ref().filter(|message| message.number != self.closed);
-        let (text, severity, offer) = match (own, message, self.keeping.message()) {
-            (Some(text), ..) => (text.to_string(), Severity::Refused, None),
-            (None, Some(message), _) => (words.said(&message.said), message.severity, message.offer.clone()),
-            (None, None, Some((text, severity))) => {
-                let head = if self.keeping.is_written() { format!("{} ", words.kept()) } else { String::new() };
-                (format!("{head}{text}"), severity, None)
-            }
-            _ => return,
-        };
-        let refused = severity == Severity::Refused;
-        let now = ui.input(|i| i.time);
-        let told = format!("{}: {text}", message.map_or(0, |m| m.number));
-        if self.told.0 != told {
-            self.told = (told, now);
-        }
-        if !refused && now - self.told.1 > TOLD_FOR {
-            return;
-        }
-        egui::Area::new(egui::Id::unique("message"))
-            .pivot(Align2::CENTER_BOTTOM)
-            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, if shown.beside.is_some() { 66.0 } else { 40.0 }))
-            .order(egui::Order::Middle)
-            .show(ui.ctx(), |ui| {
-                let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };
-                Frame::popup(ui.style()).stroke(Stroke::new(1.5, edge)).corner_radius(CornerRadius::same(6)).show(
-                    ui,
-                    |ui| {
-                        ui.set_max_width((rect.width() - 120.0).clamp(120.0, 620.0));
-                        let lines: Vec<&str> = text.lines().collect();
-                        let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
-                        let monospaced = lines.len() > 1;
-                        let text = RichText::new(short);
-                        ui.label(if monospaced { text.monospace().size(11.5) } else { text });
-                        ui.horizontal(|ui| {
-                            if let Some(offer) = &offer {
-                                let name = match offer {
-                                    Offer::HalveStep => words.halve_step().to_string(),
-                                    Offer::Substeps(n) => format!("{} ({n})", words.use_substeps()),
-                                };
-                                if ui.button(name).clicked() {
-                                    asks.push(Request::Accept(offer.clone()));
-                                    self.closed = message.map_or(self.closed, |m| m.number);
-                                }
-                            }
-                            // What made it fail may have been the last change.
-                            if offer == Some(Offer::HalveStep)
-                                && let Some(step) = &shown.undo
-                                && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
-                            {
-                                asks.push(Request::Undo);
-                                self.closed = message.map_or(self.closed, |m| m.number);
-                            }
-                            if ui.button(words.close()).clicked() {
-                                if own.is_some() {
-                                    self.canvas.refused = None;
-                                } else if let Some(message) = message {
-                                    self.closed = message.number;
-                                } else {
-                                    self.keeping.forget_message();
-                                }
-                            }
-                        });
-                    },
-                );
-            });
     }
 
     fn windows(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
@@ -474,10 +406,10 @@ impl Studio {
 
     /// Files that were dropped on the window or chosen: scenes are opened, shapes become bodies.
     fn dropped(&mut self, ui: &Ui, asks: &mut Vec<Request>) {
-        for arrived in self.hand.arrived(ui, self.language) {
+        for arrived in self.hand.arrived(ui) {
             match arrived {
                 Arrived::Request(request) => asks.push(request),
-                Arrived::Told(severity, text) => self.keeping.tell(severity, text),
+                Arrived::Told(severity, said) => self.keeping.tell(severity, said),
             }
         }
     }

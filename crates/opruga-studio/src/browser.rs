@@ -1,5 +1,6 @@
 //! What a browser gives: its clock, its address, downloads and files.
 
+use crate::said::Said;
 use js_sys::{Array, Promise, Uint8Array};
 use std::sync::mpsc::{Receiver, channel};
 use wasm_bindgen::prelude::*;
@@ -7,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 /// A file that a person has chosen: its name and its bytes.
-pub(crate) type Chosen = Result<(String, Vec<u8>), String>;
+pub(crate) type Chosen = Result<(String, Vec<u8>), Said>;
 
 fn window() -> Option<web_sys::Window> {
     web_sys::window()
@@ -43,8 +44,8 @@ pub(crate) fn fragment() -> String {
 }
 
 /// Puts this behind the `#` of the address, without a new entry in the history; the whole address.
-pub(crate) fn set_fragment(fragment: &str) -> Result<String, String> {
-    let failed = || "the browser does not let its address be changed".to_string();
+pub(crate) fn set_fragment(fragment: &str) -> Result<String, Said> {
+    let failed = || Said::AddressStays;
     let window = window().ok_or_else(failed)?;
     let history = window.history().map_err(|_| failed())?;
     history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{fragment}"))).map_err(|_| failed())?;
@@ -52,8 +53,8 @@ pub(crate) fn set_fragment(fragment: &str) -> Result<String, String> {
 }
 
 /// Hands a file to the person as a download.
-pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), String> {
-    let failed = |_: JsValue| format!("the browser does not take the file {name}");
+pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Said> {
+    let failed = |_: JsValue| Said::NoDownload(name.into());
     let parts = Array::of1(&Uint8Array::from(bytes));
     let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).map_err(failed)?;
     let address = web_sys::Url::create_object_url_with_blob(&blob).map_err(failed)?;
@@ -76,10 +77,10 @@ pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), String> {
 pub(crate) async fn read(file: &web_sys::File, most: u64) -> Chosen {
     let name = file.name();
     if file.size() > most as f64 {
-        return Err(format!("{name} has {} bytes; allowed: at most {most}", file.size()));
+        return Err(Said::TooLarge(name, file.size() as u64, most));
     }
     let buffer = JsFuture::from(file.unchecked_ref::<web_sys::Blob>().array_buffer()).await;
-    let buffer = buffer.map_err(|_| format!("{name} cannot be read"))?;
+    let buffer = buffer.map_err(|_| Said::Unreadable(name.clone()))?;
     Ok((name, Uint8Array::new(&buffer).to_vec()))
 }
 

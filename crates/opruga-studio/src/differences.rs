@@ -2,9 +2,10 @@
 
 use crate::document::{Document, kind_table, toml};
 use crate::pair::read;
+use crate::said::Said;
 use opruga::blueprint::{AnyBlueprint, Blueprint, BodyBlueprint};
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, SceneError};
+use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::Value as Toml;
 
@@ -32,18 +33,6 @@ impl Difference {
             Difference::Shape(body, field, _) => format!("body.{body}.shape.{field}"),
         }
     }
-
-    /// A few words for the picture.
-    pub fn words(&self) -> String {
-        match self {
-            Difference::Set(path, value) => named(path.split('.').next_back().unwrap_or_default(), value),
-            Difference::Shape(_, field, value) => named(field, value),
-            Difference::Models(_, models) => {
-                models.iter().map(|m| m.kind().replace('_', " ")).collect::<Vec<_>>().join(" + ")
-            }
-            Difference::Integrator(_, values) => values.kind().replace('_', " "),
-        }
-    }
 }
 
 /// Adds a difference to those that there are. Another kind of model or integrator takes the values of the former one away.
@@ -53,15 +42,6 @@ pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
     let whole = !matches!(new, Difference::Set(..));
     differences.retain(|old| old.about() != about && !(whole && old.about().starts_with(&below)));
     differences.push(new);
-}
-
-/// A field and its value.
-fn named(field: &str, value: &Value) -> String {
-    let field = field.replace('_', " ");
-    match value {
-        Value::Number(x) => format!("{field} {}", opruga::draw::format_value(*x)),
-        value => format!("{field} {value}"),
-    }
 }
 
 /// Which node of a body on one side stands for which on the other: that which lies nearest at rest. Bodies that have the same
@@ -85,15 +65,12 @@ impl Twins {
 /// names nodes names those that lie nearest at rest.
 ///
 /// # Errors
-/// A sentence where a difference has no place in the scene, or all that is wrong with a shape.
-pub fn right_of(document: &Document, differences: &[Difference], files: &Files) -> Result<(Document, Twins), String> {
+/// [`Said`] where a difference has no place in the scene, or all that is wrong with a shape.
+pub fn right_of(document: &Document, differences: &[Difference], files: &Files) -> Result<(Document, Twins), Said> {
     let mut right = document.clone();
     for difference in differences {
         if !write(&mut right, difference) {
-            let about = difference.about();
-            let error = SceneError::new("studio.difference", format!("`{about}` stands nowhere in the scene itself"));
-            let hint = "the two sides can differ in bodies that are there from the start and are no copies";
-            return Err(error.hint(hint).to_string());
+            return Err(Said::NoDifference(difference.about()));
         }
     }
     let reshaped: BTreeSet<&str> = differences

@@ -1,5 +1,6 @@
 //! What becomes of a file that is dropped on the window.
 
+use crate::said::Said;
 use crate::session::Request;
 use opruga::io::{Files, scene};
 use std::path::Path;
@@ -19,33 +20,33 @@ const SHAPES: [(&str, &str, bool); 6] = [
 ///
 /// # Errors
 /// A sentence for the person.
-pub fn take(path: &Path) -> Result<Request, String> {
+pub fn take(path: &Path) -> Result<Request, Said> {
     let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
-    let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(|e| format!("{file}: {e}"));
+    let bytes = || scene::bytes_of(path, &scene::Limits::default()).map_err(|e| Said::Because(format!("{file}: {e}")));
     request(&file, bytes, || Files::beside(path))
 }
 
 /// The same for a file of this name, whatever holds it: its bytes are read where it is a scene.
 pub(crate) fn request(
     file: &str,
-    bytes: impl FnOnce() -> Result<Vec<u8>, String>,
+    bytes: impl FnOnce() -> Result<Vec<u8>, Said>,
     files: impl FnOnce() -> Files,
-) -> Result<Request, String> {
+) -> Result<Request, Said> {
     let path = Path::new(file);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name = path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned());
     if ending == "toml" {
-        let text = String::from_utf8(bytes()?).map_err(|_| format!("{file} is no text in UTF-8"))?;
+        let text = String::from_utf8(bytes()?).map_err(|_| Said::NoText(file.into()))?;
         return Ok(Request::Open { name, text, files: files() });
     }
     let Some((_, fields, space)) = SHAPES.iter().find(|(known, ..)| *known == ending) else {
         let known: Vec<&str> = SHAPES.iter().map(|(known, ..)| *known).collect();
-        return Err(format!("{file} is neither a scene nor a shape; allowed: .toml, .{}", known.join(", .")));
+        return Err(Said::NoShapeFile(file.into(), format!(".toml, .{}", known.join(", ."))));
     };
     if file.contains(['"', '\\']) {
-        return Err(format!("{file}: a scene cannot name this file; rename it without quotes and backslashes"));
+        return Err(Said::NameOfFile(file.into()));
     }
-    Ok(Request::Open { name, text: around(file, fields, *space, &ending), files: files() })
+    Ok(Request::OpenAround { name, text: around(file, fields, *space, &ending), files: files() })
 }
 
 /// A scene with one shape over a floor.

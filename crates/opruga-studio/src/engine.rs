@@ -222,7 +222,10 @@ impl<const D: usize> Living<D> {
             });
         }
         if show.vertices {
-            picture.bodies.iter_mut().for_each(|body| body.nodes_drawn = body.positions.len() <= 20_000);
+            for body in &mut picture.bodies {
+                body.nodes_drawn = body.positions.len() <= 20_000;
+                body.node_spacing = None;
+            }
         }
         self.add_arrows(&mut picture, show);
         picture

@@ -2,9 +2,9 @@
 //! holds the scene.
 
 use crate::runner::Link;
+use crate::said::Said;
 use crate::session::Request;
 use crate::shown::Severity;
-use crate::words::Language;
 use egui::Ui;
 
 /// What has arrived.
@@ -12,11 +12,11 @@ pub(crate) enum Arrived {
     /// Something to ask the session for.
     Request(Request),
     /// Something to tell the person.
-    Told(Severity, String),
+    Told(Severity, Said),
 }
 
 impl Arrived {
-    fn of(outcome: Result<Request, String>) -> Arrived {
+    fn of(outcome: Result<Request, Said>) -> Arrived {
         outcome.map_or_else(|refused| Arrived::Told(Severity::Refused, refused), Arrived::Request)
     }
 }
@@ -39,7 +39,7 @@ mod window {
 
         pub(crate) fn choose_file(&mut self) {}
 
-        pub(crate) fn arrived(&mut self, ui: &Ui, _: Language) -> Vec<Arrived> {
+        pub(crate) fn arrived(&mut self, ui: &Ui) -> Vec<Arrived> {
             let files = ui.input(|i| i.raw.dropped_files.clone());
             files.iter().map(|file| Arrived::of(crate::dropping::take(file.path()))).collect()
         }
@@ -73,7 +73,7 @@ mod page {
             self.files.push(browser::choose(endings, Limits::default().file_bytes));
         }
 
-        pub(crate) fn arrived(&mut self, ui: &Ui, words: Language) -> Vec<Arrived> {
+        pub(crate) fn arrived(&mut self, ui: &Ui) -> Vec<Arrived> {
             let mut arrived = Vec::new();
             for dropped in ui.input(|i| i.raw.dropped_files.clone()) {
                 let Some(file) = dropped.web_file().cloned() else { continue };
@@ -93,7 +93,7 @@ mod page {
                 arrived.push(match share::to_fragment(&shared).and_then(|fragment| browser::set_fragment(&fragment)) {
                     Ok(address) => {
                         ui.ctx().copy_text(address);
-                        Arrived::Told(Severity::Told, words.link_copied().into())
+                        Arrived::Told(Severity::Told, Said::LinkCopied)
                     }
                     Err(refused) => Arrived::Told(Severity::Refused, refused),
                 });

@@ -10,6 +10,7 @@ pub mod engine;
 pub mod keyframes;
 pub mod pacing;
 pub mod pair;
+pub mod said;
 pub mod session;
 pub mod shown;
 

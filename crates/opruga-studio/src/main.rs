@@ -76,7 +76,7 @@ fn open(wanted: &str) -> Result<Session, String> {
     let path = Path::new(wanted);
     let options = Options { threads: threads(), ..Options::default() };
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
-        return Session::open(wanted, text, opruga::scenes::files(), options);
+        return Session::open(wanted, text, opruga::scenes::files(), options).map_err(|said| said.to_string());
     }
     if is_recording(path) {
         let refused = |error: String| format!("{wanted}: {error}");
@@ -87,7 +87,7 @@ fn open(wanted: &str) -> Result<Session, String> {
     let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| format!("{wanted}: {error}"))?;
     let text = String::from_utf8(bytes).map_err(|_| format!("{wanted} is no text in UTF-8"))?;
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    Session::open(&name, &text, Files::beside(path), options)
+    Session::open(&name, &text, Files::beside(path), options).map_err(|said| said.to_string())
 }
 
 /// Whether a file begins as recordings do.

@@ -5,6 +5,7 @@ use crate::document::Document;
 use crate::engine;
 use crate::measure::Watch;
 use crate::runner::Copied;
+use crate::said::Said;
 use crate::session::{Request, Session};
 use crate::share;
 use crate::{browser, shown::Severity};
@@ -76,13 +77,13 @@ impl egui::Plugin for Places {
 }
 
 /// Opens the studio on a canvas: the scene of the address, or the first one where there is none or it is refused. It is drawn
-/// by `webgpu` or by `webgl`.
+/// by `webgpu` or by `webgl`, on a device of this name.
 ///
 /// # Errors
 /// Where the browser gives no such device.
 #[wasm_bindgen]
-pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String) -> Result<Page, JsValue> {
-    let (session, refused) = first_session().map_err(|error| JsValue::from_str(&error))?;
+pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: String) -> Result<Page, JsValue> {
+    let (session, refused) = first_session().map_err(|error| JsValue::from_str(&error.to_string()))?;
     let mut studio = Studio::new(session, &Context::default()).map_err(|e| JsValue::from_str(&e.to_string()))?;
     studio.ask(Request::Play(true));
     if let Some(refused) = refused {
@@ -90,23 +91,24 @@ pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String) -> Resul
     }
     let studio = Shared(Rc::new(RefCell::new((studio, None))));
     let places = Places::default();
-    let screen = Screen::begin(canvas, &drawn_by, studio.clone(), places.clone()).await?;
+    let screen = Screen::begin(canvas, [&drawn_by, &device], studio.clone(), places.clone()).await?;
     Ok(Page { studio, screen: RefCell::new(screen), places })
 }
 
 impl Screen {
-    /// Begins to draw a studio on a canvas.
+    /// Begins to draw a studio on a canvas, by what and on which device.
     async fn begin(
         canvas: web_sys::HtmlCanvasElement,
-        drawn_by: &str,
+        [drawn_by, device]: [&str; 2],
         studio: Shared,
         places: Places,
     ) -> Result<Screen, JsValue> {
         let runner = WebRunner::new();
         let renderer = if drawn_by == "webgpu" { Renderer::Wgpu } else { Renderer::Glow };
+        let drawn_by = [if drawn_by == "webgpu" { "WebGPU" } else { "WebGL 2" }, device].map(String::from);
         let (sender, context) = std::sync::mpsc::channel();
         let begin: eframe::AppCreator<'static> = Box::new(move |creation| {
-            studio.0.try_borrow_mut()?.0.move_to(&creation.egui_ctx);
+            studio.0.try_borrow_mut()?.0.move_to(&creation.egui_ctx, drawn_by);
             if let Some(state) = &creation.wgpu_render_state {
                 state.device.set_device_lost_callback(|reason, _| {
                     // A device that was given back is no loss.
@@ -126,7 +128,7 @@ impl Screen {
 }
 
 /// The scene of the address; where that is refused, the first scene, and why.
-fn first_session() -> Result<(Session, Option<String>), String> {
+fn first_session() -> Result<(Session, Option<Said>), Said> {
     let opened = share::of_fragment(&browser::fragment()).and_then(|shared| {
         let Some(share::Shared { name, text, files }) = shared else { return Ok(None) };
         Session::open(&name, &text, files, Options::default()).map(Some)
@@ -157,9 +159,14 @@ impl Page {
     ///
     /// # Errors
     /// Where the browser gives no such device.
-    pub async fn go_on(&self, canvas: web_sys::HtmlCanvasElement, drawn_by: String) -> Result<(), JsValue> {
+    pub async fn go_on(
+        &self,
+        canvas: web_sys::HtmlCanvasElement,
+        drawn_by: String,
+        device: String,
+    ) -> Result<(), JsValue> {
         self.screen.borrow().runner.destroy();
-        let screen = Screen::begin(canvas, &drawn_by, self.studio.clone(), self.places.clone()).await?;
+        let screen = Screen::begin(canvas, [&drawn_by, &device], self.studio.clone(), self.places.clone()).await?;
         self.screen.replace(screen);
         Ok(())
     }
@@ -289,7 +296,7 @@ pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
 }
 
 /// What a file of the browser asks for: see [`crate::dropping`].
-pub(crate) fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, String> {
+pub(crate) fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Said> {
     let held: Arc<[u8]> = bytes.as_slice().into();
     let files = || opruga::scenes::files().with([(file.to_string(), held)]);
     crate::dropping::request(file, || Ok(bytes), files)

@@ -3,30 +3,13 @@
 use crate::differences::{Difference, Twins, right_of};
 use crate::document::Document;
 use crate::engine::{self, Common, Engine, Given};
+use crate::said::Said;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
 use opruga::io::{Files, SceneError, scene};
 use opruga::{Options, WorldError};
 use std::sync::Arc;
-
-/// Why a world is not the one that was wanted.
-#[derive(Debug)]
-pub enum Refusal {
-    /// All that is wrong with a scene.
-    Scene(String),
-    /// What a world refuses.
-    World(WorldError),
-}
-
-impl core::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Refusal::Scene(text) => f.write_str(text),
-            Refusal::World(error) => error.fmt(f),
-        }
-    }
-}
 
 /// Reads the text of a document.
 ///
@@ -43,23 +26,23 @@ pub fn read(document: &Document, files: &Files) -> Result<AnyBlueprint, String> 
 /// Builds the engine of a scene; with differences, also the one on its right.
 ///
 /// # Errors
-/// [`Refusal`] where either of the two scenes cannot be.
+/// [`Said`] where either of the two scenes cannot be.
 pub fn build(
     document: &Document,
     differences: Option<&[Difference]>,
     files: &Files,
     options: &Options,
-) -> Result<Box<dyn Engine>, Refusal> {
+) -> Result<Box<dyn Engine>, Said> {
     let one = |document: &Document| {
-        let blueprint = read(document, files).map_err(Refusal::Scene)?;
-        engine::build(blueprint, options).map_err(Refusal::World)
+        let blueprint = read(document, files).map_err(Said::Because)?;
+        engine::build(blueprint, options).map_err(Said::World)
     };
     let left = one(document)?;
     let Some(differences) = differences else { return Ok(left) };
-    let (scene, twins) = right_of(document, differences, files).map_err(Refusal::Scene)?;
+    let (scene, twins) = right_of(document, differences, files)?;
     let right = one(&scene)?;
-    let words = differences.iter().map(Difference::words).collect();
-    Ok(Box::new(Pair { left, right, words, twins, stopped: None, behind: false }))
+    let differences = differences.to_vec();
+    Ok(Box::new(Pair { left, right, differences, twins, stopped: None, behind: false }))
 }
 
 /// Two engines of one scene.
@@ -67,7 +50,7 @@ struct Pair {
     left: Box<dyn Engine>,
     right: Box<dyn Engine>,
     /// In what the right one differs.
-    words: Vec<String>,
+    differences: Vec<Difference>,
     /// Which node on the right stands for one on the left, where bodies have other nodes.
     twins: Twins,
     /// Why the right one does not go on.
@@ -263,7 +246,7 @@ impl Engine for Pair {
             center,
             volume,
             energy,
-            words: self.words.clone(),
+            differences: self.differences.clone(),
             stopped: self.stopped.clone(),
             right: Arc::new(right),
         });

@@ -1,6 +1,7 @@
 //! A whole scene in an address: its text and the files that it names, compressed, as letters behind the `#`, which browsers
 //! keep to themselves.
 
+use crate::said::Said;
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use opruga::io::{Files, base64};
@@ -30,7 +31,7 @@ pub struct Shared {
 ///
 /// # Errors
 /// A sentence for the person where the scene is too large for an address.
-pub fn to_fragment(scene: &Shared) -> Result<String, String> {
+pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
     let known = opruga::scenes::files();
     let own = scene.files.held_files().filter(|(name, bytes)| known.held_file(name) != Some(*bytes));
     let files: Map<String, Value> = own.map(|(name, bytes)| (name.into(), base64::encode(bytes).into())).collect();
@@ -39,10 +40,7 @@ pub fn to_fragment(scene: &Shared) -> Result<String, String> {
     let packed = encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|e| e.to_string())?;
     let letters = base64::encode(&packed).trim_end_matches('=').replace('+', "-").replace('/', "_");
     if letters.len() > MOST_LETTERS {
-        return Err(format!(
-            "the scene is too large for an address: {} letters; allowed: {MOST_LETTERS}. Save it as a file",
-            letters.len()
-        ));
+        return Err(Said::AddressTooLong(letters.len(), MOST_LETTERS));
     }
     Ok(format!("{HEAD}{letters}"))
 }
@@ -52,7 +50,7 @@ pub fn to_fragment(scene: &Shared) -> Result<String, String> {
 ///
 /// # Errors
 /// A sentence for the person: there is no such scene, or the address was cut off.
-pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, String> {
+pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Said> {
     let fragment = fragment.trim_start_matches('#');
     let Some(letters) = fragment.strip_prefix(HEAD) else {
         if fragment.is_empty() {
@@ -60,18 +58,17 @@ pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, String> {
         }
         let text = opruga::scenes::find(fragment).ok_or_else(|| {
             let known: Vec<&str> = opruga::scenes::names().collect();
-            format!("the address names no scene that comes with the program; allowed: {}", known.join(", "))
+            Said::AddressUnknown(known.join(", "))
         })?;
         let shared = Shared { name: fragment.into(), text: text.into(), files: opruga::scenes::files() };
         return Ok(Some(shared));
     };
-    let cut =
-        || "the scene in the address is not whole: the address may have been cut off when it was copied".to_string();
+    let cut = || Said::AddressCut;
     let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or_else(cut)?;
     let mut whole = Vec::new();
     DeflateDecoder::new(packed.as_slice()).take(MOST_BYTES + 1).read_to_end(&mut whole).map_err(|_| cut())?;
     if whole.len() as u64 > MOST_BYTES {
-        return Err(format!("the scene in the address is too large; allowed: {MOST_BYTES} bytes"));
+        return Err(Said::AddressTooLarge(MOST_BYTES));
     }
     let whole: Value = serde_json::from_slice(&whole).map_err(|_| cut())?;
     let word = |key: &str| whole[key].as_str().map(String::from).ok_or_else(cut);

@@ -1,6 +1,9 @@
 //! What the interface sees of a session: one picture and the numbers beside it, made by the thread of the simulation.
 
+use crate::differences::Difference;
+use crate::said::{Said, Step};
 use opruga::Warning;
+use opruga::core::potential::Reading;
 use opruga::core::spec::Values;
 use opruga::draw::{ColourMap, Picture};
 use opruga::pictures::Quantity;
@@ -82,7 +85,7 @@ pub struct BodyShown {
     /// Its shape as the scene tells it, where it has a table of its own.
     pub shape: Option<Values>,
     /// What its models say: volume, pressure.
-    pub readings: Vec<(&'static str, f64)>,
+    pub readings: Vec<Reading>,
 }
 
 impl EnergyShown {
@@ -107,7 +110,7 @@ pub struct Beside {
     /// What it has more of energy than the left one [J].
     pub energy: Option<f64>,
     /// In what it differs.
-    pub words: Vec<String>,
+    pub differences: Vec<Difference>,
     /// Why it does not go on.
     pub stopped: Option<String>,
 }
@@ -144,54 +147,8 @@ pub enum Offer {
     HalveStep,
     /// Take so many substeps and try again what was refused.
     Substeps(u32),
-}
-
-/// A thing that was done and can be undone.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// A parameter was set, by its path.
-    Set(String),
-    /// A body has other models.
-    Models,
-    /// The scene or a body has another integrator.
-    Integrator,
-    /// A body was added.
-    Add,
-    /// A body was copied.
-    Duplicate,
-    /// A body was moved, turned or scaled.
-    Move,
-    /// A field of a body's shape was changed.
-    Shape(&'static str),
-    /// A body was taken away.
-    Delete,
-    /// A point was let go.
-    Unpin,
-    /// Everything that was recorded was taken back.
-    Reset,
-    /// The scene was shown twice, or no longer.
-    Compare,
-    /// The right side differs in this.
-    Differ(String),
-}
-
-/// What a message says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Said {
-    /// Why something could not be done, in the words of what refused it.
-    Because(String),
-    /// This was undone, and the scene is at this time \[s\].
-    Undone(Step, f64),
-    /// This was done again, and the scene is at this time \[s\].
-    Redone(Step, f64),
-    /// The scene begins anew, without the pins of the pointer.
-    PinsLetGo,
-    /// A body of this name moves on with other models.
-    GoesOn(String),
-    /// All bodies move on with an integrator of this name.
-    AllGoOn(String),
-    /// A body was set down anew.
-    SetDown,
+    /// Go on behind the end of a recording.
+    GoOn,
 }
 
 /// A message.
@@ -274,6 +231,8 @@ pub struct Shown {
     pub renamed: Vec<(String, String)>,
     /// Whether bodies carry drawings with colours of their own.
     pub has_drawings: bool,
+    /// The last frame that is as it was recorded, where a recording is viewed.
+    pub recorded_until: Option<u64>,
     /// How many commands of a person the scene holds.
     pub recorded: usize,
     /// The last moment that can be gone back to without computing from the start [bytes kept].

@@ -1,6 +1,10 @@
 //! Every word of the interface, in every language, in one place.
 
-use crate::shown::{Said, Step};
+mod croatian;
+mod messages;
+mod named;
+
+pub use named::Part;
 
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,7 +134,7 @@ words! {
     remove_model: "Remove this model", "Ukloni ovaj model";
     shape: "Shape", "Oblik";
     turn: "Turn", "Zakreni";
-    scale: "Scale", "Povećaj";
+    scale: "Larger", "Povećaj";
     smaller: "Smaller", "Smanji";
     duplicate: "Duplicate", "Udvostruči";
     delete: "Delete", "Izbriši";
@@ -156,7 +160,7 @@ words! {
     losses: "losses", "gubici";
     integration_error: "error of integration", "pogreška integracije";
     drag_me: "drag me", "povuci me";
-    drop_here: "Drop a scene, SVG, OBJ, STL or PLY here", "Ispusti ovdje prizor, SVG, OBJ, STL ili PLY";
+    drop_here: "Drop a scene, SVG, OBJ, STL, PLY or glTF here", "Ispusti ovdje prizor, SVG, OBJ, STL, PLY ili glTF";
     slower: "slower than real time", "sporije od stvarnog vremena";
     real_time: "real time", "stvarno vrijeme";
     steps_a_second: "steps/s", "koraka/s";
@@ -180,59 +184,21 @@ words! {
     undone: "Undone:", "Poništeno:";
     redone: "Done again:", "Ponovljeno:";
     pins_let_go: "The scene begins anew: pins of the pointer were let go", "Prizor počinje iznova: točke pribodene pokazivačem oslobođene su";
-    goes_on: "goes on as it moves: positions and velocities stay, models that it had remember", "nastavlja u pokretu: položaji i brzine ostaju, dotadašnji modeli pamte";
+    goes_on: "goes on as it moves: positions and velocities stay, and models that it had before remember what they did", "nastavlja u pokretu: položaji i brzine ostaju, a modeli koje je već imalo pamte svoje";
     all_go_on: "Every body goes on from where it is with", "Svako tijelo nastavlja odande gdje jest s";
     set_down: "The body is set down anew, at rest, in its new form", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
     recorded: "recorded commands", "snimljene naredbe";
+    drawn_by: "What draws, and on which device", "Čime se crta, i na kojem uređaju";
+    in_the_scene: "It can be given in the file of the scene alone", "Zadaje se samo u datoteci prizora";
+    yes: "yes", "da";
+    no: "no", "ne";
+    unsaid: "default", "inače";
+    go_on: "Go on as a new course", "Nastavi kao novi tijek";
+    recording_until: "recording until", "snimka do";
+    recording_hint: "Up to the mark this is what was recorded; what lies behind it was computed since", "Do oznake je ono što je snimljeno; što je iza nje izračunato je poslije";
+    warning: "Warning", "Upozorenje";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\n?\tova pomoć";
-}
-
-impl Language {
-    /// What can be undone, in a word or two.
-    pub fn done(self, step: &Step) -> String {
-        match step {
-            // Of a path the last name is that of the field; what comes before it is seen in the panel.
-            Step::Set(path) | Step::Differ(path) => path.rsplit('.').next().unwrap_or(path).replace('_', " "),
-            Step::Shape(field) => field.replace('_', " "),
-            Step::Models => self.step_models().into(),
-            Step::Integrator => self.step_integrator().into(),
-            Step::Add => self.step_add().into(),
-            Step::Duplicate => self.step_duplicate().into(),
-            Step::Move => self.step_move().into(),
-            Step::Delete => self.step_delete().into(),
-            Step::Unpin => self.step_unpin().into(),
-            Step::Reset => self.step_reset().into(),
-            Step::Compare => self.step_compare().into(),
-        }
-    }
-
-    /// What a message says.
-    pub fn said(self, said: &Said) -> String {
-        match said {
-            Said::Because(text) => text.clone(),
-            Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
-            Said::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
-            Said::PinsLetGo => self.pins_let_go().into(),
-            Said::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
-            Said::AllGoOn(integrator) => format!("{} `{integrator}`", self.all_go_on()),
-            Said::SetDown => self.set_down().into(),
-        }
-    }
-
-    /// The name of a quantity in the legend of a picture.
-    pub fn quantity(self, label: &str) -> &str {
-        match (self, label) {
-            (Language::English, label) => label,
-            (Language::Croatian, "strain") => "deformacija",
-            (Language::Croatian, "elastic force") => "elastična sila",
-            (Language::Croatian, "pressure") => "tlak",
-            (Language::Croatian, "speed") => "brzina",
-            (Language::Croatian, "von Mises stress") => "naprezanje (von Mises)",
-            (Language::Croatian, "volume over that at rest") => "obujam / početni",
-            (Language::Croatian, label) => label,
-        }
-    }
+    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\n?\tova pomoć";
 }
 
 #[cfg(test)]

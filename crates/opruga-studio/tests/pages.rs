@@ -42,7 +42,7 @@ fn a_file_of_its_own_is_in_the_address_and_those_of_the_program_are_not() {
 fn names_are_addresses_too_and_wrong_ones_are_told() {
     assert_eq!(of_fragment("#"), Ok(None));
     assert_eq!(of_fragment("#jelly"), Ok(Some(scene("jelly"))));
-    assert!(of_fragment("#jely").expect_err("no such scene").contains("jelly"));
+    assert!(of_fragment("#jely").expect_err("no such scene").to_string().contains("jelly"));
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn a_scene_that_is_too_large_for_an_address_is_refused() {
         })
         .collect();
     let large = Shared { files: Files::held([("noise.ply".into(), Arc::from(noise))]), ..scene("ball") };
-    assert!(to_fragment(&large).expect_err("too large").contains("too large"));
+    assert!(to_fragment(&large).expect_err("too large").to_string().contains("too large"));
 }
 
 fn link() -> Link {

@@ -7,7 +7,9 @@ use opruga::io::recording::{Header, Recording};
 use opruga::io::scene;
 use opruga::recordings::Tape;
 use opruga::{Options, World, catalogue};
+use opruga_studio::said::Said;
 use opruga_studio::session::{Grip, Request, Session};
+use opruga_studio::shown::Offer;
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
@@ -73,14 +75,42 @@ fn every_frame_of_a_recording_is_seen_as_it_was() {
             arrive(&mut session);
             assert_eq!((session.frames(), session.hash()), (frame, hashes[frame as usize]), "every {every}");
         }
-        // Played, it comes by the same frames, and goes on behind its end.
+        // Played, it comes by the same frames.
         for frame in 33..=90 {
             session.handle(Request::Step);
             assert_eq!(session.hash(), hashes[frame], "every {every}, frame {frame}");
         }
-        session.handle(Request::Step);
-        assert_eq!(session.frames(), 91);
     }
+}
+
+/// Where a recording ends time stands and the person is asked; what comes then is marked as a course of its own.
+#[test]
+fn time_stands_at_the_end_of_a_recording_until_somebody_wants_a_course_of_their_own() {
+    let (bytes, hashes) = record(7, false);
+    let mut session = view(&bytes).expect("a recording");
+    let tick = |session: &mut Session| {
+        session.tick(Duration::from_millis(34), Duration::from_millis(500), &|| Duration::ZERO);
+    };
+    session.handle(Request::Play(true));
+    (0..200).for_each(|_| tick(&mut session));
+    let shown = session.shown();
+    let message = shown.message.expect("a message");
+    assert_eq!((session.frames(), shown.playing, shown.recorded_until), (90, false, Some(90)));
+    assert_eq!((message.said, message.offer), (Said::RecordingEnds(shown.time), Some(Offer::GoOn)));
+    session.handle(Request::Step);
+    assert_eq!((session.frames(), session.hash()), (90, hashes[90]), "not even by a step");
+    // To the start and back: it is still the recording.
+    session.handle(Request::Reset);
+    assert_eq!((session.frames(), session.latest(), session.hash()), (0, 90, hashes[0]));
+    session.handle(Request::Seek(90));
+    arrive(&mut session);
+    session.handle(Request::Accept(Offer::GoOn));
+    let shown = session.shown();
+    assert_eq!(shown.message.map(|message| message.said), Some(Said::OwnCourse(shown.time)));
+    (0..20).for_each(|_| tick(&mut session));
+    let shown = session.shown();
+    assert!(shown.playing && session.frames() > 100, "{}", session.frames());
+    assert_eq!(shown.recorded_until, Some(90), "the recording still ends where it ended");
 }
 
 /// What a person does within a recording is a new course, which the command line repeats from the saved scene.
@@ -91,6 +121,9 @@ fn a_recording_goes_on_by_hand() {
     session.handle(Request::Seek(40));
     arrive(&mut session);
     session.handle(Request::Grab(Grip::Pull, 0, [0.4, 1.0, 0.0]));
+    let shown = session.shown();
+    assert_eq!(shown.recorded_until, Some(40), "up to here it is as it was recorded");
+    assert_eq!(shown.message.map(|message| message.said), Some(Said::OwnCourse(shown.time)));
     for k in 0..20 {
         session.handle(Request::Lead([0.4 + 0.02 * f64::from(k), 1.2, 0.0]));
         session.handle(Request::Step);

@@ -369,7 +369,7 @@ fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
         (Request::Edit(Edit::Add(unknown)), "springy"),
         (Request::Edit(Edit::Shape("ball".into(), "vertices", Value::Integer(1))), "vertices"),
         (Request::Open { name: "x".into(), text: "format = 3".into(), files: Files::default() }, "format"),
-        (Request::Grab(Grip::Pull, 7, [0.0; 3]), "no such body"),
+        (Request::Grab(Grip::Pull, 7, [0.0; 3]), "no body `7`"),
     ] {
         let asked = format!("{request:?}");
         session.handle(request);
@@ -456,7 +456,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
         std::fs::write(&path, bytes).expect("a file");
         path
     };
-    let refused = |path: &std::path::Path| take(path).expect_err("it is refused");
+    let refused = |path: &std::path::Path| take(path).expect_err("it is refused").to_string();
     assert!(refused(&put("letter.docx", b"PK")).contains(".toml"));
     assert!(refused(&put("bytes.toml", &[0xff, 0xfe, 0x00])).contains("UTF-8"));
     assert!(refused(&folder.join("absent.toml")).contains("read"));
@@ -481,6 +481,36 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     pass(&mut session, 3);
     assert_eq!(session.shown().dimension, 3);
     std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+/// A fine surface needs more substeps than a coarse one; nobody who drops a file knows how many.
+#[test]
+fn a_surface_that_is_dropped_takes_as_many_substeps_as_it_needs() {
+    let spot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/spot.obj");
+    let mut session = open("ball");
+    session.handle(opruga_studio::dropping::take(std::path::Path::new(spot)).expect("a shape"));
+    no_refusal(&mut session);
+    assert_eq!(session.name(), "spot");
+    assert!(session.shown().substeps > 96, "more than it begins with");
+    pass(&mut session, 2);
+}
+
+/// What a message offers for a scene that was not opened changes that scene, and not the one that is open.
+#[test]
+fn a_scene_that_was_refused_for_its_step_is_opened_with_the_substeps_that_are_offered() {
+    let mut session = open("ball");
+    let own = session.shown().substeps;
+    let text = opruga::scenes::find("pressures").expect("a scene");
+    let line = text.lines().find(|line| line.starts_with("substeps")).expect("it says its substeps");
+    let text = text.replace(line, "substeps = 1");
+    session.handle(Request::Open { name: "coarse".into(), text, files: Files::default() });
+    assert!(refusal(&mut session).contains("unstable"));
+    let offer = session.shown().message.and_then(|message| message.offer).expect("an offer");
+    session.handle(Request::Accept(offer.clone()));
+    no_refusal(&mut session);
+    assert_eq!(session.name(), "coarse");
+    assert_eq!(offer, Offer::Substeps(session.shown().substeps));
+    assert_eq!(open("ball").shown().substeps, own);
 }
 
 #[test]

@@ -6,12 +6,11 @@
 mod screen;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use opruga_studio::session::Request;
 use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
 use screen::window::{SIZE, Window, top_of};
-use std::time::Duration;
 
 #[test]
 fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
@@ -40,6 +39,24 @@ fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
     window.button(top, PointerButton::Primary, false, Modifiers::NONE);
     window.studio().ask(Request::Step);
     window.until("it was let go", |shown| shown.pulls.is_empty() && shown.frames == 13);
+}
+
+/// A screen that draws seldom takes in a press together with the way that the pointer went since.
+#[test]
+fn a_body_is_held_where_it_was_pressed_however_far_the_pointer_has_gone_until_the_next_picture() {
+    let mut window = Window::open("ball", SIZE);
+    let top = top_of(&window);
+    let far = top + Vec2::new(240.0, -60.0);
+    window.pointer(top + Vec2::new(0.0, 200.0));
+    let press =
+        Event::PointerButton { pos: top, button: PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
+    window.harness.input_mut().events.extend([Event::PointerMoved(top), press, Event::PointerMoved(far)]);
+    window.frames(2);
+    window.studio().ask(Request::Step);
+    window.studio().ask(Request::Step);
+    window.until("the ball is held", |shown| shown.pulls.len() == 1 && shown.frames == 2);
+    window.button(far, PointerButton::Primary, false, Modifiers::NONE);
+    window.until("it is let go", |shown| shown.recorded == 1);
 }
 
 #[test]
@@ -343,6 +360,63 @@ fn every_word_has_letters_to_be_drawn_with_and_languages_change() {
     assert!(window.harness.query_by_label("Play").is_some());
 }
 
+/// What is left when names, symbols and numbers are taken away: words of which English ones would be found.
+const ENGLISH: [&str; 14] = [
+    "stiffness",
+    "damping",
+    "volume",
+    "pressure ",
+    "edges",
+    "boundary",
+    "isothermal",
+    "mass spring",
+    "bending",
+    "friction",
+    "nodes",
+    "vertices",
+    "the ",
+    "step ",
+];
+
+#[test]
+fn in_croatian_no_name_of_a_model_or_parameter_and_no_message_of_the_studio_is_english() {
+    let mut window = Window::open("ball", [1280.0, 2400.0]);
+    window.click("Hrvatski");
+    window.click("Prepreka: poluprostor");
+    window.click("Oblik: kružnica");
+    window.frames(30);
+    for name in ["krutost [N/m]", "opruge", "tlak plina", "trenje", "brzina mirovanja [m/s]", "vrhovi"] {
+        assert!(window.harness.query_all_by_label_contains(name).next().is_some(), "{name} is shown");
+    }
+    let told = |window: &Window| -> Vec<String> {
+        let all = window.harness.query_all_by(|_| true);
+        all.filter_map(|node| node.accesskit_node().label().or_else(|| node.accesskit_node().value())).collect()
+    };
+    let english = |window: &Window| -> Vec<String> {
+        told(window).into_iter().filter(|text| ENGLISH.iter().any(|word| text.contains(word))).collect()
+    };
+    assert!(told(&window).len() > 60, "the labels are read");
+    assert_eq!(english(&window), Vec::<String>::new());
+    // What the world refuses, what the studio says of a change, of an undo, and of a file.
+    window.studio().ask(Request::Set("time.substeps".into(), opruga::core::spec::Value::Integer(1)));
+    window.until("a refusal", |shown| shown.message.as_ref().is_some_and(|m| m.severity == Severity::Refused));
+    assert!(told(&window).iter().any(|text| text.starts_with("Korak h = ")), "{:?}", told(&window));
+    assert_eq!(english(&window), Vec::<String>::new());
+    window.studio().ask(Request::Step);
+    window.studio().ask(Request::Set("body.ball.models.0.stiffness".into(), opruga::core::spec::Value::Number(1500.0)));
+    window.studio().ask(Request::Undo);
+    window.until("undone", |shown| shown.message.as_ref().is_some_and(|m| m.text.starts_with("Undone")));
+    assert!(told(&window).iter().any(|text| text.starts_with("Poništeno: krutost")), "{:?}", told(&window));
+    window.studio().ask(Request::Compare(true));
+    let slower = opruga_studio::differences::Difference::Set(
+        "body.ball.models.0.stiffness".into(),
+        opruga::core::spec::Value::Number(900.0),
+    );
+    window.studio().ask(Request::Differ(slower));
+    window.until("two sides", |shown| shown.beside.as_ref().is_some_and(|beside| beside.differences.len() == 1));
+    assert_eq!(english(&window), Vec::<String>::new());
+}
+
 #[test]
 fn the_window_looks_as_it_did_in_the_plane() {
     let mut window = Window::open("ball", SIZE);
@@ -375,10 +449,10 @@ fn the_window_looks_as_it_did_in_space_and_bodies_are_pulled_there_too() {
         window.pointer(at);
         window.button(at, PointerButton::Primary, true, Modifiers::NONE);
         window.pointer(at + Vec2::new(5.0, -30.0));
+        // The step comes after the press: once it is done, the press was heard.
+        let next = window.shown().frames + 1;
         window.studio().ask(Request::Step);
-        window.frames(3);
-        std::thread::sleep(Duration::from_millis(20));
-        window.frames(2);
+        window.until("a step", |shown| shown.frames == next);
         pulled |= window.shown().pulls.len() == 1;
         window.button(at, PointerButton::Primary, false, Modifiers::NONE);
     }

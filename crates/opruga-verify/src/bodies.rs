@@ -21,7 +21,7 @@ impl Cells {
     pub(crate) fn fields(self) -> &'static str {
         match self {
             Cells::Boxes => "",
-            Cells::Linear => "simplices = true",
+            Cells::Linear => "simplices = true\norder = 1",
             Cells::Quadratic => "simplices = true\norder = 2",
         }
     }

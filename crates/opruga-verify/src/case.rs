@@ -72,7 +72,8 @@ pub enum Scale {
 /// How a case passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Check {
-    /// The error at the finest level is within the tolerance, and falls at this order (less 0.2) over all levels.
+    /// The error at the finest level is within the tolerance, is smaller at every level than at the one before, and falls at
+    /// this order (less 0.2) over all levels.
     Order(f64),
     /// The error at the finest level is within the tolerance: the reference has too few digits for an order, or is that of
     /// a body that differs a little.
@@ -193,7 +194,10 @@ impl Case {
         match self.check {
             Check::Finest => finest,
             Check::Everywhere => row.points.iter().all(|point| point.error <= self.tolerance),
-            Check::Order(order) => finest && row.observed_order.is_some_and(|seen| seen >= order - ORDER_MARGIN),
+            Check::Order(order) => {
+                let falls = row.points.windows(2).all(|pair| pair[1].error < pair[0].error);
+                finest && falls && row.observed_order.is_some_and(|seen| seen >= order - ORDER_MARGIN)
+            }
         }
     }
 }

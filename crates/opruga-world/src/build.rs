@@ -273,6 +273,7 @@ impl<const D: usize> Builder<'_, D> {
             None => Arc::clone(self.integrator),
         };
         let refuse = |source| WorldError::Build { place: format!("body `{}`", first.name), source };
+        self.check_cells(first).map_err(refuse)?;
         // Loads know their derivatives; a model may lack them.
         for member in &system.members[..first.models.len()] {
             if !member.potential.views().include(integrator.needs()) {
@@ -288,6 +289,46 @@ impl<const D: usize> Builder<'_, D> {
         }
         integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
         Ok(Island::new(system, integrator, bodies.to_vec()))
+    }
+
+    /// Refuses cells that two models of finite elements share, and cells that none has though models name groups.
+    fn check_cells(&self, body: &BodyBlueprint<D>) -> Result<(), BuildError> {
+        let refuse = |code, message| Err(BuildError::new("fem", code, message));
+        let mut owner = vec![None; body.mesh.cells.len()];
+        let mut groups = Vec::new();
+        for (number, model) in body.models.iter().enumerate().filter(|(_, model)| model.kind() == "fem") {
+            let group = model.text("cells");
+            let own: Vec<u32> = match group {
+                None => (0..owner.len() as u32).collect(),
+                // A group that is not there is refused by the model itself.
+                Some(name) => body.mesh.cell_groups.get(name).cloned().unwrap_or_default(),
+            };
+            groups.extend(group.map(|name| format!("`{name}`")));
+            for cell in own {
+                if let Some(first) = owner[cell as usize].replace(number)
+                    && first != number
+                {
+                    let message = format!(
+                        "cell {cell} belongs to the models {first} and {number} of the body, whose stiffness would add up; allowed: \
+                         every cell in one `fem` model. Name groups without common cells by `cells`"
+                    );
+                    return refuse("model.cells_twice", message);
+                }
+            }
+        }
+        let bare = owner.iter().filter(|owner| owner.is_none()).count();
+        match owner.iter().position(Option::is_none) {
+            Some(first) if !groups.is_empty() => {
+                let message = format!(
+                    "{bare} of {} cells, the first of them cell {first}, are in none of the groups {} of the models: they would have \
+                     mass and no stiffness; allowed: every cell in one model",
+                    owner.len(),
+                    groups.join(", ")
+                );
+                refuse("model.uncovered_cells", message)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses what cannot go with a mass matrix that couples nodes.

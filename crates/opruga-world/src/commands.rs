@@ -8,6 +8,7 @@ use crate::loads::{NodeForces, Pull};
 use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::Pin;
+use opruga_math::words;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -164,7 +165,8 @@ impl<const D: usize> World<D> {
             && self.handle(body).is_none()
         {
             let path = self.blueprint.bodies.get(body).map_or(format!("body {body}"), |b| b.name.clone());
-            let message = format!("there is no such body at t = {} s, when a command begins", self.time());
+            let message =
+                format!("there is no such body at t = {} s, when a command begins", words::number(self.time()));
             return Err(WorldError::Path { path, message });
         }
         let acting = match &command.action {

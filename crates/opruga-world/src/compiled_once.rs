@@ -12,8 +12,9 @@ use crate::modes::Mode;
 use crate::registry::Registry;
 use crate::world::{Options, Warning, World};
 use core::any::Any;
-use opruga_core::potential::{Account, CellState};
+use opruga_core::potential::{Account, CellState, Reading};
 use opruga_core::spec::Value;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The same value under the name that its type has where the dimension is known.
@@ -174,7 +175,7 @@ impl<const D: usize> World<D> {
         ///
         /// # Errors
         /// [`WorldError`] where a model refuses the body.
-        pub fn reading_names(&self, body & BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> = reading_names_here;
+        pub fn reading_names(&self, body & BodyBlueprint<D>) -> Result<Vec<Cow<'static, str>>, WorldError> = reading_names_here;
 
         /// The pairs of nodes that springs of a body tie to each other, also of one that is not there yet.
         ///
@@ -277,10 +278,13 @@ impl<const D: usize> World<D> {
         /// [`WorldError::Path`] if there is no body of that name.
         pub fn remove_body(&mut self, name: &str) -> Result<(), WorldError> = remove_body_here;
 
-        /// What models say of a body: `volume`, `pressure` and others.
+        /// What models say of a body: `volume`, `pressure`, `chamber1.pressure` and others.
         ///
         /// A body that is not there says nothing.
-        pub fn readings(&mut self, body: usize) -> Vec<(&'static str, f64)> = readings_here;
+        pub fn readings(&mut self, body: usize) -> Vec<Reading> = readings_here;
+
+        /// The pressure [Pa] of the gas that each node of a body bounds, chamber by chamber; empty where there is no gas.
+        pub fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)> = node_pressures_here;
 
         /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there.
         pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> = probe_here;

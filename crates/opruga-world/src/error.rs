@@ -1,6 +1,7 @@
 //! What can go wrong in a world.
 
 use opruga_core::error::BuildError;
+use opruga_math::words::number;
 
 /// Why a world could not be built, changed or stepped. The world is as it was before the call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -15,8 +16,9 @@ pub enum WorldError {
     },
     /// The substep is longer than the integrator allows.
     #[error(
-        "the step h = {h:.6e} s of `{integrator}` is unstable for body `{body}`: the largest stable step is {limit:.6e} s \
-         (stiffness ω = {omega:.4e} rad/s, damping {damping:.4e} 1/s); allowed: h <= {limit:.6e}; hint: substeps >= {substeps}"
+        "the step h = {} s of `{integrator}` is unstable for body `{body}`: the largest stable step is {} s \
+         (stiffness ω = {} rad/s, damping {} 1/s); allowed: h <= {}; hint: substeps >= {substeps}",
+        number(*h), number(*limit), number(*omega), number(*damping), number(*limit)
     )]
     UnstableStep {
         /// The integrator.
@@ -36,7 +38,8 @@ pub enum WorldError {
     },
     /// The motion left the finite numbers.
     #[error(
-        "body `{body}` diverged: node {node} in the substep from t = {time} s; the world is at its last good frame, t = {last} s"
+        "body `{body}` diverged: node {node} in the substep from t = {} s; the world is at its last good frame, t = {} s",
+        number(*time), number(*last)
     )]
     Diverged {
         /// The body.

@@ -4,9 +4,10 @@ use crate::ledger::{Stock, Survey, survey, take_stock};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
+use opruga_core::potential::Reading;
 use opruga_core::stability::Stability;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{History, System, Work8, Workspace};
+use opruga_core::system::{History, Member, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
@@ -126,7 +127,24 @@ impl<const D: usize> Island<D> {
     }
 
     /// What models say of one of the bodies.
-    pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<(&'static str, f64)> {
+    pub(crate) fn readings(&mut self, lane: usize, time: f64) -> Vec<Reading> {
+        let mut out = Vec::new();
+        self.ask(time, |member, view| {
+            out.extend(member.potential.readings(view, &member.scratch, &member.memory, lane));
+        });
+        out.extend(self.integrator.readings(&self.system));
+        out
+    }
+
+    /// The pressure of the gas at the nodes of one of the bodies [Pa].
+    pub(crate) fn node_pressures(&mut self, lane: usize, time: f64) -> Vec<(u32, f64)> {
+        let mut out = Vec::new();
+        self.ask(time, |member, view| out.extend(member.potential.node_pressures(view, &member.scratch, lane)));
+        out
+    }
+
+    /// Asks every model that is prepared for the present state.
+    fn ask(&mut self, time: f64, mut question: impl FnMut(&Member<D>, &View<D>)) {
         let system = &mut self.system;
         let view = View {
             x: system.state.x.slices(),
@@ -136,14 +154,11 @@ impl<const D: usize> Island<D> {
             time,
             threads: 1,
         };
-        let mut out = Vec::new();
         for member in &mut system.members {
             if member.potential.prepare(system.simd, &view, &member.memory, &mut member.scratch).is_ok() {
-                out.extend(member.potential.readings(&view, &member.scratch, &member.memory, lane));
+                question(member, &view);
             }
         }
-        out.extend(self.integrator.readings(&self.system));
-        out
     }
 
     /// Steps through a frame in a workspace that is lent; on failure the island is at its last good frame and the reason
@@ -159,12 +174,9 @@ impl<const D: usize> Island<D> {
         let swept = self.swept(plan);
         let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);
-        // A body that left the region swept by its velocities might have met an obstacle: once more, looking at all.
-        if let Ok(after) = &outcome
-            && !near
-            && plan.colliders.is_some()
-            && left(&swept, &after.position)
-        {
+        // A body that left the region swept by its velocities, or found no end of a step, might have met an obstacle: once
+        // more, looking at all.
+        if !near && plan.colliders.is_some() && outcome.as_ref().map_or(true, |after| left(&swept, &after.position)) {
             self.restore();
             outcome = self.attempt(plan, true);
         }
@@ -280,7 +292,8 @@ impl<const D: usize> Island<D> {
     /// Whether the bodies may meet an obstacle within the frame.
     fn reaches(&self, plan: &FramePlan<D>, swept: &[[f64; D]; 2]) -> bool {
         let Some(colliders) = plan.colliders else { return false };
-        colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
+        self.integrator.is_static()
+            || colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
     }
 
     /// Bounds swept within the frame by v·dt + ½g·dt² and a margin.

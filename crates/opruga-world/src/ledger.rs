@@ -29,7 +29,7 @@ pub struct Energy {
     /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
     /// the first order of the depth.
     pub work_correction: f64,
-    /// What the other channels do not explain: the error of the integrator.
+    /// What the other channels do not explain: the error of the integrator, and what an implicit one damps by itself.
     pub loss_integrator: f64,
     /// |loss_integrator| relative to the largest energy that was in motion.
     pub closure: f64,

@@ -1,10 +1,11 @@
-//! What a scene may well say, but hardly means: units that do not go together.
+//! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
 
 use crate::blueprint::BodyBlueprint;
 use crate::build::node_masses;
 use crate::selection::extent;
-use crate::world::Warning;
+use crate::world::{Warning, World};
 use opruga_core::stability::Spectrum;
+use opruga_math::words::{counted, number, rounded};
 use opruga_mesh::Measure;
 
 /// The code of the warning of [`sag`].
@@ -34,10 +35,81 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
     odd.then(|| Warning {
         code: SAG.into(),
         message: format!(
-            "body `{}` of {mass:.3e} kg would sag by about {sag:.1e} m under its weight, more than its size of {size:.3} m: \
+            "body `{}` of {} kg would sag by about {} m under its weight, more than its size of {} m: \
              are its units mixed (metres, kilograms, newtons per metre)?",
             body.common_name(),
+            number(mass),
+            // An estimate has few digits that count.
+            rounded(sag, 2),
+            number(size),
         ),
         count: 1,
     })
+}
+
+/// The code of the warning of bodies that begin inside an obstacle.
+pub(crate) const BURIED: &str = "contact.starts_inside";
+
+/// Depths below this part of the size of a body are rounding of the scene's numbers.
+const SHALLOW: f64 = 1e-6;
+
+impl<const D: usize> World<D> {
+    /// Warns of bodies whose free nodes begin inside an obstacle: the first step puts them on its surface, which may fold
+    /// or throw them. One warning for copies in the same obstacle, with the deepest of them.
+    pub(crate) fn warn_of_buried_bodies(&mut self) {
+        let Some(colliders) = self.colliders.clone() else { return };
+        let mut found: Vec<(String, f64, Warning, usize)> = Vec::new();
+        for body in 0..self.blueprint.bodies.len() {
+            let own = &self.blueprint.bodies[body];
+            let (low, high) = extent(&own.mesh);
+            let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+            let box_at = |corner: &[f64; D]| core::array::from_fn(|d| corner[d] + own.translation[d]);
+            if !colliders.reach(0.0, 0.0, &box_at(&low), &box_at(&high)) {
+                continue;
+            }
+            // What is held does not move, wherever it is.
+            let held = self.held_nodes(body);
+            let nodes: Vec<u32> =
+                (0..self.node_count(body) as u32).filter(|node| held.binary_search(node).is_err()).collect();
+            let points: Vec<[f64; D]> = nodes.iter().map(|node| self.position(body, *node)).collect();
+            let Some(buried) = colliders.buried(&points, SHALLOW * size) else { continue };
+            let name = own.common_name().to_string();
+            let message = format!(
+                "body `{}` begins inside obstacle {} ({}): {}, node {} the deepest by {} m; {}",
+                own.name,
+                buried.collider,
+                self.blueprint.colliders[buried.collider].values.kind(),
+                counted(buried.count as u64, "node", "nodes"),
+                nodes[buried.point],
+                number(buried.depth),
+                match &buried.shift {
+                    Some(shift) => format!("moved by ({}) m it would be free", out_of(shift, SHALLOW * size)),
+                    None => "no shift along the surfaces around it would free it".into(),
+                }
+            );
+            let warning = Warning { code: BURIED.into(), message, count: 1 };
+            match found.iter_mut().find(|(other, _, _, collider)| *other == name && *collider == buried.collider) {
+                None => found.push((name, buried.depth, warning, buried.collider)),
+                Some((_, depth, known, _)) => {
+                    known.count += 1;
+                    if buried.depth > *depth {
+                        (*depth, known.message) = (buried.depth, warning.message);
+                    }
+                }
+            }
+        }
+        self.warnings.extend(found.into_iter().map(|(_, _, warning, _)| warning));
+    }
+}
+
+/// A shift as it is typed: a little longer rather than shorter, to five digits.
+fn out_of<const D: usize>(shift: &[f64; D], slack: f64) -> String {
+    let typed = |x: f64| match x {
+        x if x.abs() <= slack => "0".into(),
+        x => {
+            let step = libm::exp10(libm::floor(libm::log10(x.abs())) - 4.0);
+            number(libm::copysign(libm::ceil(x.abs() / step) * step, x))
+        }
+    };
+    shift.map(typed).join(", ")
 }

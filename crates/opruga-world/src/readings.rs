@@ -6,11 +6,12 @@ use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
 use crate::world::{BodyHandle, Warning, World, lock};
 use opruga_core::contacts::{Contacts, Moved};
-use opruga_core::potential::{Account, CellState, Count};
+use opruga_core::potential::{Account, CellState, Count, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage};
 use opruga_math::WIDTH;
+use opruga_math::words::number;
 
 impl<const D: usize> World<D> {
     /// The energy ledger of the last frame.
@@ -94,13 +95,21 @@ impl<const D: usize> World<D> {
         let system = &self.islands[island].system;
         system.mass.at(system.layout.place(node as usize, lane))
     }
-    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<(&'static str, f64)> {
+    pub(crate) fn readings_here(&mut self, body: usize) -> Vec<Reading> {
         if self.handle(body).is_none() {
             return Vec::new();
         }
         let (island, lane) = self.place[body];
         let time = self.time();
         self.islands[island].readings(lane, time)
+    }
+    pub(crate) fn node_pressures_here(&mut self, body: usize) -> Vec<(u32, f64)> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let (island, lane) = self.place[body];
+        let time = self.time();
+        self.islands[island].node_pressures(lane, time)
     }
     pub(crate) fn cell_states_here(&self, body: usize) -> Vec<CellState> {
         if self.handle(body).is_none() {
@@ -249,12 +258,18 @@ impl<const D: usize> World<D> {
             lost if lost < 0.0 => (-lost, "gained"),
             lost => (lost, "lost"),
         };
+        // Contact begins and ends within steps, whatever the order of a rule.
+        let help = if self.energy.loss_contact + self.energy.loss_friction > 0.0 {
+            "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it"
+        } else {
+            "more substeps make it smaller, and rules of higher order make less of it"
+        };
         count(
             "ledger.closure",
             &format!(
-                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {lost:.4} J {way} by \
-                 the end: the error of the integrator, or what an implicit one damps by itself; more substeps make it \
-                 smaller, and rules of higher order make less of it"
+                "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {way} by \
+                 the end: the error of the integrator; {help}",
+                number(lost)
             ),
             self.flows.open_frames,
         );
@@ -274,9 +289,9 @@ impl<const D: usize> World<D> {
             "step.cut_off",
             &format!(
                 "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces \
-                 out of balance that would move single nodes by up to {:.1e} m; the body is too stiff or too slender for the \
+                 out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the \
                  step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
-                solver.left
+                number(solver.left)
             ),
             solver.cut_off,
         );

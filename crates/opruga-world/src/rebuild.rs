@@ -6,6 +6,7 @@ use crate::error::WorldError;
 use crate::island::Island;
 use crate::world::World;
 use opruga_math::WIDTH;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, PoisonError};
 
@@ -147,7 +148,7 @@ impl<const D: usize> World<D> {
         self.refresh_ledger();
     }
 
-    pub(crate) fn reading_names_here(&self, body: &BodyBlueprint<D>) -> Result<Vec<&'static str>, WorldError> {
+    pub(crate) fn reading_names_here(&self, body: &BodyBlueprint<D>) -> Result<Vec<Cow<'static, str>>, WorldError> {
         let mut island = self.island_alone(body)?;
         Ok(island.readings(0, self.time()).into_iter().map(|(name, _)| name).collect())
     }

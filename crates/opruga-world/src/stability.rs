@@ -6,6 +6,7 @@ use crate::plausible;
 use crate::world::{Warning, World};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::stability::{Stability, estimate};
+use opruga_math::words;
 use std::sync::Arc;
 
 /// How many islands are looked at again when energy comes from nowhere.
@@ -75,9 +76,10 @@ impl<const D: usize> World<D> {
                 None => {
                     let growth = stability.spectrum.growth_per_second(integrator, h);
                     let message = format!(
-                        "`{}` has no stable step for body `{name}` (ω = {:.4e} rad/s): its fastest motion grows as exp({growth:.4e} t)",
+                        "`{}` has no stable step for body `{name}` (ω = {} rad/s): its fastest motion grows as exp({} t)",
                         integrator.name(),
-                        stability.spectrum.omega,
+                        words::number(stability.spectrum.omega),
+                        words::number(growth),
                     );
                     let same = format!("`{}` has", integrator.name());
                     let known = |w: &&mut Warning| w.code == "step.no_stable_step" && w.message.starts_with(&same);
@@ -125,8 +127,11 @@ impl<const D: usize> World<D> {
                 let name = &self.blueprint.bodies[island.bodies[0]].name;
                 let substeps = (self.blueprint.time.frame / limit).ceil();
                 let message = format!(
-                    "at t = {time:.3} s the largest stable step of body `{name}` had fallen to {limit:.4e} s, below h = {h:.4e} s: \
-                     what is squeezed or stretched is stiffer than at rest; substeps >= {substeps} hold there"
+                    "at t = {} s the largest stable step of body `{name}` had fallen to {} s, below h = {} s: \
+                     what is squeezed or stretched is stiffer than at rest; substeps >= {substeps} hold there",
+                    words::number(time),
+                    words::number(limit),
+                    words::number(h),
                 );
                 self.warnings.push(Warning { code: "step.outgrown".into(), message, count: 1 });
                 break;

@@ -17,6 +17,7 @@ use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::Stability;
 use opruga_core::system::Workspace;
+use opruga_core::threads::together;
 use opruga_math::Simd;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -163,6 +164,7 @@ impl<const D: usize> World<D> {
         };
         world.regroup(&Touched::All, &states)?;
         world.check_stability()?;
+        world.warn_of_buried_bodies();
         // The ledger starts from here.
         world.flows.start = 0.0;
         let start = world.stock_energy();
@@ -201,7 +203,7 @@ impl<const D: usize> World<D> {
                 let (threads, count) = (pool.current_num_threads(), islands.len());
                 for island in islands.iter_mut().filter(|island| island.is_shared_by(threads, count)) {
                     island.system.threads = threads;
-                    island.frame(&plan, &mut lock(&workspaces[0]));
+                    together(threads, || island.frame(&plan, &mut lock(&workspaces[0])));
                     island.system.threads = 1;
                 }
                 islands.par_iter_mut().filter(|island| !island.is_shared_by(threads, count)).for_each(|island| {
@@ -241,7 +243,10 @@ impl<const D: usize> World<D> {
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE);
+        // What implicit rules damp by themselves is known of them.
+        let damped =
+            self.energy.loss_integrator > 0.0 && self.islands.iter().all(|island| island.integrator.damps_by_itself());
+        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE && !damped);
         self.take_away_what_is_far()
     }
 

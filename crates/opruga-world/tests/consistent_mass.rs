@@ -109,6 +109,34 @@ fn waves_in_bars_are_too_slow_with_lumped_and_too_fast_with_consistent_masses() 
     bar_has_the_frequencies_of_the_closed_form(space, 2.0, 8);
 }
 
+/// Cells of two models add up, and cells of none have no stiffness: both are refused where groups are named.
+#[test]
+fn every_cell_has_one_material() {
+    let refusal = |groups: &[&str]| {
+        let mut mesh = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap();
+        mesh.cell_groups.insert("left".into(), vec![0]);
+        mesh.cell_groups.insert("right".into(), vec![1]);
+        let mut blueprint = body(mesh, "lumped", "backward_euler");
+        let spec = Registry::<2>::default().model("fem").expect("a model").spec();
+        let model = blueprint.bodies[0].models.remove(0);
+        for group in groups {
+            let mut model = model.clone();
+            if !group.is_empty() {
+                model.set(spec, "cells", text(group), 2).expect("a field");
+            }
+            blueprint.bodies[0].models.push(model);
+        }
+        World::new(blueprint, Options::default()).map_or_else(|error| error.to_string(), |_| "built".into())
+    };
+    assert_eq!(refusal(&["left", "right"]), "built");
+    assert_eq!(refusal(&[""]), "built");
+    let bare = refusal(&["left"]);
+    assert!(bare.contains("1 of 2 cells") && bare.contains("`left`"), "{bare}");
+    let twice = refusal(&["left", ""]);
+    assert!(twice.contains("cell 0 belongs"), "{twice}");
+    assert!(refusal(&["", ""]).contains("would add up"));
+}
+
 /// A bar let go in its first mode is back after the period that this mode says; average acceleration keeps the energy.
 #[test]
 fn steps_follow_the_frequencies_of_the_same_masses() {

@@ -6,6 +6,7 @@ mod common;
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;
 use opruga_math::Lane;
+use opruga_math::words::number;
 use opruga_mesh::{Cut, Mesh};
 use opruga_world::blueprint::Blueprint;
 use opruga_world::{Options, Registry, World};
@@ -242,7 +243,7 @@ fn steps_that_may_be_worse_than_promised_are_counted_with_what_is_left() {
     assert!(work.cut_off > 0 && work.cut_off <= work.steps && work.left > 0.0 && work.left < 0.1, "{work:?}");
     let warning = beam.warnings().into_iter().find(|warning| warning.code == "step.cut_off").expect("a warning");
     assert_eq!(warning.count, work.cut_off);
-    assert!(warning.message.contains(&format!("{:.1e} m", work.left)), "{warning:?}");
+    assert!(warning.message.contains(&format!("{} m", number(work.left))), "{warning:?}");
 }
 
 fn cpu() -> f64 {

@@ -38,6 +38,8 @@ struct Fixed {
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
+    /// The mean length of its edges at rest [m].
+    node_spacing: f64,
     label: String,
     /// The depth of a body in the plane [m].
     thickness: f64,
@@ -57,7 +59,8 @@ pub enum Quantity {
     Strain,
     /// The force of the models that store energy, without gas, on each node [N].
     ElasticForce,
-    /// The pressure of the gas of the whole body [Pa]; bodies without gas have no colour.
+    /// The pressure of the gas [Pa]: that of the chamber which a node bounds, or of the only one; bodies without gas have
+    /// no colour.
     Pressure,
     /// The speed of each node [m/s].
     Speed,
@@ -161,7 +164,9 @@ impl Scenery {
                 cells.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
             }
             cells.extend(mesh.cells.quadratic_triangles.iter().flat_map(triangle_parts));
+            let edges_length: f64 = edges.iter().map(length).sum();
             Fixed {
+                node_spacing: edges_length / edges.len().max(1) as f64,
                 nodes: mesh.nodes(),
                 facets: if D == 2 {
                     Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())
@@ -291,6 +296,7 @@ impl Scenery {
                 segments: fixed.springs.as_ref().unwrap_or(&fixed.segments).clone(),
                 colour: None,
                 nodes_drawn: (fixed.nodes_drawn && areas.is_empty()) || fixed.springs.is_some(),
+                node_spacing: fixed.springs.is_none().then_some(fixed.node_spacing),
                 areas,
                 pinned: fixed.pinned.clone(),
                 label: fixed.label.clone(),
@@ -331,8 +337,12 @@ fn push_quantity<const D: usize>(
         }
         Quantity::Pressure => {
             let readings = world.readings(body);
-            let pressure = readings.iter().find(|(name, _)| *name == "pressure").map_or(f64::NAN, |(_, p)| *p);
+            let pressure = readings.iter().find(|(name, _)| name == "pressure").map_or(f64::NAN, |(_, p)| *p);
+            let first = scalars.len();
             scalars.extend(std::iter::repeat_n(pressure as f32, nodes));
+            for (node, pressure) in world.node_pressures(body) {
+                scalars[first + node as usize] = pressure as f32;
+            }
         }
     }
 }

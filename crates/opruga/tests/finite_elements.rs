@@ -16,7 +16,7 @@ fn mean_at<const D: usize>(world: &World<D>, axis: usize, place: f64, of: usize)
 /// A bar that hangs by its upper end grows by ρgL²/2E = 0.03924 m, exactly at the nodes of quadrilaterals.
 #[test]
 fn a_hanging_bar_grows_by_its_weight() {
-    for cells in ["", "simplices = true\n", "simplices = true\norder = 2\n"] {
+    for cells in ["", "simplices = true\norder = 1\n", "simplices = true\n"] {
         let mut world = built(plane(&format!(
             "{}[[body]]\nname = \"bar\"\nshape = {{ kind = \"grid\", size = [0.25, 1.0], cells = [2, 8] }}\n{cells}density = 1000\n\
              models = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 125000.0, poissons_ratio = 0.0, plane = \"stress\" }}]\n\
@@ -39,7 +39,7 @@ fn a_beam_of_quadratic_tetrahedra_bends_by_its_weight() {
         "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 10.0\nsubsteps = 1\n[world]\n\
          gravity = [0, -9.81, 0]\n[integrator]\nkind = \"backward_euler\"\n\
          [[body]]\nname = \"beam\"\nshape = { kind = \"grid\", size = [1.0, 0.1, 0.1], cells = [12, 2, 2] }\nsimplices = true\n\
-         order = 2\ndensity = 1000\n\
+         density = 1000\n\
          models = [{ kind = \"fem\", material = \"neo_hookean\", youngs_modulus = 1e8, poissons_ratio = 0.3 }]\n\
          pin = [{ select = { side = \"left\" }, axes = \"xyz\" }]\n",
     ));
@@ -106,10 +106,32 @@ fn cells_that_cannot_be_had_are_refused_where_they_are_asked_for() {
         "shape = { kind = \"quadrilateral\", corners = [[0, 0], [1, 0], [0.2, 0.2], [0, 1]], cells = [2, 2] }";
     assert!(errors(corners).contains("convex"), "{}", errors(corners));
     let locking = refused(&format!(
-        "{}[[body]]\nname = \"b\"\nmass = 1\n{grid}\nsimplices = true\n\
+        "{}[[body]]\nname = \"b\"\nmass = 1\n{grid}\nsimplices = true\norder = 1\n\
          models = [{{ kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49 }}]\n",
         head(0.01, 10, 0.0, "verlet")
     ))
     .to_string();
     assert!(locking.contains("order = 2"), "{locking}");
+}
+
+/// What does not lock is what a body of finite elements is made of: quadratic triangles and tetrahedra unless it says
+/// otherwise, whether the shape is cut, filled or read; bodies without elements keep their nodes.
+#[test]
+fn triangles_and_tetrahedra_of_finite_elements_are_quadratic_by_default() {
+    let nodes = |body: &str, model: &str| {
+        let scene = format!(
+            "{}[[body]]\nname = \"b\"\nmass = 1\n{body}\nmodels = [{{ {model} }}]\n",
+            head(0.01, 10, 0.0, "backward_euler")
+        );
+        built(plane(&scene)).node_count(0)
+    };
+    let fem = "kind = \"fem\", youngs_modulus = 1.0, poissons_ratio = 0.49";
+    let loose = "kind = \"fem\", youngs_modulus = 1.0";
+    let grid = "shape = { kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }";
+    assert_eq!(nodes(grid, fem), 9);
+    assert_eq!(nodes(&format!("{grid}\nsimplices = true"), fem), 25);
+    assert_eq!(nodes(&format!("{grid}\nsimplices = true\norder = 1"), loose), 9);
+    assert_eq!(nodes(&format!("{grid}\nsimplices = true"), "kind = \"mass_spring\", stiffness = 1.0"), 9);
+    let heart = "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.2, filling = \"triangles\" }";
+    assert!(nodes(heart, fem) > 3 * nodes(&format!("{heart}\norder = 1"), loose));
 }

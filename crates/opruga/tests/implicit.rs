@@ -53,41 +53,79 @@ fn a_stiff_block_falls_comes_to_rest_and_stays() {
     }
 }
 
-/// tan θ = ½ (gravity is tilted, not the floor): µ = 0.49 slides by .0877433 m/s², .274198 m and .219358 m/s after 2.5 s;
-/// µ = 0.5 stays where it is (validation B5).
-#[test]
-fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
+/// A block on an incline with tan θ = ½ (gravity is tilted, not the floor), of springs that are damped so, with so many steps a
+/// frame; and what becomes of it in 2.5 s: way, speed, and the speed that it gained in the last two seconds.
+fn on_the_incline(rule: &str, substeps: u32, damping: f64, friction: f64) -> ([f64; 3], opruga::Energy) {
     let size = 1.25f64.sqrt();
     let (along, across) = (9.81 * 0.5 / size, -9.81 / size);
+    let head = head(1.0 / 60.0, substeps, 0.0, rule)
+        .replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
+    let block = BLOCK.replace("damping = 20.0", &format!("damping = {damping:?}"));
+    let mut world = built(plane(&(head + &block + &floor(0.0, friction, 0.0))));
+    let speed = |world: &World<2>| world.momentum().linear.0[0] / 2.0;
+    frames(&mut world, 30);
+    let early = speed(&world);
+    frames(&mut world, 120);
+    let now = speed(&world);
+    ([mean(&world, |n| world.position(0, n)[0]) - 0.2, now, now - early], world.energy())
+}
+
+/// µ = 0.49 slides by .0877433 m/s² (validation B5), in one step a frame and in many; what is elastic slips a little farther while it
+/// settles under its weight, by every rule as far as by Verlet's in tiny steps. µ = 0.52 stays where it is.
+#[test]
+fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
+    let across = 9.81 / 1.25f64.sqrt();
+    let ([true_way, ..], _) = on_the_incline("verlet", 512, 300.0, 0.49);
+    assert!((true_way / 0.274_198 - 1.0).abs() < 0.02, "{true_way}");
     for rule in RULES {
-        let incline = |friction: f64| {
-            let head = head(1.0 / 60.0, 1, 0.0, rule)
-                .replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
-            let mut world = built(plane(&(head + BLOCK + &floor(0.0, friction, 0.0))));
-            frames(&mut world, 150);
-            (mean(&world, |n| world.position(0, n)[0]) - 0.2, mean(&world, |n| world.velocity(0, n)[0]), world.energy())
-        };
         // A rod of two nodes stands at the limit itself, under every rule.
         let rod = "[[body]]\nname = \"rod\"\nshape = { kind = \"line\", from = [0.0, 0.0], to = [0.4, 0.0], segments = 1 }\n\
             mass = 2.0\nmodels = [ { kind = \"mass_spring\", stiffness = 2e5 } ]\n";
-        let head =
-            head(1.0 / 60.0, 1, 0.0, rule).replace("gravity = [0, 0.0]", &format!("gravity = [{along:?}, {across:?}]"));
+        let head = head(1.0 / 60.0, 1, 0.0, rule)
+            .replace("gravity = [0, 0.0]", &format!("gravity = [{:?}, {:?}]", 0.5 * across, -across));
         let mut world = built(plane(&(head + rod + &floor(0.0, 0.5, 0.0))));
         frames(&mut world, 600);
         assert!(world.position(0, 0)[0].abs() < 1e-4, "{rule}: {:?}", world.position(0, 0));
-        let (way, speed, energy) = incline(0.49);
-        println!("{rule}: {way:.6} m, {speed:.6} m/s");
-        assert!((way / 0.274_198 - 1.0).abs() < 1e-2, "{rule}: {way} {speed}");
-        // One step a frame alone is tried: in 16 a block slides too fast by any rule (README, limits), most of all by Newmark's.
-        let own_error = if rule == "newmark" { 3e-3 } else { 1e-3 };
-        assert!((speed / 0.219_358 - 1.0).abs() < own_error, "{rule}: {way} {speed}");
-        // Friction takes µ N s of it.
-        let rubbed = 0.49 * 2.0 * -across * way;
-        assert!((energy.loss_friction / rubbed - 1.0).abs() < 2e-2, "{rule}: {} {rubbed}", energy.loss_friction);
-        // A soft body creeps a little while it settles under its weight; then it stays.
-        let (way, speed, energy) = incline(0.52);
-        assert!(way.abs() < 1e-3 && speed.abs() < 1e-4, "{rule}: {way} {speed}");
-        assert!(energy.loss_friction.abs() < 1e-2, "{rule}: {energy:?}");
+        for substeps in [1, 4, 16, 64] {
+            let ([way, speed, gained], energy) = on_the_incline(rule, substeps, 300.0, 0.49);
+            println!("{rule}, {substeps} steps: {way:.6} m, {speed:.6} m/s, gained {gained:.6} m/s");
+            assert!((gained / 0.175_487 - 1.0).abs() < 1e-3, "{rule}, {substeps} steps: {way} {speed} {gained}");
+            assert!((way / 0.274_198 - 1.0).abs() < 0.02, "{rule}, {substeps} steps: {way} {speed}");
+            if substeps >= 16 {
+                assert!((way / true_way - 1.0).abs() < 1e-2, "{rule}, {substeps} steps: {way} {true_way}");
+            }
+            // Friction takes µ N s of it.
+            let rubbed = 0.49 * 2.0 * across * way;
+            let lost = energy.loss_friction;
+            assert!((lost / rubbed - 1.0).abs() < 2e-2, "{rule}, {substeps} steps: {lost} {rubbed}");
+            if substeps == 4 || substeps == 64 {
+                continue;
+            }
+            // A soft body creeps a little while it settles under its weight; then it stays.
+            let ([way, speed, _], energy) = on_the_incline(rule, substeps, 300.0, 0.52);
+            assert!(way.abs() < 1e-4 && speed.abs() < 1e-6, "{rule}, {substeps} steps: {way} {speed}");
+            assert!(energy.loss_friction.abs() < 1e-3, "{rule}, {substeps} steps: {energy:?}");
+        }
+    }
+}
+
+/// While all nodes slide one way, friction takes µ times the momentum that the floor gives across, also of a block that hops and
+/// trembles: mΔv = −µ (m g T + mΔw), w upwards.
+#[test]
+fn friction_takes_its_share_of_every_impact() {
+    let block = BLOCK.replace("mass = 2.0", "mass = 2.0\nvelocity = [5.0, 0.0]");
+    for rule in RULES {
+        for substeps in [1, 4, 16, 64] {
+            let text = head(1.0 / 60.0, substeps, -9.81, rule) + &block + &floor(-0.01, 0.3, 0.0);
+            let mut world = built(plane(&text));
+            frames(&mut world, 60);
+            let [along, up] = world.momentum().linear.0.map(|p| p / 2.0);
+            let missing = along - 5.0 + 0.3 * (9.81 + up);
+            println!("{rule}, {substeps} steps: {along} m/s, {missing:e}");
+            assert!(missing.abs() < 1e-6, "{rule}, {substeps} steps: {along} {up} {missing:e}");
+            let energy = world.energy();
+            assert!(energy.closure < 0.02, "{rule}, {substeps} steps: {energy:?}");
+        }
     }
 }
 
@@ -342,4 +380,50 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
         }
     }
     assert!(tried >= 9 * 10 - 20, "{tried}");
+}
+
+/// What a rule damps by itself is no error that a user could do anything about. (Of explicit rules, tests of torture ask that they
+/// warn.)
+#[test]
+fn the_ledger_does_not_warn_of_a_rules_own_damping() {
+    let ball = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 12, center = [0.0, 0.0] }\nmass = 1.0\n\
+        angular_velocity = 8.0\nmodels = [ { kind = \"mass_spring\", stiffness = 1000.0 } ]\n";
+    for rule in RULES {
+        let mut world = built(plane(&(head(1.0 / 60.0, 1, 0.0, rule) + ball)));
+        frames(&mut world, 240);
+        let energy = world.energy();
+        assert!(world.warnings().iter().all(|warning| warning.code != "ledger.closure"), "{rule}: {energy:?}");
+        assert!(rule != "backward_euler" || energy.closure > 0.1 && energy.loss_integrator > 0.0, "{energy:?}");
+    }
+}
+
+/// A floor without friction holds a block up, and not where it is along the floor.
+#[test]
+fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
+    let text = |friction: f64, shape: &str| {
+        head(1.0 / 60.0, 1, -9.81, "equilibrium")
+            + &format!(
+                "[[body]]\nname = \"block\"\nshape = {shape}\ndensity = 1000.0\nmodels = [ {{ kind = \"fem\", youngs_modulus = 1e5, \
+                 poissons_ratio = 0.4 }} ]\n"
+            )
+            + &floor(-0.05, friction, 0.0)
+    };
+    let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
+    for (friction, shape) in [(0.0, square), (0.5, square)] {
+        let mut world = built(plane(&text(friction, shape)));
+        let at_rest = mean(&world, |node| world.position(0, node)[0]);
+        let outcome = world.frame();
+        println!("{friction}: {outcome:?}, {:?}", world.solver_work());
+        let iterations = world.solver_work().iterations;
+        match outcome {
+            Ok(()) => {
+                let way = mean(&world, |node| world.position(0, node)[0]) - at_rest;
+                assert!(friction > 0.0 && iterations < 60 && way.abs() < 1e-3, "{way} m, {iterations} iterations");
+            }
+            Err(error) => {
+                let said = error.to_string();
+                assert!(friction == 0.0 && said.contains("translation along x") && said.contains("hint"), "{said}");
+            }
+        }
+    }
 }

@@ -56,15 +56,18 @@ fn outlines_are_solids_in_one_line() {
 
 #[test]
 fn surfaces_are_solids_in_one_line() {
-    for (file, spacing, filling) in
-        [("spot", 0.15, "tetrahedra"), ("torus", 0.12, "tetrahedra"), ("torus", 0.15, "lattice")]
-    {
+    for (file, spacing, filling, order) in [
+        ("spot", 0.15, "tetrahedra", "order = 1"),
+        // Quadratic where the scene is silent.
+        ("torus", 0.16, "tetrahedra", ""),
+        ("torus", 0.15, "lattice", "order = 1"),
+    ] {
         let shape = format!(
             "kind = \"surface\", file = \"shapes/{file}.obj\", size = 1.0, filling = \"{filling}\", spacing = {spacing}"
         );
         let text = format!(
             "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 0.01\nsubsteps = 1\n[world]\ngravity = [0, -9.81, 0]\n\
-             [integrator]\nkind = \"backward_euler\"\n[[body]]\nname = \"it\"\nshape = {{ {shape} }}\n{FEM}"
+             [integrator]\nkind = \"backward_euler\"\n[[body]]\nname = \"it\"\nshape = {{ {shape} }}\n{order}\n{FEM}"
         );
         fallen(built(space(&text)), &shape);
     }

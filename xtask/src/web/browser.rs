@@ -8,8 +8,13 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 /// How long an answer may take on a slow machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(300);
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+/// What lets it draw with the processor.
+const WEBGL: &str = "--use-angle=swiftshader --enable-unsafe-swiftshader";
+/// What gives it an adapter of WebGPU, drawn with the processor, whose pictures are seen.
+const WEBGPU: &str =
+    "--enable-unsafe-webgpu --use-webgpu-adapter=swiftshader --enable-features=Vulkan --use-vulkan=swiftshader";
 
 /// A browser with one page.
 pub(super) struct Browser {
@@ -40,22 +45,22 @@ fn program() -> Option<&'static str> {
 }
 
 impl Browser {
-    /// Starts it with an empty page; what it keeps and downloads goes into a folder.
+    /// Starts it with an empty page, with WebGPU beside WebGL or without; what it keeps and downloads goes into a folder.
     ///
     /// # Errors
     /// Where there is none, or it does not answer.
-    pub(super) fn start(folder: &Path) -> Result<Browser, String> {
+    pub(super) fn start(folder: &Path, webgpu: bool) -> Result<Browser, String> {
         let program = program().ok_or_else(|| format!("there is no browser: none of {}", NAMES.join(", ")))?;
+        let drawing = if webgpu { format!("{WEBGL} {WEBGPU}") } else { WEBGL.to_string() };
         // The browser reads orders from its file 3 and answers into its file 4.
         let script = format!(
             "exec {program} --headless=new --no-sandbox --no-first-run --disable-dev-shm-usage --mute-audio --hide-scrollbars \
-             --use-angle=swiftshader --enable-unsafe-swiftshader --enable-unsafe-webgpu --use-webgpu-adapter=swiftshader \
-             --remote-debugging-pipe --user-data-dir=\"$0\" \
+             {drawing} --remote-debugging-pipe --user-data-dir=\"$0\" \
              3<&0 4>&1 </dev/null >/dev/null 2>&1"
         );
         let mut child = Command::new("sh")
             .args(["-c", &script])
-            .arg(folder.join("profile"))
+            .arg(folder.join(if webgpu { "profile-webgpu" } else { "profile" }))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

@@ -4,28 +4,18 @@ use super::timed::{Spent, registry};
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchScene;
 use crate::failure::{Failure, print_data};
-use crate::run::simd_from_environment;
-use crate::source::{Source, Whole, overrides};
+use crate::forecast::is_implicit;
+use crate::source::{Opened, Source, open};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
-use opruga::core::spec::Values;
 use opruga::io::scene;
+use opruga::math::words::counted;
 use opruga::{Options, Registry, World};
 use serde_json::json;
 use std::sync::Arc;
 
 /// Runs a scene without writing anything and prints how long its frames take.
 pub(crate) fn bench(call: &BenchScene) -> Result<u8, Failure> {
-    let source = Source::find(&call.scene)?;
-    let reading = scene::Options {
-        overrides: overrides(&call.set)?,
-        files: source.files.clone().allow_outside(call.allow_outside),
-        ..scene::Options::default()
-    };
-    let options = Options { simd: simd_from_environment()?, ..Options::default() };
-    let Whole { blueprint, notices, .. } = source.read(&reading, &options)?;
-    if !call.json {
-        notices.iter().for_each(|notice| eprintln!("{notice}"));
-    }
+    let Opened { source, reading, options, blueprint } = open(&call.scene, &call.set, call.allow_outside, call.json)?;
     match blueprint {
         AnyBlueprint::Plane(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
         AnyBlueprint::Space(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
@@ -43,11 +33,7 @@ fn of_scene<const D: usize>(
     let first = source.build(blueprint.clone(), reading, options)?;
     // Explicit rules call models tile by tile: the clock would be most of what it measures.
     let library = Registry::<D>::default();
-    let is_implicit = |kind: &str| {
-        let rule = library.integrator(kind).and_then(|rule| rule.build(&Values::defaults(rule.spec(), D)).ok());
-        rule.is_some_and(|rule| rule.needs().hessian)
-    };
-    let implicit = first.integrators().into_iter().all(is_implicit);
+    let implicit = first.integrators().into_iter().all(|kind| is_implicit(&library, kind));
     drop(first);
     let spent = Arc::new(Spent::default());
     let models = if implicit { registry(&spent) } else { library };
@@ -93,10 +79,11 @@ fn of_scene<const D: usize>(
         return Ok(0);
     }
     let mut text = format!(
-        "{}: {nodes} nodes, {} frames of {} substeps by {}\n  {:.3} ms per frame (median), {least:.3} at least, {mean:.3} on average\n",
+        "{}: {}, {} of {} by {}\n  {:.3} ms per frame (median), {least:.3} at least, {mean:.3} on average\n",
         source.name,
-        call.frames,
-        world.blueprint().time.substeps,
+        counted(nodes as u64, "node", "nodes"),
+        counted(call.frames.into(), "frame", "frames"),
+        counted(world.blueprint().time.substeps.into(), "substep", "substeps"),
         world.integrators().join(", "),
         median(&times),
     );

@@ -3,7 +3,9 @@
 use super::processor_time;
 use opruga::Registry;
 use opruga::core::error::{BuildError, StepError};
-use opruga::core::potential::{Account, CellState, Count, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga::core::potential::{
+    Account, CellState, Count, Definiteness, Ingredients, Model, Potential, Reading, Sink, Views,
+};
 use opruga::core::spec::Spec;
 use opruga::core::state::View;
 use opruga::core::tile::Tile;
@@ -115,8 +117,11 @@ impl<const D: usize> Potential<D> for Timed<D> {
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
         count(&self.spent.matrices, || self.inner.damping_matrix(view, scratch, sink));
     }
-    fn readings(&self, view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<(&'static str, f64)> {
+    fn readings(&self, view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<Reading> {
         self.inner.readings(view, scratch, memory, body)
+    }
+    fn node_pressures(&self, view: &View<D>, scratch: &[f64], body: usize) -> Vec<(u32, f64)> {
+        self.inner.node_pressures(view, scratch, body)
     }
     fn cell_states(&self, view: &View<D>, body: usize) -> Vec<CellState> {
         self.inner.cell_states(view, body)

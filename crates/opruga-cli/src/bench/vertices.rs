@@ -1,8 +1,10 @@
 //! `opruga bench vertices`: figure 4 of the thesis, the speed against the number of vertices.
 
 use super::{best, processor_time};
+use crate::failure::Failure;
 use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass, Surroundings, Time};
 use opruga::core::spec::{Value, Values};
+use opruga::io::problem::visible;
 use opruga::math::calibration::inverse_roots;
 use opruga::{Options, Simd, World, mesh};
 use std::sync::Arc;
@@ -40,6 +42,20 @@ pub(crate) const ROWS: [(usize, usize); 12] = [
     (1_000, 36),
     (27_778, 36),
 ];
+
+/// The row that `--only` names: `36` is one ring of 36 vertices, `1000x36` a thousand of them.
+pub(crate) fn row(only: &str) -> Result<(usize, usize), Failure> {
+    let (bodies, vertices) = only.split_once(['x', '×']).unwrap_or(("1", only));
+    let asked = bodies.trim().parse().ok().zip(vertices.trim().parse().ok());
+    asked.filter(|row| ROWS.contains(row)).ok_or_else(|| {
+        let name = |(bodies, vertices): &(usize, usize)| match bodies {
+            1 => vertices.to_string(),
+            _ => format!("{bodies}x{vertices}"),
+        };
+        let names: Vec<String> = ROWS.iter().map(name).collect();
+        Failure::range("--only", visible(only), &names.join(", "))
+    })
+}
 
 fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> Values {
     let mut values = Values::defaults(spec, 2);
@@ -210,5 +226,20 @@ impl Row {
     /// Bodies.
     pub(crate) fn bodies(&self) -> usize {
         self.bodies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::row;
+
+    #[test]
+    fn only_names_one_row() {
+        assert_eq!(row("36").expect("a row"), (1, 36));
+        assert_eq!(row("27778x36").expect("a row"), (27_778, 36));
+        assert_eq!(row("1000×36").expect("a row"), (1_000, 36));
+        for wrong in ["7", "2x36", "x36", "", "36x", "-1", "36,64"] {
+            assert!(row(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! What a sweep found, as text and as data.
 
-use crate::outputs::counted;
 use opruga::draw::format_value;
 use opruga::io::problem::visible;
+use opruga::math::words::counted;
 use opruga::sweep::{Design, Row, Status, Sweep};
 use serde_json::json;
 

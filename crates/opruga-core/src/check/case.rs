@@ -17,6 +17,17 @@ pub(super) struct Body<const D: usize> {
     pub(super) mass: Vec<f64>,
 }
 
+/// Positions and velocities as a model sees them, on one thread.
+fn view<'a, const D: usize>(
+    x: &'a Columns<D>,
+    v: &'a Columns<D>,
+    nodes: usize,
+    layout: Layout,
+    time: f64,
+) -> View<'a, D> {
+    View { x: x.slices(), v: v.slices(), nodes, layout, time, threads: 1 }
+}
+
 /// Mean length of the edges of a mesh.
 pub(super) fn mean_edge<const D: usize>(mesh: &Mesh<D>) -> f64 {
     let edges = mesh.edges(opruga_mesh::EdgeSet::All);
@@ -102,25 +113,11 @@ impl<'a, const D: usize> Case<'a, D> {
         self.layout.places(self.nodes)
     }
     pub(super) fn prepare(&mut self, simd: Simd) -> Answer<()> {
-        let view = View {
-            x: self.x.slices(),
-            v: self.v.slices(),
-            nodes: self.nodes,
-            layout: self.layout,
-            time: self.time,
-            threads: 1,
-        };
+        let view = view(&self.x, &self.v, self.nodes, self.layout, self.time);
         self.potential.prepare(simd, &view, &self.memory, &mut self.scratch).map_err(|e| e.to_string())
     }
     pub(super) fn view(&self) -> View<'_, D> {
-        View {
-            x: self.x.slices(),
-            v: self.v.slices(),
-            nodes: self.nodes,
-            layout: self.layout,
-            time: self.time,
-            threads: 1,
-        }
+        view(&self.x, &self.v, self.nodes, self.layout, self.time)
     }
     pub(super) fn energy(&mut self, simd: Simd) -> Answer<[f64; WIDTH]> {
         self.prepare(simd)?;

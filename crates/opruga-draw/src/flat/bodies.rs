@@ -1,7 +1,7 @@
 //! Bodies in two dimensions.
 
 use super::Projection;
-use super::loops::{Loop, chain};
+use super::loops::{Loop, chain, parts};
 use super::{areas, shade};
 use crate::canvas::{Canvas, paint};
 use crate::colour::{BODIES, ColourMap, INK, darker, mix};
@@ -11,6 +11,8 @@ use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, Spread
 
 /// The length in pixels below which an edge of a coloured outline is joined to the next.
 const SHORT: f32 = 1.2;
+/// The distance of nodes from which on dots have room, in units of lines.
+const ROOM: f32 = 15.0;
 
 /// How the scalars of a picture become colours.
 struct Scalars {
@@ -112,14 +114,21 @@ impl Drawing<'_> {
             self.nodes(canvas);
             return;
         }
-        let outline = self.outline(&loops);
+        let outline = self.outline(loops.iter());
         let fill =
             if coloured { self.scalars.colour(Scalars::mean(body, 0..body.positions.len() as u32)) } else { self.base };
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
+        } else if coloured && outline.is_some() {
+            // What one line and its holes enclose has a colour of its own, as each chamber has a pressure of its own.
+            for part in parts(&loops, &body.positions) {
+                let Some(path) = self.outline(part.iter().copied()) else { continue };
+                let nodes = part.iter().flat_map(|chain| chain.nodes.iter().copied());
+                let fill = self.scalars.colour(Scalars::mean(body, nodes));
+                canvas.fill(&path, &paint(if self.size > 12.0 { mix(fill, [255; 3], 0.6) } else { fill }, 1.0));
+            }
         } else if let Some(outline) = &outline {
-            let pale = coloured && self.size > 12.0;
-            canvas.fill(outline, &paint(if pale { mix(fill, [255; 3], 0.6) } else { fill }, 1.0));
+            canvas.fill(outline, &paint(fill, 1.0));
         } else if !cells.is_empty() {
             cells.iter().for_each(|cell| canvas.polygon(&cell.map(|node| self.pixels[node as usize]), fill, 1.0));
         }
@@ -152,7 +161,7 @@ impl Drawing<'_> {
     }
 
     /// The path of the loops, without points which fall on the same pixel.
-    fn outline(&self, loops: &[Loop]) -> Option<Path> {
+    fn outline<'l>(&self, loops: impl Iterator<Item = &'l Loop>) -> Option<Path> {
         let mut builder = PathBuilder::new();
         for chain in loops {
             let mut last = [f32::INFINITY; 2];
@@ -302,18 +311,24 @@ impl Drawing<'_> {
         points.clear();
     }
 
-    /// Draws the nodes, where they are wanted and far enough apart.
+    /// Draws the nodes where they are wanted: smaller ones where they are close together.
     fn nodes(&self, canvas: &mut Canvas) {
-        let count = self.pixels.len();
-        // The distance of neighbours, if they lie around the body.
-        let crowded = 3.0 * self.size < count as f32 * 15.0 * self.unit;
-        if !self.body.nodes_drawn || crowded || self.size < 24.0 {
+        if !self.body.nodes_drawn {
             return;
         }
-        let radius = (3.0 * self.size / count as f32).clamp(1.2, 2.6) * self.unit;
+        let radius = match self.body.node_spacing {
+            Some(spacing) if ((spacing * self.projection.scale) as f32) < ROOM * self.unit => return,
+            Some(_) => 2.6 * self.unit,
+            None => {
+                // The distance of neighbours, if they lie around the body or fill it.
+                let count = self.pixels.len().max(1) as f32;
+                let spacing = if self.body.cells.is_empty() { 3.0 / count } else { 1.0 / count.sqrt() } * self.size;
+                (0.25 * spacing).clamp(0.8 * self.unit, 2.6 * self.unit)
+            }
+        };
         for (node, &pixel) in self.pixels.iter().enumerate() {
             let colour = self.body.scalar.get(node).map_or(self.base, |&scalar| self.scalars.colour(scalar));
-            canvas.disc(pixel, radius + 0.9 * self.unit, darker(darker(colour)));
+            canvas.disc(pixel, 1.35 * radius, darker(darker(colour)));
             canvas.disc(pixel, radius, mix(colour, [255; 3], 0.25));
         }
     }

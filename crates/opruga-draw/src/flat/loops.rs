@@ -9,6 +9,40 @@ pub(crate) struct Loop {
     pub(crate) closed: bool,
 }
 
+/// Groups loops: each line that encloses something with the holes in it. Lines run around what they enclose
+/// counter-clockwise, around holes clockwise; where that tells nothing, all are one group.
+pub(crate) fn parts<'a>(loops: &'a [Loop], positions: &[[f64; 3]]) -> Vec<Vec<&'a Loop>> {
+    let at = |node: u32| [positions[node as usize][0], positions[node as usize][1]];
+    let corners = |chain: &Loop| chain.nodes.iter().map(|node| at(*node)).collect::<Vec<[f64; 2]>>();
+    let area = |line: &[[f64; 2]]| -> f64 {
+        let next = line.iter().cycle().skip(1);
+        line.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1])).sum()
+    };
+    let lines: Vec<Vec<[f64; 2]>> = loops.iter().map(corners).collect();
+    let areas: Vec<f64> = lines.iter().map(|line| area(line)).collect();
+    let outer: Vec<usize> = (0..loops.len()).filter(|k| loops[*k].closed && areas[*k] > 0.0).collect();
+    let mut parts: Vec<Vec<&Loop>> = outer.iter().map(|k| vec![&loops[*k]]).collect();
+    for hole in (0..loops.len()).filter(|k| !outer.contains(k)) {
+        let around = (0..outer.len()).filter(|k| encloses(&lines[outer[*k]], lines[hole][0]));
+        match around.min_by(|a, b| areas[outer[*a]].total_cmp(&areas[outer[*b]])) {
+            Some(home) => parts[home].push(&loops[hole]),
+            None => return vec![loops.iter().collect()],
+        }
+    }
+    parts
+}
+
+/// Whether a closed line goes around a point, by the even-odd rule.
+pub(crate) fn encloses(line: &[[f64; 2]], point: [f64; 2]) -> bool {
+    let next = line.iter().cycle().skip(1);
+    line.iter().zip(next).filter(|(a, b)| crosses(**a, **b, point)).count() % 2 == 1
+}
+
+/// Whether the ray from a point along x crosses an edge.
+pub(crate) fn crosses(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> bool {
+    (a[1] > point[1]) != (b[1] > point[1]) && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+}
+
 /// Chains edges into loops; an edge may point either way.
 pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     if let Some(whole) = chain_ordered(edges) {
@@ -83,6 +117,26 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert!(found.iter().all(|chain| chain.closed && chain.nodes.len() == 3));
         assert_eq!(found[0].nodes, vec![0, 1, 2]);
+    }
+
+    #[test]
+    fn a_hole_belongs_to_the_tightest_line_around_it() {
+        // Two squares side by side; a square hole and, in it, a smaller square of its own.
+        let square = |x: f64, s: f64, turn: bool| {
+            let mut corners = [[x - s, -s, 0.0], [x + s, -s, 0.0], [x + s, s, 0.0], [x - s, s, 0.0]];
+            if turn {
+                corners.reverse();
+            }
+            corners
+        };
+        let positions =
+            [square(0.0, 4.0, false), square(9.0, 4.0, false), square(0.0, 2.0, true), square(0.0, 1.0, false)];
+        let ring = |k: u32| Loop { nodes: (4 * k..4 * k + 4).collect(), closed: true };
+        let loops: Vec<Loop> = (0..4).map(ring).collect();
+        let found = parts(&loops, positions.as_flattened());
+        assert_eq!(found, [vec![&loops[0], &loops[2]], vec![&loops[1]], vec![&loops[3]]]);
+        // A hole in nothing: a body that is turned inside out is drawn as one.
+        assert_eq!(parts(&loops[2..3], positions.as_flattened()).len(), 1);
     }
 
     #[test]

@@ -9,8 +9,8 @@ mod shade;
 use crate::canvas::Canvas;
 use crate::error::DrawError;
 use crate::image::Image;
-use crate::marks::draw_marks;
-use crate::picture::Picture;
+use crate::marks::{draw_arrows, draw_marks};
+use crate::picture::{ArrowKind, ArrowPicture, Facets, Picture};
 use crate::view::View;
 
 /// The free border between what must be seen and the frame, as a share of the larger side.
@@ -67,17 +67,40 @@ pub(crate) fn scene(
     for collider in &picture.colliders {
         colliders::draw(&mut canvas, collider, &projection, unit);
     }
-    bodies::draw(&mut canvas, picture, view, &projection, unit);
     let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
-    draw_marks(&mut canvas, picture, view, unit, &project, &|_| true);
+    // What pushes outwards starts at the outline and lies beneath all bodies, so that no neighbour is covered.
+    let (beneath, above): (Vec<ArrowPicture>, Vec<ArrowPicture>) =
+        picture.arrows.iter().partition(|arrow| arrow.kind == ArrowKind::Pressure && leaves(picture, view, arrow));
+    draw_arrows(&mut canvas, &beneath, view, unit, &project, &|_| true);
+    bodies::draw(&mut canvas, picture, view, &projection, unit);
+    draw_marks(&mut canvas, (picture, &above), view, background, unit, &project, &|_| true);
     Ok((scene, projection.scale))
+}
+
+/// Whether an arrow leads from where it starts out of all bodies.
+fn leaves(picture: &Picture, view: &View, arrow: &ArrowPicture) -> bool {
+    // A small part of the arrow as it is drawn.
+    let share = 0.02 * view.arrow_scale(arrow.kind);
+    let point: [f64; 2] = std::array::from_fn(|axis| arrow.from[axis] + share * arrow.vector[axis]);
+    picture.bodies.iter().all(|body| {
+        let Facets::Edges(edges) = &body.facets else { return true };
+        let within = |axis: usize| {
+            let along = || body.positions.iter().map(|position| position[axis]);
+            along().any(|value| value <= point[axis]) && along().any(|value| value >= point[axis])
+        };
+        if !within(0) || !within(1) {
+            return true;
+        }
+        let at = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
+        edges.iter().filter(|[a, b]| loops::crosses(at(*a), at(*b), point)).count() % 2 == 0
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::colour::ColourMap;
-    use crate::picture::{AreaPicture, BodyPicture, ColliderPicture, Facets, Legend};
+    use crate::picture::{AreaPicture, BodyPicture, ColliderPicture, Legend};
 
     /// A square with a square hole, as an area.
     fn frame(colour: Option<[u8; 4]>) -> AreaPicture {
@@ -121,6 +144,44 @@ mod tests {
         broken.ends = vec![4, 7];
         let body = BodyPicture { positions: positions.clone(), areas: vec![broken], ..Default::default() };
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
+    }
+
+    /// Names lie all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.
+    #[test]
+    fn names_lie_where_nothing_is_in_the_way() {
+        let body = |x: f64, y: f64, label: &str| BodyPicture {
+            positions: [[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0]].map(|p| [p[0] + x, p[1] + y, 0.0]).to_vec(),
+            facets: Facets::Edges(vec![[0, 1], [1, 2], [2, 3], [3, 0]]),
+            label: label.into(),
+            ..Default::default()
+        };
+        let floor = || vec![ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] }];
+        let rows = |bodies: Vec<BodyPicture>, colliders: Vec<ColliderPicture>| -> (Vec<u32>, Projection) {
+            // The view leaves room at the top and at the bottom.
+            let frame = BodyPicture { positions: vec![[-3.0, -1.5, 0.0], [3.0, 4.5, 0.0]], ..Default::default() };
+            let mut picture = Picture { bodies, colliders, ..Default::default() };
+            picture.bodies.push(frame);
+            let view = View::fit([&picture]).expect("a view");
+            let draw = |picture: &Picture| scene(picture, &view, [255; 3], [300, 300], 0.6).expect("an image").0;
+            let named = draw(&picture);
+            picture.bodies.iter_mut().for_each(|body| body.label.clear());
+            let bare = draw(&picture);
+            let written = |y: &u32| (0..300).any(|x| named.pixel(x, *y) != bare.pixel(x, *y));
+            ((0..300).filter(written).collect(), Projection::new(&view, 300, 300))
+        };
+        let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.1, "right")], floor());
+        let ground = at.pixel([0.0; 3])[1] as u32;
+        assert!(!written.is_empty() && written.iter().all(|y| *y < ground), "{written:?} {ground}");
+        // Hung from above: below them.
+        let ceiling = vec![ColliderPicture::HalfSpace { point: [0.0, 1.05, 0.0], normal: [0.0, -1.0, 0.0] }];
+        let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.0, "right")], ceiling);
+        let feet = at.pixel([0.0; 3])[1] as u32;
+        assert!(!written.is_empty() && written.iter().all(|y| *y >= feet), "{written:?} {feet}");
+        // One over the other: two rows of letters, both above their bodies.
+        let (written, at) = rows(vec![body(0.0, 0.0, "low"), body(0.0, 2.0, "high")], floor());
+        let rows_of =
+            |y: f64| written.iter().filter(|row| (at.pixel([0.0, y, 0.0])[1] - **row as f32).abs() < 12.0).count();
+        assert!(rows_of(1.0) > 2 && rows_of(3.0) > 2, "{written:?}");
     }
 
     #[test]

@@ -52,7 +52,9 @@ pub(crate) fn scene(
     let mut image = screen.image()?;
     let mut canvas = Canvas::new(&mut image);
     let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
-    draw_marks(&mut canvas, picture, view, unit, &project, &|point| painter.in_sight(&screen, point));
+    draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point| {
+        painter.in_sight(&screen, point)
+    });
     Ok((image, painter.camera.scale(view.center()) / SAMPLES as f64))
 }
 

@@ -71,7 +71,7 @@ impl<const D: usize> Rule<D> for BackwardEuler {
             *y = h * v;
         }
         room.z.fill(0.0);
-        Balance { sigma: 1.0 / (h * h), beta: 1.0 / h, theta: 1.0, time: h, h, load: 1.0, impulse: 1.0 }
+        Balance { sigma: 1.0 / (h * h), beta: 1.0 / h, theta: 1.0, time: h, h, load: 1.0, impulse: 1.0, echo: 0.0 }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
         for k in 0..room.u.len() {

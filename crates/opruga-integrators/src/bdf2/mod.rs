@@ -92,13 +92,25 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 (room.z[k], room.y[k]) = (0.0, span * room.v0[k]);
             }
         }
-        Balance { sigma: 1.0 / (span * span), beta: 1.0 / span, theta: 1.0, time: h, h, load: 1.0, impulse: span / h }
+        Balance {
+            sigma: 1.0 / (span * span),
+            beta: 1.0 / span,
+            theta: 1.0,
+            time: h,
+            h,
+            load: 1.0,
+            impulse: span / h,
+            echo: 0.5 * span / h,
+        }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, _h: f64) {
         for k in 0..room.u.len() {
             room.u1[k] = room.u[k];
             room.v1[k] = balance.beta * (room.u[k] - room.z[k]);
         }
+    }
+    fn remembered(&self, room: &Room<D>, k: usize, _h: f64) -> f64 {
+        0.5 * (room.v1[k] - room.v0[k])
     }
     fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
         // Behind them may be what the real-time setting remembers.
@@ -109,10 +121,12 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 (way.0[d][node], before.0[d][node]) = (room.u1[k], room.v0[k]);
             }
         }
-        for &node in &room.struck {
+        for struck in &room.struck {
             for d in 0..D {
-                let velocity = room.v1[node * D + d];
-                (way.0[d][node], before.0[d][node]) = (h * velocity, velocity);
+                let (velocity, node) = (room.v1[struck.node * D + d], struck.node);
+                // The differences that are left say how the motion along the surface goes on.
+                way.0[d][node] = h * (velocity - struck.memory[d]);
+                before.0[d][node] = velocity - 2.0 * struck.memory[d];
             }
         }
         system.history.numbers[0] = h;

@@ -74,7 +74,7 @@ fn one_step<const D: usize>(
     let goal = rule.settings.tolerance * room.extent;
     for iteration in 0..ITERATIONS {
         solved.iterations += 1;
-        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load: now, impulse: 1.0 };
+        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load: now, impulse: 1.0, echo: 0.0 };
         if evaluate(system, room, &balance, false).is_err() {
             return Ok(None);
         }

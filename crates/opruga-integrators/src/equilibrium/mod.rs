@@ -24,7 +24,7 @@
 //!
 //! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free.
 //! Obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
-//! within the iteration only.
+//! within the iteration only. Where that leads nowhere, the motions are named that contact leaves free.
 //!
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
@@ -34,16 +34,18 @@ pub mod rigid;
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::newton::{Balance, solve};
+use crate::implicit::newton::{Balance, Solved, solve};
 use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
 use crate::implicit::standstill;
 use crate::implicit::step::{MOST_HALVINGS, commit, report, same_bits_everywhere};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
-use opruga_core::potential::Views;
+use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::{Stage, System};
+use opruga_math::words::number;
+use opruga_solve::blocks::nodes;
 
 /// The parameters.
 pub const SPEC: Spec = Spec {
@@ -85,6 +87,9 @@ pub struct Equilibrium {
     arc_length: Option<f64>,
     settings: Settings,
 }
+
+/// After so many iterations it is asked whether obstacles hold the body at all.
+const EARLY: u32 = 25;
 
 /// The numbers of the history: the part of the load that is on, and whether it has reached the whole.
 const LOAD: usize = 0;
@@ -170,7 +175,7 @@ impl Equilibrium {
                     correction,
                     tolerance,
                     time,
-                    beyond: from.map(|from| format!("{} of the load", from.load)),
+                    beyond: from.map(|from| format!("{} of the load", number(from.load))),
                     hint: self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none()),
                 }
             }
@@ -187,9 +192,35 @@ impl Equilibrium {
         h: f64,
     ) -> Result<(), StepError> {
         room.hold(system, at.held, h);
-        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0 };
-        let solved = solve(system, room, &balance, &self.settings)?;
+        let balance =
+            Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
+        let mut solved = Solved::default();
+        // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
+        let loose = system.contacts.is_some() && !rigid::unheld_motions(system).is_empty();
+        let all = self.settings.iterations;
+        for most in if loose { [EARLY.min(all), all] } else { [all, all] } {
+            if most == solved.iterations || solved.converged {
+                continue;
+            }
+            let before = solved;
+            let settings = Settings { iterations: most - before.iterations, ..self.settings };
+            solved = solve(system, room, &balance, &settings)?;
+            solved.iterations += before.iterations;
+            solved.products += before.products;
+            if loose {
+                self.refuse_what_is_free(system, room)?;
+            }
+        }
         report(SPEC.kind, &self.settings, system, room, &solved)
+    }
+
+    /// Names the motions of the whole that neither pins nor the contacts of the last iteration hold.
+    fn refuse_what_is_free<const D: usize>(&self, system: &System<D>, room: &Room<D>) -> Result<(), StepError> {
+        let mut x = system.state.x.clone();
+        for (node, (from, way)) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.u)).enumerate() {
+            x.set(node, core::array::from_fn(|d| from[d] + way[d]));
+        }
+        rigid::refuse_what_contact_leaves_free(system, &x, &room.contacting.directions())
     }
 
     fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
@@ -314,11 +345,17 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         }
         if obstacles { Ok(()) } else { rigid::refuse_free_motions(system) }
     }
-    fn readings(&self, system: &System<D>) -> Vec<(&'static str, f64)> {
-        vec![("load_factor", system.history.numbers[LOAD])]
+    fn readings(&self, system: &System<D>) -> Vec<Reading> {
+        vec![("load_factor".into(), system.history.numbers[LOAD])]
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
+    }
+    fn damps_by_itself(&self) -> bool {
+        true
+    }
+    fn is_static(&self) -> bool {
+        true
     }
     fn takes_mass_matrix(&self) -> bool {
         true

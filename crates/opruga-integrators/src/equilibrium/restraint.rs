@@ -10,7 +10,7 @@
 //! holds the body. In some poses a dead load has no second-order work though it has some in others (a pendulum that stands
 //! out sideways), so the body is looked at in several.
 
-use super::rigid::{Motion, Projection, center, displacement, of_weights, unpinned_motions};
+use super::rigid::{Motion, Projection, center, displacement, of_weights, shape_at, unpinned_motions};
 use opruga_core::potential::{Account, Definiteness};
 use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, System};
@@ -29,14 +29,20 @@ const TURN: f64 = 0.9;
 const SINE: f64 = 0.783_326_909_627_483_4;
 const COSINE: f64 = 0.621_609_968_270_664_4;
 
-/// The motions of the whole that neither pins nor loads nor the weight of a pendulum hold, translations first.
-pub(super) fn free_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let mut free = unpinned_motions(system);
+/// The motions of the whole that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that hold nodes along the
+/// given directions, with the nodes at the given places; translations first.
+pub(super) fn free_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+) -> Vec<Motion<D>> {
+    let mut free = unpinned_motions(system, x, touched);
+    let center = center(x, system.nodes);
     // Loads with a stiffness, where the body is.
     for member in outer(system) {
-        let mut restraint = Restraint::new(&free);
+        let mut restraint = Restraint::new(&free, center);
         for time in TIMES {
-            restraint.add(system, &system.state.x, Source::Stiff(member), system.time + time);
+            restraint.add(system, x, Source::Stiff(member), system.time + time);
         }
         free = restraint.left();
     }
@@ -44,9 +50,9 @@ pub(super) fn free_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>>
         return free;
     }
     // The others and the weight, which may hold what only turns.
-    let mut restraint = Restraint::new(&free);
+    let mut restraint = Restraint::new(&free, center);
     let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
-    for x in poses(system, &free) {
+    for x in poses(system, x, &free, &center) {
         for time in times {
             restraint.add(system, &x, Source::Dead, system.time + time);
         }
@@ -69,23 +75,21 @@ enum Source<'a, const D: usize> {
 /// The sum of PᵀP over poses, times and loads, each P relative to the size of its parts.
 struct Restraint<'a, const D: usize> {
     motions: &'a [Motion<D>],
+    /// What they turn about.
+    center: [f64; D],
     sum: Vec<f64>,
 }
 
 impl<'a, const D: usize> Restraint<'a, D> {
-    fn new(motions: &'a [Motion<D>]) -> Self {
-        Restraint { motions, sum: vec![0.0; motions.len() * motions.len()] }
+    fn new(motions: &'a [Motion<D>], center: [f64; D]) -> Self {
+        Restraint { motions, center, sum: vec![0.0; motions.len() * motions.len()] }
     }
 
     /// Adds what loads do in a pose, at a time.
     fn add(&mut self, system: &System<D>, x: &Columns<D>, source: Source<'_, D>, time: f64) {
         let n = self.motions.len();
-        let center = center(system);
-        let shapes: Vec<Vec<f64>> = self
-            .motions
-            .iter()
-            .map(|motion| (0..system.nodes).flat_map(|node| displacement(motion, &x.at(node), &center)).collect())
-            .collect();
+        let shape = |motion| shape_at(x, system.nodes, motion, &self.center);
+        let shapes: Vec<Vec<f64>> = self.motions.iter().map(shape).collect();
         let rest = Columns::zeros(system.places());
         let view = View {
             x: x.slices(),
@@ -190,7 +194,12 @@ fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
 }
 
 /// The body as it is, turned by each of the motions, and by all of them.
-fn poses<const D: usize>(system: &System<D>, motions: &[Motion<D>]) -> Vec<Columns<D>> {
+fn poses<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    motions: &[Motion<D>],
+    center: &[f64; D],
+) -> Vec<Columns<D>> {
     let turns = if D == 2 { 1 } else { 3 };
     let mut all = Motion { translation: [0.0; D], rotation: vec![0.0; turns] };
     for motion in motions {
@@ -200,14 +209,13 @@ fn poses<const D: usize>(system: &System<D>, motions: &[Motion<D>]) -> Vec<Colum
         all.rotation.iter_mut().zip(&motion.rotation).for_each(|(sum, r)| *sum += r);
     }
     let others = motions.iter().chain((motions.len() > 1).then_some(&all));
-    core::iter::once(system.state.x.clone()).chain(others.map(|motion| pose(system, motion))).collect()
+    core::iter::once(x.clone()).chain(others.map(|motion| pose(x, system.nodes, motion, center))).collect()
 }
 
 /// The body after a motion was gone on with until it had turned by [`TURN`].
-fn pose<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Columns<D> {
-    let center = center(system);
+fn pose<const D: usize>(x: &Columns<D>, nodes: usize, motion: &Motion<D>, center: &[f64; D]) -> Columns<D> {
     let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
-    let mut out = system.state.x.clone();
+    let mut out = x.clone();
     if speed == 0.0 {
         return out;
     }
@@ -217,8 +225,8 @@ fn pose<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Columns<D> {
     let across = turned(&unit, &motion.translation);
     let through: [f64; D] = core::array::from_fn(|d| center[d] + across[d] / speed);
     let along: f64 = if D == 3 { (0..D).map(|d| axis[d] * motion.translation[d]).sum() } else { 0.0 };
-    for node in 0..system.nodes {
-        let x = system.state.x.at(node);
+    for node in 0..nodes {
+        let x = x.at(node);
         let arm: [f64; D] = core::array::from_fn(|d| x[d] - through[d]);
         // Rodrigues: x + sin θ n × r + (1 − cos θ) n × (n × r).
         let first = turned(&unit, &arm);

@@ -1,15 +1,16 @@
 //! The motions of a body as a whole that nothing holds.
 
 use super::restraint::free_motions;
-use opruga_core::error::BuildError;
+use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
 
 /// Refuses a body that can move as a whole.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
-    let free = free_motions(system);
+    let free = free_motions(system, &system.state.x, &[]);
     if free.is_empty() {
         return Ok(());
     }
@@ -92,37 +93,66 @@ impl<const D: usize> Sink<D> for Projection<'_> {
     }
 }
 
-pub(super) fn center<const D: usize>(system: &System<D>) -> [f64; D] {
+/// The mean of the places of the nodes.
+pub(super) fn center<const D: usize>(x: &Columns<D>, nodes: usize) -> [f64; D] {
     let mut center = [0.0; D];
-    for node in 0..system.nodes {
-        let x = system.state.x.at(node);
+    for node in 0..nodes {
+        let x = x.at(node);
         for d in 0..D {
-            center[d] += x[d] / system.nodes as f64;
+            center[d] += x[d] / nodes as f64;
         }
     }
     center
 }
 
-/// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
-pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    loose_motions(system, true)
+/// Refuses a body that can move as a whole though it lies on obstacles, which hold nodes along the given directions, with its
+/// nodes at the given places.
+pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+) -> Result<(), StepError> {
+    if touched.is_empty() {
+        return Ok(());
+    }
+    let free = free_motions(system, x, touched);
+    if free.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<String> = free.iter().map(Motion::name).collect();
+    let message = format!(
+        "the body lies on an obstacle, and neither that nor pins hold it against {}; an equilibrium needs a body that is \
+         held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
+        names.join(", ")
+    );
+    Err(StepError::Model { model: "equilibrium", message })
 }
 
-/// The motions of the whole that pins do not hold, translations first.
-pub(super) fn unpinned_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    loose_motions(system, false)
+/// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
+pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
+    loose_motions(system, &system.state.x, &[], true)
+}
+
+/// The motions of the whole that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
+/// places; translations first.
+pub(super) fn unpinned_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+) -> Vec<Motion<D>> {
+    loose_motions(system, x, touched, false)
 }
 
 /// All motions of the whole: translations, then rotations about the centre, each scaled to a mean displacement of one.
-fn all_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let center = center(system);
+fn all_motions<const D: usize>(x: &Columns<D>, nodes: usize) -> Vec<Motion<D>> {
+    let center = center(x, nodes);
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
-    for node in 0..system.nodes {
-        let x = system.state.x.at(node);
+    for node in 0..nodes {
+        let x = x.at(node);
         size += (0..D).map(|d| (x[d] - center[d]) * (x[d] - center[d])).sum::<f64>();
     }
-    let size = (size / system.nodes as f64).sqrt();
+    let size = (size / nodes as f64).sqrt();
     let mut motions: Vec<Motion<D>> = Vec::new();
     for d in 0..D {
         let mut translation = [0.0; D];
@@ -139,10 +169,16 @@ fn all_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
     motions
 }
 
-fn loose_motions<const D: usize>(system: &System<D>, by_stiffness: bool) -> Vec<Motion<D>> {
+fn loose_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+    by_stiffness: bool,
+) -> Vec<Motion<D>> {
     let nodes = system.nodes;
-    let motions = all_motions(system);
-    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_of(system, motion)).collect();
+    let motions = all_motions(x, nodes);
+    let center = center(x, nodes);
+    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_at(x, nodes, motion, &center)).collect();
     let n = motions.len();
 
     // How much each combination moves held axes, or strains what acts from outside.
@@ -154,6 +190,14 @@ fn loose_motions<const D: usize>(system: &System<D>, by_stiffness: bool) -> Vec<
             }
         }
     });
+    for (node, direction) in touched {
+        let along = |shape: &Vec<f64>| (0..D).map(|d| shape[node * D + d] * direction[d]).sum::<f64>();
+        for p in 0..n {
+            for q in 0..n {
+                held[p * n + q] += along(&shapes[p]) * along(&shapes[q]);
+            }
+        }
+    }
     if by_stiffness {
         let mut projection = Projection::of(&shapes);
         system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
@@ -217,8 +261,18 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
 
 /// The displacements of all nodes in a motion, one coordinate after the other.
 pub fn shape_of<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Vec<f64> {
-    let center = center(system);
-    (0..system.nodes).flat_map(|node| displacement(motion, &system.state.x.at(node), &center)).collect()
+    let (x, nodes) = (&system.state.x, system.nodes);
+    shape_at(x, nodes, motion, &center(x, nodes))
+}
+
+/// The same of nodes at the given places, of a motion about the given centre.
+pub(super) fn shape_at<const D: usize>(
+    x: &Columns<D>,
+    nodes: usize,
+    motion: &Motion<D>,
+    center: &[f64; D],
+) -> Vec<f64> {
+    (0..nodes).flat_map(|node| displacement(motion, &x.at(node), center)).collect()
 }
 
 /// Row echelon form from the rotations backward: as many motions as possible are plain translations along axes.

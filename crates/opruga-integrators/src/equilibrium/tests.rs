@@ -175,7 +175,7 @@ fn a_balance_that_is_not_found_leaves_the_state_as_it_was() {
     let (x, v) = (system.state.x.clone(), system.state.v.clone());
     let error = rule.step(&mut system, 0.5).unwrap_err().to_string();
     assert!(
-        error.starts_with("`equilibrium` did not converge in 1 iterations at t = 0 s: the forces are out"),
+        error.starts_with("`equilibrium` did not converge in 1 iteration at t = 0 s: the forces are out"),
         "{error}"
     );
     assert_eq!((&system.state.x, &system.state.v), (&x, &v));

@@ -122,6 +122,25 @@ impl<const D: usize> Contacting<D> {
         self.contacts.iter().any(Contact::is_held)
     }
 
+    /// The directions in which nodes are held, or would be by friction.
+    pub(crate) fn directions(&self) -> Vec<(usize, [f64; D])> {
+        let mut out = Vec::new();
+        for contact in self.contacts.iter().filter(|contact| contact.is_held()) {
+            out.push((contact.node, contact.touch.normal));
+            for d in 0..if contact.touch.friction > 0.0 { D } else { 0 } {
+                let mut axis = [0.0; D];
+                axis[d] = 1.0;
+                out.push((contact.node, axis));
+            }
+        }
+        out
+    }
+    /// Whether nodes are held, and all by surfaces that do not move.
+    pub(crate) fn any_at_rest(&self) -> bool {
+        let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);
+        self.any() && self.contacts.iter().filter(|contact| contact.is_held()).all(rests)
+    }
+
     /// Looks where nodes are that start at x₀ and end displaced by u/θ; nodes that are inside are held from now
     /// on. Depths below a billionth of the extent do not count. Nodes that impact are first thought to stick, or to slide.
     pub(crate) fn look(&mut self, sight: &Sight<'_, D>, impacts_slide: bool) -> bool {
@@ -332,17 +351,11 @@ impl<const D: usize> Contacting<D> {
         let Sight { x0, u, theta, extent, .. } = *sight;
         let small = SMALL * extent;
         let mut verdict = Verdict::default();
-        let mut first = 0;
-        while first < self.contacts.len() {
-            let node = self.contacts[first].node;
-            let mut last = first;
-            while last < self.contacts.len() && self.contacts[last].node == node {
-                last += 1;
-            }
-            let at = node * D;
-            let force: [f64; D] = core::array::from_fn(|d| reaction[at + d]);
-            let normal_forces = split(&self.contacts[first..last], &force);
-            for (k, contact) in self.contacts[first..last].iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
+        for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
+            let node = contacts[0].node;
+            let force = nodes::<D>(reaction)[node];
+            let normal_forces = split(contacts, &force);
+            for (k, contact) in contacts.iter_mut().enumerate().filter(|(_, c)| c.is_held()) {
                 let normal_force = normal_forces[k.min(D - 1)];
                 if normal_force < 0.0 {
                     contact.hold = Hold::Released;
@@ -391,7 +404,6 @@ impl<const D: usize> Contacting<D> {
                 }
                 contact.normal_force = normal_force;
             }
-            first = last;
         }
         verdict
     }

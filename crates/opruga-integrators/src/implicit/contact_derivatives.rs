@@ -1,6 +1,7 @@
 //! What the forces of contacts change by with the positions of their nodes.
 
 use super::contact::{Contact, Contacting, SMALL, dot};
+use super::newton::Balance;
 use opruga_core::system::System;
 use opruga_solve::blocks::{Block, isotropic};
 
@@ -27,7 +28,17 @@ const BESIDE: f64 = 1e-5;
 /// Normals that turn by more than this within that distance belong to an edge.
 const EDGE: f64 = 1e-2;
 
-impl<const D: usize> Sight<'_, D> {
+impl<'a, const D: usize> Sight<'a, D> {
+    pub(crate) fn new(
+        system: &'a System<D>,
+        balance: &Balance,
+        x0: &'a [f64],
+        u: &'a [f64],
+        extent: f64,
+    ) -> Sight<'a, D> {
+        Sight { system, x0, u, theta: balance.theta, h: balance.h, extent }
+    }
+
     /// ∂n/∂x along the surface, by differences; nothing at edges.
     fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
         let obstacles = self.system.contacts.as_ref()?;

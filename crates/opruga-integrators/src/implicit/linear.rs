@@ -54,7 +54,11 @@ pub(crate) struct Filter<'a, const D: usize> {
 impl<const D: usize> Filter<'_, D> {
     /// What is free of a vector.
     pub(crate) fn apply(&self, vector: &mut [f64]) {
-        for (node, x) in nodes_mut::<D>(vector).iter_mut().enumerate() {
+        self.apply_from(0, vector);
+    }
+    /// What is free of the part of a vector that begins with this node.
+    pub(crate) fn apply_from(&self, first: usize, vector: &mut [f64]) {
+        for (node, x) in (first..).zip(nodes_mut::<D>(vector)) {
             if !self.free[node] {
                 *x = times(&self.projectors[node], x);
             }
@@ -259,7 +263,7 @@ impl<const D: usize> Linear<D> {
         out: &mut [f64],
     ) -> Result<u32, Indefinite> {
         let most = MOST_PRODUCTS;
-        if mixture.matrix_free {
+        let products = if mixture.matrix_free {
             let mut directions = std::mem::take(&mut self.directions);
             let multiply = |x: &[f64], y: &mut [f64]| {
                 self.multiply(mixture, x, y);
@@ -267,17 +271,17 @@ impl<const D: usize> Linear<D> {
             };
             let ended = conjugate_gradients(multiply, &self.jacobi, b, out, tolerance, most, &mut directions);
             self.directions = directions;
-            return finite(out, ended?.iterations);
-        }
-        if settings.solver.is_direct::<D>(self.whole.rows()) {
+            ended?.iterations
+        } else if settings.solver.is_direct::<D>(self.whole.rows()) {
             out.copy_from_slice(b);
             self.cholesky.solve(out);
-            return finite(out, 1);
-        }
-        let constrained = &self.constrained;
-        let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
-        let ended = conjugate_gradients(multiply, &self.incomplete, b, out, tolerance, most, &mut self.directions)?;
-        finite(out, ended.iterations)
+            1
+        } else {
+            let Linear { constrained, incomplete, directions, .. } = self;
+            let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
+            conjugate_gradients(multiply, &*incomplete, b, out, tolerance, most, directions)?.iterations
+        };
+        if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
     }
 
     /// The matrix with nothing taken out.
@@ -309,8 +313,4 @@ impl<const D: usize> Linear<D> {
 /// Whether the solver of a body works without a matrix.
 pub(crate) fn is_matrix_free(solver: Solver) -> bool {
     solver == Solver::MatrixFree
-}
-
-fn finite(out: &[f64], products: u32) -> Result<u32, Indefinite> {
-    if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
 }

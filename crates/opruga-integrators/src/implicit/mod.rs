@@ -11,6 +11,7 @@
 //! |---|---|
 //! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
+//! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
 //! | `line_search` | how far a step is gone |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
@@ -36,12 +37,12 @@
 //! and slips against a friction of µ f_n beyond. This is the primal–dual active set, a semi-smooth Newton method
 //! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Friction goes by the
 //! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
-//! brings along the normal is lost or returned by the restitution.
+//! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
 pub(crate) mod contact;
 mod contact_derivatives;
 mod growth;
-mod impact;
+pub(crate) mod impact;
 mod kept;
 mod line_search;
 pub(crate) mod linear;
@@ -53,3 +54,4 @@ pub(crate) mod settings;
 mod slenderness;
 pub(crate) mod standstill;
 pub(crate) mod step;
+pub(crate) mod theta;

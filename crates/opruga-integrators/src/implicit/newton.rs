@@ -1,14 +1,15 @@
 //! Newton's method on the balance of forces of a stage.
 
-use super::contact::Verdict;
+use super::contact::{Contacting, Verdict};
 use super::contact_derivatives::Sight;
 use super::line_search::{line_search, potential, slope_along};
-use super::linear::{Filter, Mixture, is_matrix_free};
+use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
@@ -27,8 +28,10 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The part of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h.
+    /// The change of momentum in the step by a force that acts in this stage alone, in units of force times h, and what the rule
+    /// will still add to it out of what it remembers.
     pub(crate) impulse: f64,
+    pub(crate) echo: f64,
 }
 
 /// How the iteration ended.
@@ -164,8 +167,9 @@ pub(crate) fn solve<const D: usize>(
         if plain <= goal {
             full_step(system, room, balance)?;
         } else {
-            // What is too stiff and has not far to go to obstacles may go on.
-            let rough = keep != Keep::Exact && plain > ROUGH * room.extent;
+            // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
+            let falls = balance.sigma == 0.0 && system.contacts.is_some();
+            let rough = keep != Keep::Exact && plain > ROUGH * room.extent && !falls;
             let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
             length = line_search(system, room, balance, slope, stretches)?;
             solved.correction *= length;
@@ -272,7 +276,7 @@ pub(crate) fn look<const D: usize>(
     impacts_slide: bool,
 ) -> bool {
     let Room { contacting, x0, u, extent, .. } = room;
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     contacting.look(&sight, impacts_slide)
 }
 
@@ -286,7 +290,7 @@ pub(crate) fn judge<const D: usize>(
     yields: bool,
 ) -> Verdict {
     let Room { contacting, reaction, x0, u, extent, linear, mass, .. } = room;
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
     contacting.judge(reaction, &sight, tolerance, &|node| {
         if yields { linear.size_at(&mixture, node) / D as f64 } else { 0.0 }
@@ -311,6 +315,31 @@ pub(crate) fn mixture<'a, const D: usize>(
         keep,
         matrix_free: is_matrix_free(settings.solver),
     }
+}
+
+/// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
+pub(crate) fn wanted_forces<const D: usize>(
+    threads: usize,
+    mixture: &Mixture<D>,
+    linear: &Linear<D>,
+    contacting: &Contacting<D>,
+    residual: &[f64],
+    prescribed: Option<&[f64]>,
+    [trial, right]: [&mut [f64]; 2],
+) {
+    each_block(threads, D, [&mut *trial], |first, [trial]| trial.copy_from_slice(&residual[first..][..trial.len()]));
+    contacting.subtract_friction(trial);
+    if let Some(prescribed) = prescribed {
+        linear.multiply(mixture, prescribed, right);
+        for (t, r) in trial.iter_mut().zip(&*right) {
+            *t += r;
+        }
+    }
+    each_block(threads, D, [right], |first, [right]| {
+        for (r, t) in right.iter_mut().zip(&trial[first..]) {
+            *r = -t;
+        }
+    });
 }
 
 /// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
@@ -345,23 +374,13 @@ fn find_direction<const D: usize>(
     } = room;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
-    let sight = Sight { system, x0, u, theta: balance.theta, h: balance.h, extent: *extent };
+    let sight = Sight::new(system, balance, x0, u, *extent);
     contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
     if let Keep::Raised(part) = keep {
         linear.raise(part);
     }
-    // b = −(r − friction) − A d in the free directions.
-    trial.copy_from_slice(residual);
-    contacting.subtract_friction(trial);
-    if moves {
-        linear.multiply(&mixture, prescribed, right);
-        for (t, r) in trial.iter_mut().zip(&*right) {
-            *t += r;
-        }
-    }
-    for (r, t) in right.iter_mut().zip(&*trial) {
-        *r = -t;
-    }
+    let ways = moves.then_some(&**prescribed);
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [&mut *trial, &mut *right]);
     let filter = Filter { free, projectors };
     filter.apply(right);
     let norm = dot(right, right).sqrt();
@@ -413,24 +432,28 @@ pub(crate) fn evaluate<const D: usize>(
     balance: &Balance,
     trial: bool,
 ) -> Result<(), StepError> {
-    let u = if trial { &room.trial } else { &room.u };
+    let u: &[f64] = if trial { &room.trial } else { &room.u };
     Room::show(system, &room.x0, u, &room.z, balance.beta);
     system.evaluate(Room::<D>::STAGE, balance.time, 0.0, &mut room.force)?;
-    for node in 0..system.nodes {
-        for d in 0..D {
-            let k = node * D + d;
-            room.residual[k] = balance.sigma * room.mass[node] * (u[k] - room.y[k]) - room.force.0[d][node];
+    let Room { mass, y, force, residual, trial: tried, u, way, .. } = &mut *room;
+    let u: &[f64] = if trial { tried } else { u };
+    each_block(system.threads, D, [&mut *residual], |first, [residual]| {
+        for (node, out) in (first / D..).zip(residual.as_chunks_mut::<D>().0) {
+            for d in 0..D {
+                let k = node * D + d;
+                out[d] = balance.sigma * mass[node] * (u[k] - y[k]) - force.0[d][node];
+            }
         }
-    }
+    });
     if balance.sigma != 0.0
         && let Some(inertia) = &system.inertia
     {
-        room.way.clear();
-        room.way.extend(u.iter().zip(&room.y).map(|(u, y)| u - y));
+        way.clear();
+        way.extend(u.iter().zip(&*y).map(|(u, y)| u - y));
         for node in 0..system.nodes {
-            let product = inertia.product::<D>(node, &room.way);
+            let product = inertia.product::<D>(node, way);
             for d in 0..D {
-                room.residual[node * D + d] += balance.sigma * product[d];
+                residual[node * D + d] += balance.sigma * product[d];
             }
         }
     }

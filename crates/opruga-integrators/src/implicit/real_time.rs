@@ -7,12 +7,13 @@
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::linear::{Filter, Mixture};
-use super::newton::{Balance, Solved, evaluate, judge, look};
+use super::newton::{Balance, Solved, evaluate, judge, look, wanted_forces};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::Indefinite;
 
@@ -71,14 +72,17 @@ pub(crate) fn predict<const D: usize>(system: &System<D>, room: &mut Room<D>, th
     }
     let before = &system.history.columns[room.own.columns + 1];
     let share = theta * theta * h * h / last;
-    for node in 0..system.nodes {
-        for d in 0..D {
-            let k = node * D + d;
-            if room.held[k].is_nan() {
-                room.u[k] += share * (room.v0[k] - before.0[d][node]);
+    let Room { u, held, v0, .. } = room;
+    each_block(system.threads, D, [u], |first, [u]| {
+        for (node, u) in (first / D..).zip(u.as_chunks_mut::<D>().0) {
+            for d in 0..D {
+                let k = node * D + d;
+                if held[k].is_nan() {
+                    u[d] += share * (v0[k] - before.0[d][node]);
+                }
             }
         }
-    }
+    });
 }
 
 /// Keeps the velocities at the start of a step; nodes that met an obstacle go on as they do then.
@@ -86,11 +90,14 @@ pub(crate) fn remember<const D: usize>(system: &mut System<D>, room: &Room<D>, h
     // The acceleration of an impact leads nowhere.
     system.history.numbers[room.own.numbers + 1] = if room.struck.is_empty() { h } else { 0.0 };
     let before = &mut system.history.columns[room.own.columns + 1];
-    for node in 0..system.nodes {
-        for d in 0..D {
-            before.0[d][node] = room.v0[node * D + d];
+    let columns = before.0.each_mut().map(|column| &mut column[..system.nodes]);
+    each_block(system.threads, 1, columns, |first, columns| {
+        for (d, column) in columns.into_iter().enumerate() {
+            for (node, before) in (first..).zip(column) {
+                *before = room.v0[node * D + d];
+            }
         }
-    }
+    });
     for contact in &room.contacting.contacts {
         for d in 0..D {
             before.0[d][contact.node] = room.v1[contact.node * D + d];
@@ -168,19 +175,11 @@ impl Task<'_> {
         moves: bool,
     ) -> Result<f64, Indefinite> {
         let Room { kept, linear, mass, free, projectors, residual, right, trial, prescribed, contacting, .. } = room;
-        trial.copy_from_slice(residual);
-        contacting.subtract_friction(trial);
-        if moves {
-            linear.multiply(&self.mixture(system, mass), prescribed, right);
-            for (t, r) in trial.iter_mut().zip(&*right) {
-                *t += r;
-            }
-        }
-        for (r, t) in right.iter_mut().zip(&*trial) {
-            *r = -t;
-        }
+        let mixture = self.mixture(system, mass);
+        let ways = moves.then_some(&**prescribed);
+        wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [trial, &mut *right]);
         let filter = Filter { free, projectors };
-        filter.apply(right);
+        each_block(system.threads, D, [&mut *right], |first, [right]| filter.apply_from(first / D, right));
         kept.hold(system.threads, linear, &filter, self.direct)?;
         Ok(kept.begin(system, right))
     }
@@ -307,7 +306,8 @@ fn go<const D: usize>(
     solved: &mut Solved,
 ) -> Result<(), StepError> {
     let Room { linear, mass, free, projectors, residual, reaction, step, prescribed, contacting, u, .. } = &mut *room;
-    Filter { free, projectors }.apply(step);
+    let filter = Filter { free, projectors };
+    each_block(system.threads, D, [step], |first, [step]| filter.apply_from(first / D, step));
     if moves {
         for (s, p) in step.iter_mut().zip(&*prescribed) {
             *s += p;
@@ -325,8 +325,10 @@ fn go<const D: usize>(
         longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
     }
     solved.correction = longest.sqrt();
-    for (u, s) in u.iter_mut().zip(&*step) {
-        *u += s;
-    }
+    each_block(system.threads, D, [u], |first, [u]| {
+        for (u, s) in u.iter_mut().zip(&step[first..]) {
+            *u += s;
+        }
+    });
     evaluate(system, room, task.balance, false)
 }

@@ -1,6 +1,7 @@
 //! The vectors that an implicit step works on.
 
 use super::contact::Contacting;
+use super::impact::Struck;
 use super::kept::Kept;
 use super::linear::Linear;
 use super::mixing::Mixing;
@@ -8,6 +9,7 @@ use super::settings::Solver;
 use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
+use opruga_core::threads::each_block;
 use opruga_math::Lane;
 use opruga_solve::blocks::{Block, isotropic, times};
 
@@ -48,7 +50,9 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     /// Nodes that met an obstacle in this step.
-    pub(crate) struck: Vec<usize>,
+    pub(crate) struck: Vec<Struck<D>>,
+    /// What the rule will still add to velocities out of what it remembers [m/s].
+    pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
     /// Whether the real-time setting factors its matrix with a solver that is asked for, once that was found out.
     pub(crate) direct: Option<(Solver, bool)>,
@@ -88,6 +92,7 @@ impl<const D: usize> Default for Room<D> {
             way: Vec::new(),
             reaction: Vec::new(),
             struck: Vec::new(),
+            memory: Vec::new(),
             prescribed: Vec::new(),
             held: Vec::new(),
             free: Vec::new(),
@@ -105,12 +110,21 @@ impl<const D: usize> Default for Room<D> {
     }
 }
 
-/// Columns into a long vector.
-pub(crate) fn gather<const D: usize>(columns: &Columns<D>, nodes: usize, out: &mut [f64]) {
+/// Writes two numbers for every coordinate into columns; places behind the last node have what that has.
+pub(crate) fn write<const D: usize>(
+    places: usize,
+    nodes: usize,
+    threads: usize,
+    [one, other]: [&mut Columns<D>; 2],
+    numbers: impl Fn(usize) -> [f64; 2] + Sync,
+) {
     for d in 0..D {
-        for node in 0..nodes {
-            out[node * D + d] = columns.0[d][node];
-        }
+        let columns = [&mut one.0[d][..places], &mut other.0[d][..places]];
+        each_block(threads, 1, columns, |first, [one, other]| {
+            for (place, (one, other)) in (first..).zip(one.iter_mut().zip(other)) {
+                [*one, *other] = numbers(place.min(nodes - 1) * D + d);
+            }
+        });
     }
 }
 
@@ -126,6 +140,7 @@ impl<const D: usize> Room<D> {
             &mut self.u,
             &mut self.u1,
             &mut self.v1,
+            &mut self.memory,
             &mut self.residual,
             &mut self.trial,
             &mut self.step,
@@ -145,8 +160,13 @@ impl<const D: usize> Room<D> {
         for column in self.force.0.iter_mut().chain(&mut self.outer.0) {
             column.grow(system.places() + opruga_math::WIDTH);
         }
-        gather(&system.state.x, system.nodes, &mut self.x0);
-        gather(&system.state.v, system.nodes, &mut self.v0);
+        for (columns, out) in [(&system.state.x, &mut self.x0), (&system.state.v, &mut self.v0)] {
+            each_block(system.threads, D, [out], |first, [out]| {
+                for (node, out) in (first / D..).zip(out.as_chunks_mut::<D>().0) {
+                    *out = columns.at(node);
+                }
+            });
+        }
         let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for node in self.x0.as_chunks::<D>().0 {
             for d in 0..D {
@@ -180,15 +200,9 @@ impl<const D: usize> Room<D> {
 
     /// Writes a stage into the work columns of a system: x₀ + u, and the velocities β (u − z).
     pub(crate) fn show(system: &mut System<D>, x0: &[f64], u: &[f64], z: &[f64], beta: f64) {
-        let (places, nodes) = (system.places(), system.nodes);
-        let [columns, velocities] = &mut system.state.work[0];
-        for d in 0..D {
-            for place in 0..places {
-                let k = place.min(nodes - 1) * D + d;
-                columns.0[d][place] = x0[k] + u[k];
-                velocities.0[d][place] = beta * (u[k] - z[k]);
-            }
-        }
+        let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+        let stage = system.state.work[0].each_mut();
+        write(places, nodes, threads, stage, |k| [x0[k] + u[k], beta * (u[k] - z[k])]);
     }
 
     /// The largest force out of balance on a node along what nothing holds [N].

@@ -1,17 +1,20 @@
 //! A step of an implicit rule from start to ledger.
 
-use super::contact::SMALL;
+use super::contact::{SMALL, dot};
 use super::growth;
+use super::impact::Ending;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
-use super::room::Room;
+use super::room::{Room, write};
 use super::settings::{Otherwise, Settings};
 use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
-use opruga_core::potential::Views;
+use opruga_core::potential::{Account, Views};
 use opruga_core::spec::Values;
-use opruga_core::system::{Stage, System};
+use opruga_core::system::{Pin, Stage, System, Work8};
+use opruga_core::threads::each_block;
+use opruga_math::{Lane, WIDTH};
 use opruga_solve::blocks::nodes;
 
 /// What makes one implicit rule differ from another.
@@ -20,10 +23,18 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     const NAME: &'static str;
     /// Whether works are integrated by the trapezoidal rule over start and end, or by the value in the stage.
     const TRAPEZOID: bool;
-    /// The same rule for a step in which obstacles hold nodes: one that damps what is much faster than the step, which contact
-    /// would stir up for ever.
-    fn in_contact(self) -> Self {
-        self
+    /// The same of the rule in the form in which a step was made.
+    fn is_trapezoid(&self) -> bool {
+        Self::TRAPEZOID
+    }
+    /// The same rule for a step in which obstacles hold nodes, if it is another one then: one that damps what is much faster
+    /// than the step, which contact would stir up for ever.
+    fn in_contact(self) -> Option<Self> {
+        None
+    }
+    /// The rule instead of this one where a body in contact would gain energy by it.
+    fn calmed(self) -> Option<Self> {
+        None
     }
     /// What it remembers from step to step.
     fn history(&self) -> HistorySize {
@@ -35,6 +46,11 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance;
     /// Works displacement `u1` and velocity `v1` of the end out of the stage.
     fn end(&self, system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64);
+    /// What a step after this one of the same length will add to the velocity of a coordinate out of what is remembered,
+    /// besides the forces [m/s]: v₁ and this together change by h F/m in every step.
+    fn remembered(&self, _room: &Room<D>, _k: usize, _h: f64) -> f64 {
+        0.0
+    }
     /// Moves the history on, after obstacles have had their say; `room.struck` names the nodes that met one.
     fn remember(&self, _system: &mut System<D>, _room: &Room<D>, _h: f64) {}
 }
@@ -82,6 +98,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     }
     fn shares_threads(&self) -> bool {
         self.settings.real_time
+    }
+    fn damps_by_itself(&self) -> bool {
+        true
     }
     fn takes_mass_matrix(&self) -> bool {
         true
@@ -132,42 +151,54 @@ fn attempt<R: Rule<D>, const D: usize>(
 ) -> Result<(), StepError> {
     system.begin_implicit();
     room.load(system);
-    room.contacting.clear(system.nodes);
+    let work_before = system.work;
     if R::TRAPEZOID {
         system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
     }
-    let rule = if touches(system, room, h) { rule.in_contact() } else { rule };
-    let balance = rule.begin(system, room, h);
-    // From the motion of the last step; held axes are where they have to be.
-    room.hold(system, balance.theta, h);
-    for k in 0..room.u.len() {
-        room.u[k] = if room.held[k].is_nan() { balance.theta * h * room.v0[k] } else { room.held[k] };
-    }
-    let solved = if settings.real_time {
-        real_time::predict(system, room, balance.theta, h);
-        real_time::solve(system, room, &balance, settings)?
-    } else {
-        newton::solve(system, room, &balance, settings)?
+    let begun = system.work;
+    let in_contact = rule.in_contact();
+    let mut used = in_contact.filter(|_| touches(system, room, h)).unwrap_or(rule);
+    let mut energy = None;
+    let (balance, solved, rule) = loop {
+        let (balance, solved) = solve(used, settings, system, room, h)?;
+        if let Some(other) = in_contact.filter(|_| used.in_contact().is_some() && room.contacting.any()) {
+            // A contact that nobody has foreseen.
+            used = other;
+            continue;
+        }
+        if !solved.converged {
+            accept_or_refuse(R::NAME, settings, system, room, &solved)?;
+        }
+        let work = system.work;
+        end(used, system, room, &balance, h);
+        let Some(calmed) = used.calmed().filter(|_| room.contacting.any_at_rest()) else {
+            break (balance, solved, used);
+        };
+        if energy.is_none() {
+            energy = Some(energy_before(system, room, h)?);
+        }
+        let Some(before) = energy.flatten() else { break (balance, solved, used) };
+        if !gains(system, room, before, h)? {
+            // What is entered below goes by the stage.
+            newton::evaluate(system, room, &balance, false)?;
+            break (balance, solved, used);
+        }
+        system.work = work;
+        used = calmed;
     };
-    report(R::NAME, settings, system, room, &solved)?;
-
-    rule.end(system, room, &balance, h);
     let own = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
     let time = system.time;
     growth::check(system, room, own, &solved, |hint| refusal(R::NAME, settings, room, &solved, time, hint))?;
-    if system.contacts.is_some() {
-        let Room { contacting, mass, residual, x0, v0, u1, v1, struck, extent, .. } = room;
-        contacting.expel(system, x0, u1, residual, h, *extent);
-        contacting.end(system, mass, residual, x0, v0, &balance, v1, struck);
-    } else {
-        room.struck.clear();
+    finish(system, room);
+    if R::TRAPEZOID && !rule.is_trapezoid() {
+        take_back(&mut system.work, &begun, &work_before);
     }
-    if !R::TRAPEZOID {
+    if !rule.is_trapezoid() {
         // Damping, loads and pins by the forces of the stage, which was evaluated last.
         system.evaluate_again(Room::<D>::STAGE, balance.time, h, &mut room.force);
     }
     commit(system, room);
-    if R::TRAPEZOID {
+    if rule.is_trapezoid() {
         system.hold(Stage::Current, h);
         system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
     }
@@ -179,8 +210,88 @@ fn attempt<R: Rule<D>, const D: usize>(
     standstill::look(system, room, own + growth::NUMBERS, h)
 }
 
-/// The factor by which what is much faster than a step falls in a step with contact, under rules that else damp nothing.
-pub(crate) const RADIUS_IN_CONTACT: f64 = 0.8;
+/// Takes out of a ledger what was entered between two moments.
+fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
+    for lane in 0..WIDTH {
+        work.user[lane] -= after.user[lane] - before.user[lane];
+        work.gas[lane] -= after.gas[lane] - before.gas[lane];
+        work.damping[lane] -= after.damping[lane] - before.damping[lane];
+    }
+}
+
+/// Looks for the stage of a rule.
+fn solve<R: Rule<D>, const D: usize>(
+    rule: R,
+    settings: &Settings,
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    h: f64,
+) -> Result<(Balance, Solved), StepError> {
+    room.contacting.clear(system.nodes);
+    let balance = rule.begin(system, room, h);
+    // From the motion of the last step; held axes are where they have to be.
+    room.hold(system, balance.theta, h);
+    let Room { u, held, v0, .. } = &mut *room;
+    each_block(system.threads, D, [u], |first, [u]| {
+        for (k, u) in (first..).zip(u) {
+            *u = if held[k].is_nan() { balance.theta * h * v0[k] } else { held[k] };
+        }
+    });
+    let solved = if settings.real_time {
+        real_time::predict(system, room, balance.theta, h);
+        real_time::solve(system, room, &balance, settings)?
+    } else {
+        newton::solve(system, room, &balance, settings)?
+    };
+    count(system, &solved);
+    Ok((balance, solved))
+}
+
+/// Works out the end of a step: displacement and velocity, with what obstacles do to them.
+fn end<R: Rule<D>, const D: usize>(rule: R, system: &mut System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
+    rule.end(system, room, balance, h);
+    room.struck.clear();
+    if system.contacts.is_none() {
+        return;
+    }
+    for k in 0..room.memory.len() {
+        room.memory[k] = rule.remembered(room, k, h);
+    }
+    let Room { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = room;
+    contacting.expel(system, x0, u1, residual, h, *extent);
+    let ending = Ending { mass, reaction: residual, x0, v0, balance, extent: *extent };
+    contacting.end(system, &ending, v1, memory, struck);
+}
+
+/// The energy of a body before a step [J]; none where it may gain some: from loads, a gas or moving pins.
+fn energy_before<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<Option<f64>, StepError> {
+    let moves = |pin: &Pin<D>| pin.target(system.time).0 != pin.target(system.time + h).0;
+    let given = system.members.iter().any(|member| member.potential.account() != Account::Elastic);
+    if given || system.pins.iter().any(moves) {
+        return Ok(None);
+    }
+    system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
+    Ok(system.potential_energy(Stage::Current, 0.0).map(|stored| stored + system.kinetic_energy()))
+}
+
+/// Gains of energy below this part of it are rounding.
+const NO_GAIN: f64 = 1e-9;
+
+/// Whether a body has more energy at the end of the step than before.
+fn gains<const D: usize>(system: &mut System<D>, room: &mut Room<D>, before: f64, h: f64) -> Result<bool, StepError> {
+    Room::show(system, &room.x0, &room.u1, &room.z, 0.0);
+    system.evaluate(Room::<D>::STAGE, h, 0.0, &mut room.force)?;
+    let Some(stored) = system.potential_energy(Room::<D>::STAGE, h) else { return Ok(false) };
+    let mut kinetic = 0.0;
+    for (velocity, mass) in nodes::<D>(&room.v1).iter().zip(&room.mass) {
+        kinetic += 0.5 * mass * dot(velocity, velocity);
+    }
+    if let Some(inertia) = &system.inertia {
+        kinetic += 0.5 * inertia.square::<D>(&room.v1);
+    }
+    let after = stored + kinetic;
+    Ok(after - before > NO_GAIN * (after.abs() + before.abs() + kinetic))
+}
 
 /// Whether any node would be on an obstacle at the end of the step, or in it, by its velocity alone.
 fn touches<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> bool {
@@ -202,17 +313,33 @@ pub(crate) fn report<const D: usize>(
     room: &Room<D>,
     solved: &Solved,
 ) -> Result<(), StepError> {
-    let residual = room.largest_residual();
+    count(system, solved);
+    finish(system, room);
+    if solved.converged { Ok(()) } else { accept_or_refuse(integrator, settings, system, room, solved) }
+}
+
+fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
-    work.steps += 1;
     work.iterations += u64::from(solved.iterations);
     work.linear_iterations += u64::from(solved.products);
-    work.residual = if residual > work.residual { residual } else { work.residual };
-    if solved.converged {
-        return Ok(());
-    }
+}
+
+fn finish<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+    let work = &mut system.work.solver;
+    work.steps += 1;
+    work.residual = room.largest_residual().larger(work.residual);
+}
+
+/// Counts a step that has not converged, or refuses it.
+fn accept_or_refuse<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    system: &mut System<D>,
+    room: &Room<D>,
+    solved: &Solved,
+) -> Result<(), StepError> {
     if settings.otherwise == Otherwise::Accept {
-        work.accepted += 1;
+        system.work.solver.accepted += 1;
         return Ok(());
     }
     Err(refusal(integrator, settings, room, solved, system.time, settings.hint()))
@@ -241,14 +368,9 @@ fn refusal<const D: usize>(
 
 /// Writes the end of the step into the state.
 pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
-    let (places, nodes) = (system.places(), system.nodes);
-    for d in 0..D {
-        for place in 0..places {
-            let k = place.min(nodes - 1) * D + d;
-            system.state.x.0[d][place] = room.x0[k] + room.u1[k];
-            system.state.v.0[d][place] = room.v1[k];
-        }
-    }
+    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+    let state = [&mut system.state.x, &mut system.state.v];
+    write(places, nodes, threads, state, |k| [room.x0[k] + room.u1[k], room.v1[k]]);
 }
 
 /// Whether the same bits come out on every processor.

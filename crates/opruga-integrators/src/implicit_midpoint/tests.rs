@@ -6,7 +6,8 @@ use crate::testing;
 use opruga_core::spec::Values;
 
 fn rule() -> Implicit<ImplicitMidpoint> {
-    Implicit::new(SPEC.kind, ImplicitMidpoint::MIDDLE, &Values::defaults(&SPEC, 2)).unwrap()
+    Implicit::new(SPEC.kind, ImplicitMidpoint(crate::implicit::theta::Theta::MIDDLE), &Values::defaults(&SPEC, 2))
+        .unwrap()
 }
 
 #[test]

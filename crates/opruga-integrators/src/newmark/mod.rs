@@ -9,9 +9,9 @@
 //! allows: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
 //!
 //! **What it remembers** is the acceleration. It begins with F/M, and so it does again after a program has placed a node.
-//! Nodes that meet an obstacle forget theirs: it belongs to the time before the impact. Free fall is exact. The rule of
-//! average acceleration damps nothing and would feed an oscillation of the contact forces (Hughes et al. 1976): steps in which
-//! obstacles hold nodes have the spectral radius 0.8.
+//! Nodes that meet an obstacle forget theirs across the surface: it belongs to the time before the impact. Free fall is exact.
+//! The rule of average acceleration damps nothing and would feed an oscillation of the contact forces (Hughes et al. 1976): steps
+//! in which obstacles hold nodes are those of the implicit midpoint rule in contact, to which it is akin.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
@@ -22,7 +22,8 @@ mod tests;
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::fields;
-use crate::implicit::step::{Implicit, RADIUS_IN_CONTACT, Rule};
+use crate::implicit::step::{Implicit, Rule};
+use crate::implicit::theta::Theta;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
@@ -36,7 +37,7 @@ pub const SPEC: Spec = Spec {
     summary: "implicit, second order, stable for every step: average acceleration, or generalised-α by its spectral radius",
     documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average \
 acceleration (β = ¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps what is faster \
-than the step. While obstacles hold nodes, average acceleration has a spectral radius of 0.8, so that bodies come to rest. It \
+than the step. While obstacles hold nodes, average acceleration gives way to the steps of `implicit_midpoint` in contact, so that bodies come to rest. It \
 remembers the acceleration. One body an island.",
     dimensions: &[2, 3],
     fields: fields!(
@@ -63,6 +64,8 @@ pub struct Newmark {
     alpha_f: f64,
     beta: f64,
     gamma: f64,
+    /// A step of the θ-method instead.
+    theta: Option<Theta>,
 }
 
 impl<const D: usize> IntegratorKind<D> for NewmarkKind {
@@ -88,19 +91,26 @@ impl Newmark {
     fn of(alpha_m: f64, alpha_f: f64) -> Newmark {
         let excess = alpha_f - alpha_m;
         let beta = 0.25 * (1.0 + excess) * (1.0 + excess);
-        Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess }
+        Newmark { alpha_m, alpha_f, beta, gamma: 0.5 + excess, theta: None }
     }
 }
 
 impl<const D: usize> Rule<D> for Newmark {
     const NAME: &'static str = SPEC.kind;
     const TRAPEZOID: bool = true;
+    fn is_trapezoid(&self) -> bool {
+        self.theta.is_none()
+    }
     fn history(&self) -> HistorySize {
         HistorySize { columns: 1, numbers: 1 }
     }
-    fn in_contact(self) -> Self {
+    fn in_contact(self) -> Option<Self> {
         // Average acceleration keeps every oscillation.
-        if self.alpha_m == 0.0 && self.alpha_f == 0.0 { Newmark::of_radius(RADIUS_IN_CONTACT) } else { self }
+        let keeps = self.alpha_m == 0.0 && self.alpha_f == 0.0 && self.theta.is_none();
+        keeps.then_some(Newmark { theta: Some(Theta::IN_CONTACT), ..self })
+    }
+    fn calmed(self) -> Option<Self> {
+        (self.theta == Some(Theta::IN_CONTACT)).then_some(Newmark { theta: Some(Theta::END), ..self })
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
@@ -120,6 +130,9 @@ impl<const D: usize> Rule<D> for Newmark {
         ])
     }
     fn begin(&self, system: &System<D>, room: &mut Room<D>, h: f64) -> Balance {
+        if let Some(theta) = self.theta {
+            return theta.begin(room, h);
+        }
         let Newmark { alpha_m, alpha_f, beta, gamma, .. } = *self;
         let begun = system.history.numbers[0] > 0.0;
         let theta = 1.0 - alpha_f;
@@ -145,28 +158,44 @@ impl<const D: usize> Rule<D> for Newmark {
             h,
             load: 1.0,
             impulse: gamma / (1.0 - alpha_m),
+            echo: 1.0 - gamma / (1.0 - alpha_m),
         }
     }
     fn end(&self, _system: &System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
+        if let Some(theta) = self.theta {
+            return theta.end(room, balance);
+        }
         for k in 0..room.u.len() {
             room.u1[k] = room.u[k] / balance.theta;
             let a1 = self.acceleration(room, k, h);
             room.v1[k] = room.v0[k] + h * ((1.0 - self.gamma) * room.a0[k] + self.gamma * a1);
         }
     }
+    fn remembered(&self, room: &Room<D>, k: usize, h: f64) -> f64 {
+        if self.theta.is_some() {
+            return 0.0;
+        }
+        h * (0.5 - self.alpha_f) * self.acceleration(room, k, h)
+    }
     fn remember(&self, system: &mut System<D>, room: &Room<D>, h: f64) {
+        if self.theta.is_some() {
+            // The next step begins with F/M, which is what average acceleration would have remembered.
+            system.history.numbers[0] = 0.0;
+            return;
+        }
         for node in 0..system.nodes {
             for d in 0..D {
                 system.history.columns[0].0[d][node] = self.acceleration(room, node * D + d, h);
             }
         }
-        // What an obstacle or a pin holds is not accelerated where it is held; after an impact not at all.
+        for struck in &room.struck {
+            let a = times(&struck.kept, &system.history.columns[0].at(struck.node));
+            system.history.columns[0].set(struck.node, a);
+        }
+        // What an obstacle or a pin holds is not accelerated where it is held.
         for node in (0..system.nodes).filter(|node| !room.free[*node]) {
             let along = times(&room.projectors[node], &system.history.columns[0].at(node));
             system.history.columns[0].set(node, along);
-        }
-        for &node in &room.struck {
-            system.history.columns[0].set(node, [0.0; D]);
         }
         system.history.numbers[0] = 1.0;
     }

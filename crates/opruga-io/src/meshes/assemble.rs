@@ -3,6 +3,7 @@
 use super::found::{Found, Item, Kind};
 use super::scanner::Scanner;
 use crate::problem::{SceneError, visible};
+use opruga_math::words::counted;
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
 
@@ -276,7 +277,11 @@ impl Assembly<'_> {
         if !inverted.is_empty() {
             let cells: Vec<u32> = inverted.iter().map(|entry| entry.0).collect();
             mesh.turn_cells(&cells);
-            let message = format!("{} of {} inverted cells are turned round", cells.len(), order.len());
+            let message = format!(
+                "{} of {} turned round",
+                counted(cells.len() as u64, "inverted cell", "inverted cells"),
+                order.len()
+            );
             notices.push(SceneError::new("mesh.flipped", message).value(cells.len().to_string()));
         }
         Ok(())
@@ -338,7 +343,10 @@ impl Assembly<'_> {
         let count = loose.len();
         if mending.leave_out_unreferenced {
             mesh.drop_unreferenced();
-            let message = format!("{count} nodes that no cell names are left out");
+            let message = format!(
+                "{} left out",
+                counted(count as u64, "node that no cell names is", "nodes that no cell names are")
+            );
             notices.push(SceneError::new("mesh.unreferenced", message).value(count.to_string()));
             return Ok(());
         }

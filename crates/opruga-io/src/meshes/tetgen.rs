@@ -8,6 +8,7 @@
 use super::found::{Found, Kind, Numbers};
 use super::scanner::Scanner;
 use crate::problem::SceneError;
+use opruga_math::words::counted;
 
 const SYNTAX: &str = "tetgen.syntax";
 const SIZE: &str = "tetgen.size";
@@ -51,7 +52,8 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         found.node(number, position, place);
     }
     if attributes > 0 {
-        found.left_out(format!("{attributes} attributes of every node are left out"), attributes.to_string());
+        let what = counted(attributes as u64, "attribute of every node is", "attributes of every node are");
+        found.left_out(format!("{what} left out"), attributes.to_string());
     }
     nothing_behind(scanner)?;
     Ok(found)

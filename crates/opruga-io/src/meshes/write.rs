@@ -3,6 +3,7 @@
 use super::found::Kind;
 use crate::problem::{SceneError, visible};
 use crate::series::vtu;
+use opruga_math::words::counted;
 use opruga_mesh::{Element, Mesh};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -79,7 +80,7 @@ fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mes
     let mut left_out = Vec::new();
     if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {
         let names: Vec<&String> = mesh.groups.keys().chain(mesh.cell_groups.keys()).collect();
-        left_out.push(format!("groups: {} names", names.len()));
+        left_out.push(format!("groups: {}", counted(names.len() as u64, "name", "names")));
     }
     Written { files: vec![(ending, bytes)], left_out }
 }
@@ -268,15 +269,15 @@ fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<String>) -> Vec
     }
     if !mesh.cell_groups.is_empty() {
         left_out.push(format!(
-            "names of {} groups of cells: numbers in the order of the alphabet stand for them",
-            mesh.cell_groups.len()
+            "names of {}: numbers in the order of the alphabet stand for them",
+            counted(mesh.cell_groups.len() as u64, "group of cells", "groups of cells")
         ));
     }
     if !mesh.groups.is_empty() {
-        left_out.push(format!("{} groups of nodes", mesh.groups.len()));
+        left_out.push(counted(mesh.groups.len() as u64, "group of nodes", "groups of nodes"));
     }
     if !mesh.cell_values.is_empty() {
-        left_out.push(format!("{} values of cells", mesh.cell_values.len()));
+        left_out.push(counted(mesh.cell_values.len() as u64, "value of cells", "values of cells"));
     }
     out
 }
@@ -345,7 +346,7 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
     }
     let mut left_out = Vec::new();
     if !mesh.cell_groups.is_empty() || !mesh.groups.is_empty() {
-        left_out.push(format!("{} groups", mesh.cell_groups.len() + mesh.groups.len()));
+        left_out.push(counted((mesh.cell_groups.len() + mesh.groups.len()) as u64, "group", "groups"));
     }
     let mut nodes = format!("{} {D} 0 0\n", mesh.nodes());
     for (node, x) in mesh.positions.iter().enumerate() {
@@ -355,10 +356,12 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
     // Attributes have no names, and no gaps.
     let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|values| is_whole(values)).collect();
     if !mesh.cell_values.is_empty() {
-        left_out.push(format!("names of {} values of cells", mesh.cell_values.len()));
+        left_out
+            .push(format!("names of {}", counted(mesh.cell_values.len() as u64, "value of cells", "values of cells")));
     }
     if values.len() < mesh.cell_values.len() {
-        left_out.push(format!("{} values that not all cells have", mesh.cell_values.len() - values.len()));
+        let missing = (mesh.cell_values.len() - values.len()) as u64;
+        left_out.push(counted(missing, "value that not all cells have", "values that not all cells have"));
     }
     let mut elements = format!("{} {} {}\n", mesh.cells.len(), D + 1, values.len());
     for (cell, (_, _, corners)) in mesh.cells.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! `[[body]]`: shape, mass, models and pins.
 
+use super::Cost;
 use super::copies::{Copies, copies, write_out};
-use super::cost::Cost;
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
 use super::{place_of, selectors};
@@ -54,6 +54,13 @@ struct Draft<'n, const D: usize> {
     shaped: bool,
     /// Whether nothing is wrong with it at all.
     sound: bool,
+}
+
+impl<const D: usize> Draft<'_, D> {
+    /// Whether a model of it is of finite elements.
+    fn is_of_elements(&self) -> bool {
+        self.models.iter().any(|model| model.kind() == "fem")
+    }
 }
 
 /// Reads all bodies, checks what they cost, and then makes their meshes.
@@ -321,8 +328,12 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
             (None, None) => 0,
         };
         // At most one node for every point of a grid of half the spacing.
-        let order = draft.values.integer("order").unwrap_or(1);
-        let nodes = if order == 2 { nodes.saturating_mul(1 << D) } else { nodes };
+        let filling = draft.shape.as_ref().and_then(|shape| shape.text("filling"));
+        let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.kind() == "mesh");
+        let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
+        let simplices = draft.values.flag("simplices") || filled || of_mesh;
+        let quadratic = draft.values.integer("order").map_or(simplices && draft.is_of_elements(), |order| order == 2);
+        let nodes = if quadratic { nodes.saturating_mul(1 << D) } else { nodes };
         let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
@@ -335,19 +346,26 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
 
 /// Cuts boxes into simplices and gives these nodes in the middle of their edges, where the body says so.
 fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>, mesh: Mesh<D>) -> Option<Mesh<D>> {
-    let (simplices, quadratic) = (draft.values.flag("simplices"), draft.values.integer("order") == Some(2));
-    let key = if quadratic { "order" } else { "simplices" };
+    let (simplices, order) = (draft.values.flag("simplices"), draft.values.integer("order"));
+    let key = if order == Some(2) { "order" } else { "simplices" };
     let refuse = |reader: &mut Reader<'_>, error: SceneError| {
         reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));
         None
     };
-    if (simplices || quadratic) && mesh.cells.is_empty() {
+    if (simplices || order == Some(2)) && mesh.cells.is_empty() {
         let error = SceneError::new("scene.shape", format!("`{key}` is about cells, and the shape has none"));
         return refuse(reader, error.hint("filled shapes are `grid`, files with a `filling`, and `mesh`"));
     }
     let cut = if draft.values.integer("tetrahedra_per_hexahedron") == Some(5) { Cut::Five } else { Cut::Six };
     let cut = if simplices { mesh.into_simplices_by(cut) } else { Ok(mesh) };
-    match cut.and_then(|mesh| if quadratic { mesh.into_quadratic() } else { Ok(mesh) }) {
+    let wanted = |mesh: Mesh<D>| {
+        let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
+        let linear = mesh.cells.triangles.len() + mesh.cells.tetrahedra.len();
+        // What does not lock is what a body of finite elements is made of, unless the scene says otherwise.
+        let quadratic = order.map_or(draft.is_of_elements() && boxes == 0 && linear > 0, |order| order == 2);
+        if quadratic { mesh.into_quadratic() } else { Ok(mesh) }
+    };
+    match cut.and_then(wanted) {
         Ok(mesh) => Some(mesh),
         Err(refusal @ MeshError::NotSimplices { .. }) => {
             let error = SceneError::new("scene.shape", refusal.to_string());

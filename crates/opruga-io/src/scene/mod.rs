@@ -21,7 +21,9 @@ use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
+pub(crate) use cost::Cost;
 use opruga_core::spec::Values;
+use opruga_math::words::number;
 use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Surroundings, Time,
 };
@@ -338,7 +340,7 @@ fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
                 at.place,
                 SceneError::new(
                     "scene.range",
-                    format!("a step of {h:e} s is lost in {seconds} s: time would stand still"),
+                    format!("a step of {} s is lost in {} s: time would stand still", number(h), number(seconds)),
                 )
                 .path("time.frame")
                 .value(format!("{frame:e}"))
@@ -347,7 +349,7 @@ fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
         } else if seconds / frame > 1e12 {
             reader.report(
                 at.place,
-                SceneError::new("scene.range", format!("{seconds} s are {:e} frames", seconds / frame))
+                SceneError::new("scene.range", format!("{} s are {} frames", number(seconds), number(seconds / frame)))
                     .path("time.frame")
                     .value(format!("{frame:e}"))
                     .allowed("at most 1e12 frames"),

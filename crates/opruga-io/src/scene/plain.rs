@@ -199,11 +199,30 @@ impl Reader<'_> {
     pub(crate) fn turn(&mut self, node: Option<&Node>, path: &str) -> Vec<f64> {
         let parts = if self.dimension == 2 { 1 } else { 3 };
         let zero = vec![0.0; parts];
-        match node {
-            None => zero,
-            Some(node) if parts == 1 => self.number(node, path, &Allowed::ANY).map_or(zero, |x| vec![x]),
-            Some(node) => self.row(node, path, 3, &Allowed::Vector).unwrap_or(zero),
+        let Some(node) = node else { return zero };
+        let before = self.errors.len();
+        let read = match parts {
+            1 => self.number(node, path, &Allowed::ANY).map(|x| vec![x]),
+            _ => self.row(node, path, 3, &Allowed::Vector),
+        };
+        let (what, unit) =
+            if path.ends_with("velocity") { ("speed of turning", "rad/s") } else { ("angle", "radians") };
+        for error in self.errors.iter_mut().skip(before) {
+            let (allowed, example) = match (parts, unit) {
+                (1, _) => (format!("the {what} in {unit}, counter-clockwise"), "1.5708 is a quarter of a turn (90°)"),
+                (_, "radians") => (
+                    format!("the axis times the {what} about it in {unit}: three numbers"),
+                    "[0, 0, 1.5708] turns by 90° about z, [0.5236, 0, 0] by 30° about x; 1° is 0.0174533",
+                ),
+                _ => (
+                    format!("the axis times the {what} about it in {unit}: three numbers"),
+                    "[0, 0, 6.2832] turns once a second about z",
+                ),
+            };
+            error.allowed = Some(allowed);
+            error.hint = Some(example.into());
         }
+        read.unwrap_or(zero)
     }
 
     /// The value of a `set` command: any plain value, to be checked against the parameter that it is for.

@@ -94,9 +94,9 @@ impl<'a> Reader<'a> {
         self.more == 0 && !self.errors.iter().skip(before).any(about)
     }
 
-    /// Adds a notice with its place; with `strict` an error.
+    /// Adds a notice with its place; with `strict` an error, unless it tells of what the scene asks for.
     pub(crate) fn notice(&mut self, place: Place, about: SceneError) {
-        if self.options.strict {
+        if self.options.strict && !Notice::is_asked_for(about.code) {
             return self.report(place, about);
         }
         // The first of each kind carries the place, the others are counted.

@@ -5,6 +5,7 @@ use super::{Content, Loaded, Problem};
 use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_core::spec::Values;
+use opruga_math::words::{counted, number};
 use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
 use opruga_mesh::{Mesh, MeshError};
 
@@ -97,17 +98,22 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
 
     // Strokes and points enclose nothing.
     let before = rings.len();
-    rings.retain(|ring| ring.points.len() > 2 && ring.area().abs() > 1e-12 * extent * extent);
+    rings.retain(|ring| encloses_more(ring, 1e-12 * extent * extent));
     if rings.len() < before {
         let count = before - rings.len();
-        let (what, verb) = if count == 1 { ("outline", "is") } else { ("outlines", "are") };
-        let message = format!("{count} {what} without area {verb} left out");
-        drawing.notices.push(SceneError::new("shape.no_area", message).value(count.to_string()));
+        let left = counted(count as u64, "outline without area is", "outlines without area are");
+        drawing.notices.push(SceneError::new("shape.no_area", format!("{left} left out")).value(count.to_string()));
     }
-    match shape.text("overlap") {
-        Some("union") => rings = outline::joined(&rings, Overlap::Union),
-        Some("even_odd") => rings = outline::joined(&rings, Overlap::EvenOdd),
-        _ => {}
+    let how = match shape.text("overlap") {
+        Some("union") => Some(Overlap::Union),
+        Some("even_odd") => Some(Overlap::EvenOdd),
+        _ => None,
+    };
+    if let Some(how) = how {
+        let together = outline::joined(&rings, how);
+        // Parts in their colours stay seen, one over another.
+        drawing.notices.extend(told_of_overlap(&rings, &together, how).filter(|_| painted.is_empty()));
+        rings = together;
     }
     let mut rings = place(rings, &mut painted, &drawing, shape)?;
 
@@ -116,7 +122,8 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     rings.retain(|ring| ring.area().abs() >= least);
     if rings.len() < before {
         let count = before - rings.len();
-        let message = format!("{count} of {before} outlines have less than {least} m² and are left out");
+        let (have, are) = if count == 1 { ("has", "is") } else { ("have", "are") };
+        let message = format!("{count} of {before} outlines {have} less than {} m² and {are} left out", number(least));
         drawing.notices.push(SceneError::new("shape.dropped", message).value(count.to_string()));
     }
     if rings.is_empty() {
@@ -141,6 +148,52 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
 }
 
+/// Whether a ring encloses more than an area: halves of a figure of eight add, though their signed areas cancel.
+fn encloses_more(ring: &Ring, least: f64) -> bool {
+    let whole = |ring: &Ring| ring.area().abs();
+    let halves = || outline::joined(core::slice::from_ref(ring), Overlap::EvenOdd).iter().map(whole).sum::<f64>();
+    ring.points.len() > 2 && (whole(ring) > least || halves() > least)
+}
+
+/// How many outlines are no more as they were since they cross, touch or cover one another.
+fn told_of_overlap(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
+    let changed = changed(rings, together);
+    (changed > 0).then(|| {
+        let (what, rule) = match how {
+            Overlap::Union => ("what any of them covers is inside", "union"),
+            Overlap::EvenOdd => ("what an odd number of them encloses is inside", "even_odd"),
+        };
+        let message = format!(
+            "{} or touch{} others (`overlap = \"{rule}\"`): {what}, {}",
+            counted(changed as u64, "outline crosses, covers", "outlines cross, cover"),
+            if changed == 1 { "es" } else { "" },
+            counted(together.len() as u64, "outline is left", "outlines are left"),
+        );
+        SceneError::new("shape.overlap", message).value(changed.to_string())
+    })
+}
+
+/// How many rings are not among those that were made of all of them: neither area nor box is the same.
+fn changed(rings: &[Ring], together: &[Ring]) -> usize {
+    let Some((low, high)) = outline::bounds(rings) else { return 0 };
+    let extent = larger(high[0] - low[0], high[1] - low[1]);
+    // Joining keeps coordinates on a grid of 2⁻³⁰ of the extent.
+    let near = 1e-7 * extent;
+    let mut kept: Vec<(f64, &Ring)> = together.iter().map(|ring| (ring.area().abs(), ring)).collect();
+    kept.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let same_box = |a: &Ring, b: &Ring| {
+        let corners = |ring: &Ring| outline::bounds(core::slice::from_ref(ring)).unwrap_or_default();
+        let ((a, b), (c, d)) = (corners(a), corners(b));
+        (0..2).all(|axis| (a[axis] - c[axis]).abs() <= near && (b[axis] - d[axis]).abs() <= near)
+    };
+    let is_kept = |ring: &Ring| {
+        let (area, off) = (ring.area().abs(), near * extent);
+        let first = kept.partition_point(|(other, _)| *other < area - off);
+        kept[first..].iter().take_while(|(other, _)| *other <= area + off).any(|(_, other)| same_box(ring, other))
+    };
+    rings.iter().filter(|ring| !is_kept(ring)).count()
+}
+
 /// The parts of a drawing that have a colour, in the order in which they are painted.
 fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
     let mut all: Vec<Painted> = colours.iter().map(|c| Painted { rings: Vec::new(), colour: *c }).collect();
@@ -161,6 +214,12 @@ fn place(
     shape: &Values,
 ) -> Result<Vec<Ring>, Problem> {
     outline::nest(&mut rings).map_err(|e| match &e {
+        // What was joined belongs to no part of the drawing any more.
+        OutlineError::Meeting { .. } if shape.text("overlap") != Some("refuse") => {
+            let hint = "areas that meet in a point make no body: let them overlap there, or move them apart";
+            let error = refused(&e).hint(hint);
+            if drawing.places.len() == 1 { drawing.at(0, error).into() } else { error.into() }
+        }
         OutlineError::Meeting { parts, .. } => {
             let hint = "`overlap = \"union\"` keeps what any of them covers, `overlap = \"even_odd\"` what an odd number encloses";
             Problem::from(drawing.at(parts[1], refused(&e).hint(hint)))
@@ -197,9 +256,7 @@ pub(super) fn refused(error: &OutlineError) -> SceneError {
         OutlineError::Mesh(_) => "scene.shape",
     };
     let value = match error {
-        OutlineError::Meeting { place, .. } | OutlineError::NoArea { place, .. } => {
-            format!("{}, {}", place[0], place[1])
-        }
+        OutlineError::Meeting { place, .. } | OutlineError::NoArea { place, .. } => place.map(number).join(", "),
         OutlineError::NotFinite { value, .. } => value.to_string(),
         OutlineError::TooCoarse { spacing, .. } | OutlineError::TooFine { spacing, .. } => spacing.to_string(),
         OutlineError::Empty | OutlineError::Mesh(_) => return SceneError::new(code, error.to_string()),

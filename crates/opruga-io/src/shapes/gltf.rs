@@ -12,6 +12,7 @@ use super::triangles::{Places, Triangles};
 use crate::base64;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::words::counted;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -234,7 +235,7 @@ pub(super) fn read<'a>(
         }
     }
     if reader.others > 0 {
-        let message = format!("{} lines and points are left out", reader.others);
+        let message = format!("{} left out", counted(reader.others as u64, "line or point is", "lines and points are"));
         reader.found.notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
     }
     reader.found.places = Places::Lines(reader.starts);

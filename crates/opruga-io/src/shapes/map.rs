@@ -9,6 +9,7 @@ use super::json::{Raw, parse, refuse, span};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Values, nearest};
+use opruga_math::words::counted;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -98,7 +99,7 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
     }
     let mut notices = Vec::new();
     if reader.others > 0 {
-        let message = format!("{} points and lines are left out", reader.others);
+        let message = format!("{} left out", counted(reader.others as u64, "point or line is", "points and lines are"));
         notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
     }
     Ok(Drawing { curves, y_down: false, source: Some(source), places, painted: Vec::new(), notices })

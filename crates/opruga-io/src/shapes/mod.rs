@@ -23,8 +23,10 @@ mod text;
 mod triangles;
 mod volume;
 
+use crate::files::Files;
 use crate::meshes;
 use crate::problem::{SceneError, visible};
+use crate::scene::{Cost, Limits};
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError};
@@ -56,12 +58,12 @@ enum Content {
 }
 
 /// Why a shape's file is refused.
-#[derive(Debug)]
-pub(crate) struct Problem {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
     /// The field of the shape to blame, where the error has no place in the file itself.
-    pub(crate) field: &'static str,
+    pub field: &'static str,
     /// What is wrong.
-    pub(crate) about: SceneError,
+    pub about: SceneError,
 }
 
 impl Problem {
@@ -102,6 +104,23 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
         "surface" => surface(&name, &bytes, shape, open),
         kind => Err(SceneError::new("scene.unknown_kind", format!("`{kind}` reads no file")).into()),
     }
+}
+
+/// The body that a scene would make of a shape's file, outside of any scene; and what is odd about the file, counted.
+///
+/// # Errors
+/// The first that is found, with its place in the file, or the field of the shape that it is about.
+pub fn body<const D: usize>(
+    shape: &Values,
+    files: &Files,
+    limits: &Limits,
+) -> Result<(Mesh<D>, Vec<SceneError>), Problem> {
+    let loaded = load(shape, D, &mut |name| files.read(name, limits.shape_bytes))?;
+    let dense = if shape.get("spacing").is_some() { "spacing" } else { "file" };
+    Cost::default().add::<D>(1, loaded.node_count(), 0, limits).map_err(|about| Problem::new(dense, about))?;
+    let made =
+        loaded.mesh::<D>(&Transform { scale: 1.0, rotation: &[] }).map_err(|about| Problem::new(dense, about))?;
+    Ok((made.mesh, loaded.notices))
 }
 
 /// The kind of shape that a file of this name is made for; none where the name does not tell.

@@ -9,6 +9,7 @@
 use super::triangles::{Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
+use opruga_math::words::counted;
 
 /// A polygon as it stands in the file, before all vertices are known.
 struct Face {
@@ -96,7 +97,10 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
         }
     }
     if strokes > 0 {
-        let notice = SceneError::new("mesh.strokes", format!("{strokes} lines and points are left out"));
+        let notice = SceneError::new(
+            "mesh.strokes",
+            format!("{} left out", counted(strokes as u64, "line or point is", "lines and points are")),
+        );
         found.notices.push(notice.value(strokes.to_string()));
     }
     let mut lines = Vec::with_capacity(faces.len());

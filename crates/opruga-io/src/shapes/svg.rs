@@ -14,6 +14,7 @@ use super::svg_path::Pen;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
+use opruga_math::words::counted;
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use svgtypes::{LengthUnit, PathParser, PointsParser, TransformListParser, TransformListToken};
 
@@ -89,20 +90,20 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
         }
     }
     let mut notices = Vec::new();
-    let mut notice = |count: usize, code, what: &str| {
+    let mut notice = |count: usize, code, [one, many]: [&str; 2], what: &str| {
         if count > 0 {
-            notices.push(SceneError::new(code, format!("{count} {what}")).value(count.to_string()));
+            let message = format!("{} {what}", counted(count as u64, one, many));
+            notices.push(SceneError::new(code, message).value(count.to_string()));
         }
     };
-    notice(reader.open, "svg.open_path", "open paths are closed by a straight line");
-    notice(reader.unfilled, "svg.stroke", "shapes without fill are read by their outlines, not by their strokes");
-    notice(reader.images, "svg.image", "images are left out");
-    notice(reader.fills.gradients, "svg.gradient", "gradients are painted in the mean of their colours");
-    notice(
-        reader.fills.styled,
-        "svg.style",
-        "elements have a class whose style sheet is not read: their colours may be others",
-    );
+    notice(reader.open, "svg.open_path", ["open path is", "open paths are"], "closed by a straight line");
+    let unfilled = ["shape without fill is read by its outline", "shapes without fill are read by their outlines"];
+    notice(reader.unfilled, "svg.stroke", unfilled, "instead of strokes");
+    notice(reader.images, "svg.image", ["image is", "images are"], "left out");
+    let gradients = ["gradient is", "gradients are"];
+    notice(reader.fills.gradients, "svg.gradient", gradients, "painted in the mean of the colours");
+    let styled = ["element has a class", "elements have a class"];
+    notice(reader.fills.styled, "svg.style", styled, "whose style sheet is not read: other colours may be meant");
     let painted = reader.fills.painted;
     Ok(Drawing { curves: reader.curves, y_down: true, source: Some(source), places: reader.places, painted, notices })
 }

@@ -5,6 +5,7 @@ use super::{Content, Loaded, Problem};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::Values;
+use opruga_math::words::{counted, number};
 use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
@@ -194,10 +195,11 @@ fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
         worst = if thinness < worst.0 { (thinness, number) } else { worst };
     }
     let message = format!(
-        "{count} of {} triangles are slivers; the thinnest is triangle {}, with an area of {:e} of its longest edge squared",
-        mesh.facets.len(),
+        "{count} of {} {}; the thinnest is triangle {}, with an area of {} of its longest edge squared",
+        counted(mesh.facets.len() as u64, "triangle", "triangles"),
+        if count == 1 { "is a sliver" } else { "are slivers" },
         worst.1,
-        worst.0
+        number(worst.0)
     );
     let about = SceneError::new("mesh.sliver", message).value(count.to_string());
     (count > 0).then(|| about.allowed(format!("areas from {SLIVER:e}")).hint("`remesh` makes nearly equilateral ones"))
@@ -211,8 +213,9 @@ fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
         return None;
     }
     let unit = if extent > USUAL[1] { "millimetres: `scale = 0.001`" } else { "kilometres: `scale = 1000.0`" };
-    let about = SceneError::new("mesh.scale", format!("the surface is {extent} m large")).value(extent.to_string());
-    let about = about.allowed(format!("{:e} m to {:e} m, where `size` is not given", USUAL[0], USUAL[1]));
+    let about =
+        SceneError::new("mesh.scale", format!("the surface is {} m large", number(extent))).value(extent.to_string());
+    let about = about.allowed(format!("{} m to {} m, where `size` is not given", number(USUAL[0]), number(USUAL[1])));
     Some(about.hint(format!("perhaps it is in {unit}; `size` gives the length that is meant")))
 }
 
@@ -271,7 +274,8 @@ fn weld(
     }
     // A format that repeats every corner is welded as a matter of course.
     if joined > 0 && !found.soup {
-        let message = format!("{joined} of {before} vertices are joined to others");
+        let message =
+            format!("{joined} of {before} vertices {} joined to others", if joined == 1 { "is" } else { "are" });
         notices.push(SceneError::new("mesh.welded", message).value(joined.to_string()));
     }
     (found.positions, found.triangles) = (positions, triangles);
@@ -331,23 +335,26 @@ fn compare(
         }
         return Ok(());
     };
-    let among = if crossings.complete { count.to_string() } else { format!("{count} and more") };
+    let among = match crossings.complete {
+        true => counted(count as u64, "pair", "pairs"),
+        false => format!("{count} pairs and more"),
+    };
     if shape.text("overlap") == Some("keep") {
-        let message = format!("{among} pairs of triangles cross, touch or overlap");
+        let message = format!("{among} of triangles cross, touch or overlap");
         notices.push(SceneError::new("mesh.self_intersection", message).value(count.to_string()));
         return Ok(());
     }
     let middle = |facet: u32| {
         let corners = mesh.facets[facet as usize].map(|node| mesh.positions[node as usize]);
         let mean: [f64; 3] = core::array::from_fn(|d| (corners[0][d] + corners[1][d] + corners[2][d]) / 3.0);
-        mean.map(|x| format!("{x:.6}")).join(", ")
+        mean.map(number).join(", ")
     };
     let message = format!(
         "the surface meets itself: triangle {first} around ({}) crosses, touches or overlaps triangle {second} around ({})",
         middle(first),
         middle(second)
     );
-    let error = SceneError::new("mesh.self_intersection", message).value(format!("{among} pairs"));
+    let error = SceneError::new("mesh.self_intersection", message).value(among);
     let error = error.allowed("triangles that meet at common vertices and edges only");
     let error = error.hint("`overlap = \"keep\"` takes the surface as it is");
     // Those that close a free boundary stand nowhere in the file.
@@ -365,16 +372,17 @@ fn flipped(notices: &mut Vec<SceneError>, count: usize, what: &str) {
 
 /// What the topology of a surface forbids.
 fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error: MeshError) -> SceneError {
-    let place = |node: u32| mesh.positions[node as usize].map(|x| x.to_string()).join(", ");
+    let place = |node: u32| mesh.positions[node as usize].map(number).join(", ");
     match &error {
         MeshError::Open { loops, nodes } => {
             let shown: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
-            let what = if *loops == 1 { "free boundary" } else { "free boundaries" };
-            let message = format!("the surface is not closed: {loops} {what}, through {}", shown.join(", "));
+            let free = counted(*loops as u64, "free boundary", "free boundaries");
+            let message = format!("the surface is not closed: {free}, through {}", shown.join(", "));
             let hint = match seams(mesh) {
                 0 => "`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth".to_string(),
                 n => format!(
-                    "{n} vertices lie at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`"
+                    "{} at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`",
+                    counted(n as u64, "vertex lies", "vertices lie")
                 ),
             };
             SceneError::new("mesh.open", message).value(loops.to_string()).allowed("a closed surface").hint(hint)
@@ -382,7 +390,11 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
         MeshError::NonManifoldEdges { edges } => {
             let shown: Vec<String> =
                 edges.iter().take(8).map(|[a, b]| format!("({}) – ({})", place(*a), place(*b))).collect();
-            let message = format!("more than two triangles meet at {} edges: {}", edges.len(), shown.join("; "));
+            let message = format!(
+                "more than two triangles meet at {}: {}",
+                counted(edges.len() as u64, "edge", "edges"),
+                shown.join("; ")
+            );
             SceneError::new("mesh.non_manifold", message).value(edges.len().to_string()).allowed("at most two")
         }
         MeshError::NonOrientable { facet } => {

@@ -1,6 +1,7 @@
 //! What can be wrong with closed curves.
 
 use crate::MeshError;
+use opruga_math::words::{counted, number};
 
 /// Why rings make no body. `part` is [`super::Ring::part`], places are in the units of the rings.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,7 +10,7 @@ pub enum OutlineError {
     #[error("there is no closed outline")]
     Empty,
     /// A ring has too few points or encloses no area.
-    #[error("an outline encloses no area: {points} points, the first at ({}, {})", place[0], place[1])]
+    #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(place))]
     NoArea {
         /// The part that it belongs to.
         part: u32,
@@ -27,7 +28,7 @@ pub enum OutlineError {
         value: f64,
     },
     /// Two edges cross, touch or overlap.
-    #[error("edges of the outline cross or touch near ({}, {})", place[0], place[1])]
+    #[error("{} near {}", if parts[0] == parts[1] { "an outline crosses or touches itself" } else { "two outlines cross or touch" }, at(place))]
     Meeting {
         /// The parts that the two edges belong to.
         parts: [u32; 2],
@@ -35,7 +36,7 @@ pub enum OutlineError {
         place: [f64; 2],
     },
     /// At the wanted spacing of nodes edges cross: the outline has features that are finer.
-    #[error("with nodes {spacing} m apart edges cross near ({}, {})", place[0], place[1])]
+    #[error("with nodes {} m apart edges cross near {}", number(*spacing), at(place))]
     TooCoarse {
         /// The wanted distance of nodes [m].
         spacing: f64,
@@ -45,7 +46,7 @@ pub enum OutlineError {
         place: [f64; 2],
     },
     /// Filling would take, or took, too many nodes.
-    #[error("filled with nodes {spacing} m apart the outline would have about {nodes} nodes")]
+    #[error("filled with nodes {} m apart the outline would have about {nodes} nodes", number(*spacing))]
     TooFine {
         /// The wanted distance of nodes [m].
         spacing: f64,
@@ -55,4 +56,9 @@ pub enum OutlineError {
     /// The mesh that came out is refused.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+/// A place in a sentence.
+fn at(place: &[f64; 2]) -> String {
+    format!("({}, {})", number(place[0]), number(place[1]))
 }

@@ -38,7 +38,7 @@ mod spec;
 pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::potential::{Account, Ingredients, Model, Potential, Views};
+use opruga_core::potential::{Account, Ingredients, Model, Potential, Reading, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, Parameter, View};
 use opruga_core::system::along_path;
@@ -290,9 +290,9 @@ impl<const D: usize> Potential<D> for AsPublished {
         }
         [0.0; WIDTH]
     }
-    fn readings(&self, _view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<(&'static str, f64)> {
+    fn readings(&self, _view: &View<D>, scratch: &[f64], memory: &[f64], body: usize) -> Vec<Reading> {
         let numbers = &scratch[2 * self.layout.places(self.nodes)..];
-        vec![("volume", numbers[body]), ("pressure", memory[body])]
+        vec![("volume".into(), numbers[body]), ("pressure".into(), memory[body])]
     }
     fn heap_bytes(&self) -> usize {
         self.springs.capacity() * 8 + self.rest_length.capacity() * 8 + self.mass.heap_bytes()

@@ -29,29 +29,20 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
         let tangents = &self.tangent[self.pack * self.group.points * D * D * D * D * WIDTH..];
         for part in 0..P::PARTS {
             let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
-            let mut mean = [[P::Part::zero(); D]; N];
-            let (shares, whole) = geometry::<P::Part, D>(&self.group, pack, self.group.points - 1, part);
             for q in 0..self.group.points {
-                let (inverse, mut measure) = geometry::<P::Part, D>(&self.group, pack, q, part);
+                let (inverse, measure) = geometry::<P::Part, D>(&self.group, pack, q, part);
                 let mut slopes = [[P::Part::zero(); D]; N];
-                if E::SELECTIVE && q == E::POINTS {
-                    (slopes, measure) = (mean, whole);
-                } else {
-                    for a in start..N {
-                        for m in 0..D {
-                            slopes[a][m] = if E::SIMPLEX {
-                                inverse[a - 1][m]
-                            } else {
-                                let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
-                                for j in 1..D {
-                                    sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
-                                }
-                                sum
-                            };
-                            if E::SELECTIVE && self.group.selective {
-                                mean[a][m] += shares[q / D][q % D] * slopes[a][m];
+                for a in start..N {
+                    for m in 0..D {
+                        slopes[a][m] = if E::SIMPLEX {
+                            inverse[a - 1][m]
+                        } else {
+                            let mut sum = inverse[0][m] * P::Part::splat(E::SLOPES[q][a][0]);
+                            for j in 1..D {
+                                sum += inverse[j][m] * P::Part::splat(E::SLOPES[q][a][j]);
                             }
-                        }
+                            sum
+                        };
                     }
                 }
                 for i in 0..D {

@@ -24,8 +24,8 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     }
     /// Whether ∂x/∂ξ is made of differences to the first node.
     const SIMPLEX: bool;
-    /// Whether the part of a law with λ sees the mean deformation of the cell, lest it locks.
-    const SELECTIVE: bool = false;
+    /// Whether laws see the mean deformation of the cell alone, and [`super::hourglass`] what it does not see.
+    const BOX: bool = false;
 }
 
 /// λ₀ = 1 − Σ ξ, λᵢ = ξᵢ of a simplex with C corners.
@@ -224,7 +224,7 @@ impl Shape<2, 4> for Quadrilateral {
     fn at(xi: [f64; 3]) -> ([f64; 4], [[f64; 2]; 4]) {
         (box_values::<2, 4>(xi), box_slopes(xi))
     }
-    const SELECTIVE: bool = true;
+    const BOX: bool = true;
 }
 
 /// Hexahedron of eight nodes: 2 × 2 × 2 points.
@@ -239,7 +239,7 @@ impl Shape<3, 8> for Hexahedron {
     fn at(xi: [f64; 3]) -> ([f64; 8], [[f64; 3]; 8]) {
         (box_values::<3, 8>(xi), box_slopes(xi))
     }
-    const SELECTIVE: bool = true;
+    const BOX: bool = true;
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     /// Tangents without negative eigenvalues in the frame of the singular vectors ([`PRINCIPAL`] · D² packs per pack of points);
     /// whether the law has them.
     fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool;
+    /// Whether it knows of rotations.
+    fn turns(&self) -> bool;
 }
 
 /// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
@@ -55,6 +57,9 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
     fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool {
         simd.run(Principals::<M, D> { points, out, material: self.0 });
         true
+    }
+    fn turns(&self) -> bool {
+        M::TURNS
     }
 }
 

@@ -21,12 +21,13 @@ pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
 
 /// A law of the deformation gradient F = ∂x/∂X, in the plane (plane strain) or in space.
 ///
-/// Energies are the sum of a part with μ and one with λ, each linear in it: so either can be looked at by itself.
 /// Formulas are straight code over [`Lane`], without closures and branches on values; a new material is a file with this
 /// trait and a line in the list of materials.
 pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     /// The word in scenes.
     const NAME: &'static str;
+    /// Whether a turned body has no energy: all but the law of small rotation.
+    const TURNS: bool = true;
     /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The singular vectors of F, and the second derivatives by principal stretches: ∂P/∂F in their frame [Pa].

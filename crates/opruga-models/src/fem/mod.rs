@@ -8,13 +8,13 @@
 //! | cell | points | locks |
 //! |---|---|---|
 //! | triangle, tetrahedron | 1 | in bending; near incompressibility: refused above ν = 0.45 |
-//! | quadrilateral, hexahedron | 2ᴰ; the part with λ sees the mean of F | in bending where they are few across |
+//! | quadrilateral, hexahedron | the mean of F, and the stiffness of bending and twisting | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Energies are the sum of a part with μ and a part with λ. In quadrilaterals and hexahedra the latter sees the mean
-//! deformation gradient of the cell (selective reduced integration, Malkus and Hughes 1978; with the mean of Flanagan and
-//! Belytschko 1981 instead of the centre, so that patches of any hexahedra are exact), but in plane stress, where nothing
-//! locks.
+//! Quadrilaterals and hexahedra give the law their mean deformation gradient (Flanagan and Belytschko 1981, so that patches of
+//! any cells are exact). What that does not see, bending and twisting of a cell, has the stiffness that assumed stresses give
+//! it at small strain (Pian and Sumihara 1984, Pian and Tong 1986), turned with the cell: see the files `hourglass` and
+//! `boxes`. A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
 //! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
 //! [`materials::Corotated`], [`materials::FixedCorotated`], [`materials::NeoHookean`], [`materials::StableNeoHookean`],
@@ -24,11 +24,14 @@
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
-//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
+//! Limits: the stiffness of bending cells does not change with their stretch but by A²; it matters less with every finer mesh.
+//! Energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod boxes;
 mod contraction;
 mod elements;
+mod hourglass;
 mod law;
 mod mass;
 pub mod material;
@@ -47,11 +50,12 @@ use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
-use opruga_core::threads::each_in_column;
+use opruga_core::threads::each_part;
 use opruga_core::tile::Tile;
 use opruga_math::{ROW, Simd, WIDTH};
 use opruga_mesh::Mesh;
 use section::{Cell, FORCES, NUMBERS, Part, Plan, Section, rest_gradient};
+use std::sync::{Mutex, PoisonError};
 
 /// The kind `fem`.
 #[derive(Debug)]
@@ -71,6 +75,8 @@ pub struct Solid<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     /// The shares of all parts.
     shares: Vec<Task>,
+    /// Where the scratch of each begins, behind that of the whole.
+    starts: Vec<usize>,
     sums: Sums,
     /// What the consistent mass matrix has more than the lumped masses.
     inertia: Vec<(u32, u32, f64)>,
@@ -233,7 +239,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             law_in_space: law_in_space.map(|law| law()),
             positions,
             thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
-            selective: !self.stress,
+            plane_stress: self.stress,
             damped: self.damped,
         };
         built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
@@ -252,7 +258,9 @@ impl<'a, const D: usize> Builder<'a, D> {
         }
         let size = longest.sqrt();
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
-        for slopes in E::SLOPES {
+        // Boxes are looked at in the middle too.
+        let middle = E::BOX.then(|| E::at([0.0; 3]).1);
+        for slopes in E::SLOPES.iter().chain(&middle) {
             let (_, determinant) = rest_gradient(&rest, slopes);
             if !(determinant.is_finite() && determinant > least) {
                 let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
@@ -269,17 +277,18 @@ impl<'a, const D: usize> Builder<'a, D> {
     fn finish(self, built: Built<D>) -> Box<Solid<D>> {
         let Built { parts, inertia } = built;
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
-        let mut shares = Vec::new();
+        let (mut shares, mut starts) = (Vec::new(), Vec::new());
         let mut start = FORCES;
         for (part, own) in parts.iter().enumerate() {
             for (share, list) in own.shares().iter().enumerate() {
                 let length = own.scratch_len(list);
                 shares.push(Task { part, share, start, length });
+                starts.push(start - FORCES);
                 start += length;
             }
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Box::new(Solid { layout, nodes, parts, shares, sums, inertia, damped: self.damped })
+        Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, damped: self.damped })
     }
 }
 
@@ -408,10 +417,19 @@ impl<const D: usize> Potential<D> for Solid<D> {
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
         let (sums, rest) = scratch.split_at_mut(FORCES);
-        each_in_column(view.threads, &self.shares, rest, &|task| task.length, &|task, scratch| {
-            let part = &self.parts[task.part];
-            part.evaluate(&part.shares()[task.share], simd, view, scratch)
-        })?;
+        let refused: Mutex<Option<(usize, StepError)>> = Mutex::new(None);
+        each_part(view.threads, rest, &self.starts, |number, scratch| {
+            let part = &self.parts[self.shares[number].part];
+            if let Err(error) = part.evaluate(&part.shares()[self.shares[number].share], simd, view, scratch) {
+                let mut first = refused.lock().unwrap_or_else(PoisonError::into_inner);
+                if first.as_ref().is_none_or(|(other, _)| number < *other) {
+                    *first = Some((number, error));
+                }
+            }
+        });
+        if let Some((_, error)) = refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
         sums.fill(0.0);
         for task in &self.shares {
             let own = &rest[task.start - FORCES..][..FORCES];

@@ -3,6 +3,7 @@
 //! All of them look at a few packs of elements at a time: deformation gradients into a buffer, a law over the buffer, and
 //! what they are after out of it.
 
+use super::boxes::{self, AMPLITUDES, Deform, Of, Push, Rates};
 use super::contraction::{Contract, ContractPrincipal};
 use super::elements::Shape;
 use super::law::{PARAMETERS, PRINCIPAL, Points};
@@ -23,6 +24,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
     gradient: Room<{ MOST_PACKS * 9 * WIDTH }>,
+    amplitudes: Room<{ MOST_PACKS * AMPLITUDES * WIDTH }>,
     numbers: Room<{ MOST_PACKS * PARAMETERS * WIDTH }>,
     times: Room<{ MOST_PACKS * WIDTH }>,
 }
@@ -40,6 +42,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             section,
             simd,
             gradient: Room([0.0; MOST_PACKS * 9 * WIDTH]),
+            amplitudes: Room([0.0; MOST_PACKS * AMPLITUDES * WIDTH]),
             numbers: Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
             times: Room([0.0; MOST_PACKS * WIDTH]),
         };
@@ -52,13 +55,18 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     }
 
     fn read_parameters(&mut self, group: &Group<'_>) {
-        parameters_of_points(group, E::POINTS, &mut self.numbers.0, &mut self.times.0);
+        parameters_of_points(group, &mut self.numbers.0, &mut self.times.0);
     }
 
     /// Deformation gradients and parameters at the points of some packs of elements.
     fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>) {
-        let gradient = &mut self.gradient.0;
-        self.simd.run(Gradients::<E, D, N> { shape: PhantomData, group: *group, nodes, gradient });
+        let (of, shape, gradient) = (*group, PhantomData, &mut self.gradient.0);
+        if E::BOX {
+            let amplitudes = &mut self.amplitudes.0;
+            self.simd.run(Deform::<E, D, N> { shape, group: of, nodes, gradient, amplitudes });
+        } else {
+            self.simd.run(Gradients::<E, D, N> { shape, group: of, nodes, gradient });
+        }
         if !self.section.uniform {
             self.read_parameters(group);
         }
@@ -79,6 +87,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     ) -> Result<(), StepError> {
         let (section, simd) = (self.section, self.simd);
         let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut amplitude_rate = Room([0.0; MOST_PACKS * AMPLITUDES * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut power = Room([0.0; MOST_PACKS * WIDTH]);
@@ -87,32 +96,46 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             let points = self.points(&group);
             section.law.stress(simd, points, &mut density.0, &mut stress.0);
             if section.damped {
-                let (gradient, times) = (&mut rate.0, &self.times.0);
-                simd.run(Gradients::<E, D, N> { shape: PhantomData, group, nodes: velocities, gradient });
+                let (shape, nodes, gradient, times) = (PhantomData, velocities, &mut rate.0, &self.times.0);
+                if E::BOX {
+                    let amplitudes = &mut amplitude_rate.0;
+                    simd.run(Deform::<E, D, N> { shape, group, nodes, gradient, amplitudes });
+                } else {
+                    simd.run(Gradients::<E, D, N> { shape, group, nodes, gradient });
+                }
                 let (stress, power) = (&mut stress.0, &mut power.0);
                 simd.run(ViscousStress::<D> { points, rate: &rate.0, times, stress, power });
             }
-            simd.run(Forces::<E, D, N> {
-                shape: PhantomData,
-                group,
-                stress: &stress.0,
-                density: &mut density.0,
-                power: section.damped.then_some(&mut power.0),
-                force,
-            });
+            let (shape, stress, density, force) = (PhantomData, &stress.0, &mut density.0, &mut *force);
+            if E::BOX {
+                let (gradient, amplitudes) = (&self.gradient.0, &self.amplitudes.0);
+                let rates = section.damped.then_some(Rates {
+                    gradient: &rate.0,
+                    amplitudes: &amplitude_rate.0,
+                    times: &self.times.0,
+                    power: &mut power.0,
+                });
+                simd.run(Push::<E, D, N> { shape, group, gradient, amplitudes, stress, density, rates, force });
+            } else {
+                let power = section.damped.then_some(&mut power.0[..]);
+                simd.run(Forces::<E, D, N> { shape, group, stress, density, power, force });
+            }
             for k in 0..group.packs {
                 let row = match section.layout {
                     Layout::Single => 0,
                     Layout::Batch => (group.first + k) % WIDTH,
                 };
-                let energy = &density.0[k * WIDTH..(k + 1) * WIDTH];
-                let mut sum = 0.0;
-                for l in 0..WIDTH {
-                    totals.energy[row][l] += energy[l];
-                    totals.power[row][l] += power.0[k * WIDTH + l];
-                    sum += energy[l];
+                let energy = &density[k * WIDTH..(k + 1) * WIDTH];
+                for (total, energy) in totals.energy[row].iter_mut().zip(energy) {
+                    *total += energy;
                 }
-                if sum.is_nan()
+                if section.damped {
+                    for (total, power) in totals.power[row].iter_mut().zip(&power.0[k * WIDTH..]) {
+                        *total += power;
+                    }
+                }
+                if section.may_refuse()
+                    && energy.iter().any(|energy| energy.is_nan())
                     && let Some(refusal) = section.refusal(view, group.first + k, energy)
                 {
                     return Err(refusal);
@@ -163,7 +186,25 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             };
             for pack in (0..group.packs).filter(|pack| wanted[*pack]) {
                 let (shape, blocks) = (PhantomData, &mut blocks);
-                if principal {
+                if E::BOX {
+                    let of = match matrix {
+                        Matrix::Hessian(keep) => Of::Energy(keep),
+                        Matrix::Damping => Of::Damping,
+                    };
+                    let (gradient, amplitudes) = (&self.gradient.0, &self.amplitudes.0);
+                    let times = &self.times.0;
+                    simd.run(boxes::Contract::<E, D, N> {
+                        shape,
+                        group,
+                        pack,
+                        of,
+                        gradient,
+                        amplitudes,
+                        times,
+                        tangent,
+                        blocks,
+                    });
+                } else if principal {
                     let principal = &tangent[..points.count * PRINCIPAL * D * D * WIDTH];
                     simd.run(ContractPrincipal::<E, D, N> { shape, group, pack, principal, blocks });
                 } else {
@@ -206,11 +247,9 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     };
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);
-                    if q < E::POINTS {
-                        measure += weight;
-                        now += weight * ratio;
-                    }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; the mean stress meets the mean deformation.
+                    measure += weight;
+                    now += weight * ratio;
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {

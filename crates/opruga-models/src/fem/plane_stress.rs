@@ -97,6 +97,9 @@ impl Law<2> for PlaneStress {
     fn principal(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
     }
+    fn turns(&self) -> bool {
+        self.0.turns()
+    }
 }
 
 /// One Newton iteration for the thickness; whether all are found. At the `last` call what is not found is not a number.

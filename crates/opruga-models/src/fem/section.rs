@@ -12,6 +12,7 @@
 //! are the same for every number of threads and for both layouts, and so are the bits.
 
 use super::elements::Shape;
+use super::hourglass::{self, stiffness_numbers};
 use super::law::Law;
 use super::pass::{Matrices, Pass};
 use super::work::Nodes;
@@ -57,19 +58,19 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) law_in_space: Option<Box<dyn Law<3>>>,
     /// Elements by lowest node.
     pub(super) cells: Vec<Cell<N>>,
-    /// Points of an element, and one more for its mean deformation where the part with λ sees that.
+    /// Points of an element where the law is asked.
     pub(super) points: usize,
-    /// Whether the part of the law with λ sees the mean deformation.
-    pub(super) selective: bool,
     shares: Vec<Share>,
     /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N places for every
     /// element of eight.
     places: Vec<u32>,
     /// For eight bodies the N rows of the share for every element.
     targets: Vec<u32>,
-    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. The mean deformation has the shares
-    /// of the points and the measure of the whole.
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; of boxes the shares of the corners in the mean deformation
+    /// and the hourglass amplitudes, and the measure. In packs for one body.
     pub(super) geometry: Column,
+    /// Hourglass stiffness of boxes.
+    stiffness: Column,
     /// [`NUMBERS`] packs for every pack of elements, or for all.
     parameters: Column,
     /// Whether the parameters of the first pack hold for all.
@@ -142,10 +143,12 @@ pub(super) struct Group<'a> {
     pub(super) count: usize,
     /// Points of an element.
     pub(super) points: usize,
-    pub(super) selective: bool,
+    /// Whether the law knows of rotations.
+    pub(super) turns: bool,
     pub(super) places: &'a [u32],
     pub(super) targets: &'a [u32],
     pub(super) geometry: &'a [f64],
+    pub(super) stiffness: &'a [f64],
     pub(super) parameters: &'a [f64],
     /// Distance of the parameters of two packs.
     pub(super) step: usize,
@@ -194,9 +197,14 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) positions: &'a [[f64; D]],
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
-    /// Whether the part with λ sees the mean deformation of elements that would lock.
-    pub(super) selective: bool,
+    /// Whether no stress acts across the plane.
+    pub(super) plane_stress: bool,
     pub(super) damped: bool,
+}
+
+/// Numbers of the geometry of a point, or of a box.
+const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
+    if E::BOX { N * (N - 1) + 1 } else { D * D + 1 }
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
@@ -206,13 +214,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         mut cells: Vec<Cell<N>>,
         numbers: &dyn Fn(u32, usize) -> [f64; NUMBERS],
     ) -> Self {
-        let Plan { layout, law, law_in_space, positions, thickness, selective, damped } = plan;
+        let Plan { layout, law, law_in_space, positions, thickness, plane_stress, damped } = plan;
         let lowest = |cell: &Cell<N>| cell.nodes.iter().copied().min().unwrap_or(0);
         cells.sort_by_key(|cell| (lowest(cell), cell.nodes, cell.number));
-        let selective = selective && E::SELECTIVE;
-        let points = E::POINTS + usize::from(selective);
-        let stored = D * D + 1;
-        assert!(!selective || E::POINTS <= D * D, "room for the shares of the points");
+        let points = if E::BOX { 1 } else { E::POINTS };
+        let stored = stored::<E, D, N>();
         let lanes = if layout == Layout::Single { WIDTH } else { 1 };
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
@@ -239,6 +245,9 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
         let mut geometry = Column::zeros(packs * points * stored * lanes);
         let mut parameters = Column::zeros(packs * NUMBERS * WIDTH);
+        let stiffnesses = if E::BOX { stiffness_numbers::<D, N>() } else { 0 };
+        let mut stiffness = Column::zeros(packs * stiffnesses * WIDTH);
+        let mut of_cell = Vec::with_capacity(stiffnesses);
         for pack in 0..packs {
             for lane in 0..lanes {
                 let this = cell(pack, lane);
@@ -248,23 +257,33 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 let mut put = |q: usize, k: usize, value: f64| {
                     geometry[((pack * points + q) * stored + k) * lanes + lane] = value;
                 };
-                let mut measures = vec![0.0; E::POINTS];
+                if E::BOX {
+                    let rest = hourglass::Rest::new::<E>(&rest, thickness);
+                    for (a, shares) in rest.weights.iter().enumerate() {
+                        (0..N - 1).for_each(|c| put(0, a * (N - 1) + c, shares[c]));
+                    }
+                    put(0, stored - 1, if there { rest.measure } else { 0.0 });
+                    let bodies = if layout == Layout::Single { 0..1 } else { 0..WIDTH };
+                    for body in bodies.filter(|_| there) {
+                        let [mu, lambda, ..] = numbers(this.number, body);
+                        let ratio = 0.5 * lambda / (lambda + mu);
+                        let across = if D == 2 && !plane_stress { ratio } else { ratio / (1.0 + ratio) };
+                        of_cell.clear();
+                        rest.stiffness(mu, across, &mut of_cell);
+                        for (k, number) in of_cell.iter().enumerate() {
+                            stiffness[(pack * stiffnesses + k) * WIDTH + lane + body] = *number;
+                        }
+                    }
+                    continue;
+                }
                 for q in 0..E::POINTS {
                     let (inverse, determinant) = rest_gradient(&rest, &E::SLOPES[q]);
-                    measures[q] = E::WEIGHTS[q] * determinant * thickness;
                     for j in 0..D {
                         for k in 0..D {
                             put(q, j * D + k, inverse[j][k]);
                         }
                     }
-                    put(q, D * D, if there { measures[q] } else { 0.0 });
-                }
-                if selective {
-                    let whole: f64 = measures.iter().sum();
-                    for (q, measure) in measures.iter().enumerate() {
-                        put(E::POINTS, q, measure / whole);
-                    }
-                    put(E::POINTS, D * D, if there { whole } else { 0.0 });
+                    put(q, D * D, if there { E::WEIGHTS[q] * determinant * thickness } else { 0.0 });
                 }
             }
             for l in 0..WIDTH {
@@ -285,11 +304,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             law_in_space,
             cells,
             points,
-            selective,
             shares,
             places,
             targets,
             geometry,
+            stiffness,
             parameters,
             uniform,
             damped,
@@ -316,10 +335,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             packs,
             count: self.cells.len(),
             points: self.points,
-            selective: self.selective,
+            turns: self.law.turns(),
             places: &self.places,
             targets: &self.targets,
             geometry: &self.geometry,
+            stiffness: &self.stiffness,
             parameters: &self.parameters,
             step: if self.uniform { 0 } else { NUMBERS * WIDTH },
         }
@@ -362,7 +382,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     /// The measure of a point of an element [m³].
     pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
         let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
-        self.geometry[((pack * self.points + point) * (D * D + 1) + D * D) * lanes + lane]
+        let stored = stored::<E, D, N>();
+        self.geometry[((pack * self.points + point + 1) * stored - 1) * lanes + lane]
     }
 
     /// The element and body of a lane of a pack.
@@ -373,12 +394,14 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
+    /// Whether the law may have no energy. Laws of space and of plane strain have one everywhere; what overflows there has
+    /// diverged, and is found so.
+    pub(super) fn may_refuse(&self) -> bool {
+        self.law_in_space.is_none() && D < 3
+    }
+
     /// The refusal of the first element of a pack whose nodes are somewhere but whose energy is not a number.
     pub(super) fn refusal(&self, view: &View<D>, pack: usize, energy: &[f64]) -> Option<StepError> {
-        // Laws of space and of plane strain have an energy everywhere; what overflows there has diverged, and is found so.
-        if self.law_in_space.is_some() || D == 3 {
-            return None;
-        }
         (0..WIDTH).filter(|l| energy[*l].is_nan()).find_map(|l| {
             let (element, body) = self.item(pack, l);
             let cell = self.cells.get(element)?;
@@ -460,6 +483,6 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N
         let shares: usize = self.shares.iter().map(|share| share.nodes.capacity()).sum();
         let places = 4 * (self.places.capacity() + self.targets.capacity() + shares)
             + size_of::<Cell<N>>() * self.cells.capacity();
-        places + self.geometry.heap_bytes() + self.parameters.heap_bytes()
+        places + self.geometry.heap_bytes() + self.stiffness.heap_bytes() + self.parameters.heap_bytes()
     }
 }

@@ -9,8 +9,9 @@ pub const SPEC: Spec = Spec {
     summary: "an elastic solid by finite elements, of a choice of materials",
     documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, quadrilaterals and \
 hexahedra. E and ν mean what they say at small strain in every material; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 − 2ν)). \
-Quadratic cells (`order = 2` of the body) neither lock in bending nor near incompressibility and are the ones to take where numbers count. In quadrilaterals and hexahedra the \
-part with λ sees the mean deformation, which keeps them from locking up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise. \
+Quadratic triangles and tetrahedra (`order = 2` of the body, the default) neither lock in bending nor near incompressibility. \
+Quadrilaterals and hexahedra give the law their mean deformation, and bend and twist with the stiffness of assumed stresses: exactly where they are rectangular, up to ν = 0.4999. \
+Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise. \
 In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
 Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Equations, sources and measurements: docs/finite-elements.md.",
     dimensions: &[2, 3],

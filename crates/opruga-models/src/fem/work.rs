@@ -54,6 +54,81 @@ pub(super) struct Nodes<'a, const D: usize> {
     pub(super) columns: [&'a [f64]; D],
 }
 
+/// A vector of the nodes of the elements of a part of a pack.
+#[inline(always)]
+pub(super) fn gather<R: Register, const D: usize, const N: usize>(
+    group: &Group<'_>,
+    nodes: &Nodes<'_, D>,
+    pack: usize,
+    part: usize,
+) -> [[R; D]; N] {
+    let offset = part * R::NUMBERS;
+    let mut x = [[R::zero(); D]; N];
+    match group.layout {
+        Layout::Single => {
+            let places = &group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+            for a in 0..N {
+                let of_node = &places[a * WIDTH + offset..a * WIDTH + offset + R::NUMBERS];
+                let row = R::gather_rows(nodes.rows, of_node);
+                x[a].copy_from_slice(&row[..D]);
+            }
+        }
+        Layout::Batch => {
+            let places = &group.places[pack * N..(pack + 1) * N];
+            for a in 0..N {
+                for d in 0..D {
+                    x[a][d] = R::load(&nodes.columns[d][places[a] as usize + offset..]);
+                }
+            }
+        }
+    }
+    x
+}
+
+/// Adds the forces of a pack of elements to those of their nodes.
+#[inline(always)]
+pub(super) fn scatter<P: Pack, const D: usize, const N: usize>(
+    group: &Group<'_>,
+    pack: usize,
+    slots: &[[P; D]; N],
+    force: &mut [f64],
+) {
+    match group.layout {
+        Layout::Single => {
+            let places = &group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
+            // Whole rows: one addition of four numbers.
+            let mut rows = [[[0.0; ROW]; WIDTH]; N];
+            for a in 0..N {
+                for part in 0..P::PARTS {
+                    let mut columns = [P::Part::zero(); ROW];
+                    for i in 0..D {
+                        columns[i] = slots[a][i].part(part);
+                    }
+                    P::Part::store_rows(columns, rows[a][part * P::Part::NUMBERS..].as_flattened_mut());
+                }
+            }
+            for l in 0..group.present(pack) {
+                for a in 0..N {
+                    let start = places[a * WIDTH + l] as usize * ROW;
+                    let node = &mut force[start..start + ROW];
+                    for i in 0..ROW {
+                        node[i] += rows[a][l][i];
+                    }
+                }
+            }
+        }
+        Layout::Batch => {
+            let targets = &group.targets[pack * N..(pack + 1) * N];
+            for a in 0..N {
+                for i in 0..D {
+                    let at = &mut force[(targets[a] as usize * D + i) * WIDTH..][..WIDTH];
+                    (P::load(at) + slots[a][i]).store(at);
+                }
+            }
+        }
+    }
+}
+
 /// Deformation gradients, or their rates: ∂x/∂X of some columns at all points of some packs.
 pub(super) struct Gradients<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
@@ -71,32 +146,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
         for k in 0..self.group.packs {
             let pack = self.group.first + k;
             for part in 0..P::PARTS {
-                let offset = part * P::Part::NUMBERS;
-                let mut x = [[P::Part::zero(); D]; N];
-                match self.group.layout {
-                    Layout::Single => {
-                        let places = &self.group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
-                        for a in 0..N {
-                            let of_node = &places[a * WIDTH + offset..a * WIDTH + offset + P::Part::NUMBERS];
-                            let row = P::Part::gather_rows(self.nodes.rows, of_node);
-                            x[a].copy_from_slice(&row[..D]);
-                        }
-                    }
-                    Layout::Batch => {
-                        let places = &self.group.places[pack * N..(pack + 1) * N];
-                        for a in 0..N {
-                            for d in 0..D {
-                                x[a][d] = P::Part::load(&self.nodes.columns[d][places[a] as usize + offset..]);
-                            }
-                        }
-                    }
-                }
-                let mut mean = matrix::zeros::<P::Part, D>();
-                let shares = if self.group.selective {
-                    geometry::<P::Part, D>(&self.group, pack, E::POINTS, part).0
-                } else {
-                    mean
-                };
+                let x = gather::<P::Part, D, N>(&self.group, &self.nodes, pack, part);
                 for q in 0..E::POINTS {
                     let (inverse, _) = geometry::<P::Part, D>(&self.group, pack, q, part);
                     let mut by_reference = matrix::zeros::<P::Part, D>();
@@ -115,12 +165,6 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
                     }
                     let f = matrix::product(&by_reference, &inverse);
                     write_matrix(&mut self.gradient[(k * points + q) * D * D * WIDTH..], part, &f);
-                    if E::SELECTIVE && self.group.selective {
-                        mean = matrix::plus(&mean, shares[q / D][q % D], &f);
-                    }
-                }
-                if E::SELECTIVE && self.group.selective {
-                    write_matrix(&mut self.gradient[(k * points + E::POINTS) * D * D * WIDTH..], part, &mean);
                 }
             }
         }
@@ -128,20 +172,13 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
 }
 
 /// The parameters of the points of a group, and their retardation times.
-pub(super) fn parameters_of_points(group: &Group<'_>, simple: usize, parameters: &mut [f64], times: &mut [f64]) {
+pub(super) fn parameters_of_points(group: &Group<'_>, parameters: &mut [f64], times: &mut [f64]) {
     for k in 0..group.packs {
         let numbers = &group.parameters[(group.first + k) * group.step..][..NUMBERS * WIDTH];
         for q in 0..group.points {
-            // The part with λ of the mean deformation alone, the part with μ of all points.
-            let at_mean = group.selective && q == simple;
             let point = k * group.points + q;
             let to = &mut parameters[point * PARAMETERS * WIDTH..(point + 1) * PARAMETERS * WIDTH];
             to.copy_from_slice(&numbers[..PARAMETERS * WIDTH]);
-            if at_mean {
-                to[..WIDTH].fill(0.0);
-            } else if group.selective {
-                to[WIDTH..2 * WIDTH].fill(0.0);
-            }
             times[point * WIDTH..(point + 1) * WIDTH].copy_from_slice(&numbers[PARAMETERS * WIDTH..]);
         }
     }
@@ -189,10 +226,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
                 let read = |q: usize| read_matrix::<P::Part, D>(&self.stress[(k * points + q) * D * D * WIDTH..], part);
                 for q in 0..E::POINTS {
                     let (inverse, measure) = geometry::<P::Part, D>(&self.group, pack, q, part);
-                    let mut stress = read(q);
-                    if E::SELECTIVE && self.group.selective {
-                        stress = matrix::plus(&stress, P::Part::one(), &read(E::POINTS));
-                    }
+                    let stress = read(q);
                     // ∂U/∂(∂x/∂ξ) = V P (∂X/∂ξ)⁻ᵀ.
                     let pull = matrix::scaled(&matrix::product_transposed(&stress, &inverse), measure);
                     for i in 0..D {
@@ -218,40 +252,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
                     }
                 }
             }
-            match self.group.layout {
-                Layout::Single => {
-                    let places = &self.group.places[pack * N * WIDTH..(pack + 1) * N * WIDTH];
-                    // Whole rows: one addition of four numbers.
-                    let mut rows = [[[0.0; ROW]; WIDTH]; N];
-                    for a in 0..N {
-                        for part in 0..P::PARTS {
-                            let mut columns = [P::Part::zero(); ROW];
-                            for i in 0..D {
-                                columns[i] = slots[a][i].part(part);
-                            }
-                            P::Part::store_rows(columns, rows[a][part * P::Part::NUMBERS..].as_flattened_mut());
-                        }
-                    }
-                    for l in 0..self.group.present(pack) {
-                        for a in 0..N {
-                            let start = places[a * WIDTH + l] as usize * ROW;
-                            let node = &mut self.force[start..start + ROW];
-                            for i in 0..ROW {
-                                node[i] += rows[a][l][i];
-                            }
-                        }
-                    }
-                }
-                Layout::Batch => {
-                    let targets = &self.group.targets[pack * N..(pack + 1) * N];
-                    for a in 0..N {
-                        for i in 0..D {
-                            let at = &mut self.force[(targets[a] as usize * D + i) * WIDTH..][..WIDTH];
-                            (P::load(at) + slots[a][i]).store(at);
-                        }
-                    }
-                }
-            }
+            scatter(&self.group, pack, &slots, self.force);
         }
     }
 }

@@ -230,6 +230,14 @@ impl Boundary {
         }
     }
 
+    /// The nodes of the boundary; one that several facets meet is there as often.
+    pub(super) fn nodes(&self) -> &[u32] {
+        match self {
+            Boundary::Plane(edges) => edges.pairs().as_flattened(),
+            Boundary::Space(rings) => rings.facets.as_flattened(),
+        }
+    }
+
     /// Numbers of scratch for the area vectors.
     pub(super) fn area_len<const D: usize>(&self, layout: Layout, nodes: usize) -> usize {
         match self {

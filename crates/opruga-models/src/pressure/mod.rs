@@ -21,7 +21,7 @@ pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::pair::PairTable;
-use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Sink, Views};
+use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Reading, Sink, Views};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
@@ -166,6 +166,12 @@ impl Pressure {
     fn bodies(&self) -> usize {
         self.layout.stride()
     }
+    /// Volume [m³], pressure [Pa] and nRT [J] of a chamber of one of the bodies.
+    fn chamber_state(&self, chamber: &Chamber, scratch: &[f64], body: usize) -> (f64, f64, f64) {
+        let known = chamber.known(scratch);
+        let (volume, amount) = (known.volume[body] * self.depth, known.amount[body]);
+        (volume, chamber.gas(body).at(volume, amount).pressure, amount)
+    }
 }
 
 impl<const D: usize> Potential<D> for Pressure {
@@ -280,19 +286,34 @@ impl<const D: usize> Potential<D> for Pressure {
             }
         }
     }
-    fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<(&'static str, f64)> {
+    fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<Reading> {
         let mut volume = 0.0;
         let mut amount = 0.0;
         let mut pressure = 0.0;
-        for chamber in &self.chambers {
-            let known = chamber.known(scratch);
-            let v = known.volume[body] * self.depth;
+        let mut single = Vec::new();
+        for (number, chamber) in self.chambers.iter().enumerate() {
+            let (v, p, nrt) = self.chamber_state(chamber, scratch, body);
             volume += v;
-            amount += known.amount[body];
+            amount += nrt;
             // Chambers count by their volume.
-            pressure += chamber.gas(body).at(v, known.amount[body]).pressure * v;
+            pressure += p * v;
+            let name = |what: &str| format!("chamber{}.{what}", number + 1).into();
+            single.extend([(name("volume"), v), (name("pressure"), p), (name("nRT"), nrt)]);
         }
-        vec![("volume", volume), ("pressure", if volume == 0.0 { 0.0 } else { pressure / volume }), ("nRT", amount)]
+        let mean = if volume == 0.0 { 0.0 } else { pressure / volume };
+        let mut out: Vec<Reading> = vec![("volume".into(), volume), ("pressure".into(), mean), ("nRT".into(), amount)];
+        if self.chambers.len() > 1 {
+            out.extend(single);
+        }
+        out
+    }
+    fn node_pressures(&self, _view: &View<D>, scratch: &[f64], body: usize) -> Vec<(u32, f64)> {
+        let mut out = Vec::new();
+        for chamber in &self.chambers {
+            let (_, pressure, _) = self.chamber_state(chamber, scratch, body);
+            out.extend(chamber.boundary.nodes().iter().map(|node| (*node, pressure)));
+        }
+        out
     }
     fn counts(&self, memory: &[f64]) -> Vec<Count> {
         let sum = |first: usize| -> f64 {

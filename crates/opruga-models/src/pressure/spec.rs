@@ -11,6 +11,9 @@ U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − P_a) ∂V/∂x on ev
 V is the enclosed area times thickness in 2D, the enclosed volume in 3D, by the divergence theorem; holes count negative by their orientation, \
 and every closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs \
 into its cavities: `inside = \"cavities\"`, each a chamber of its own. \
+`diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT of all chambers of the body NAME, \
+and the mean of their pressures weighed by volume. A body of several chambers has besides `NAME.chamber1.volume`, `NAME.chamber1.pressure`, \
+`NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on, in the order of the boundaries in the shape, that of a chamber being the first of its facets. \
 Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure stays P(V_s), through zero and for a body turned inside out: \
 U remains a function of V with continuous slope, so no energy is made; the passage is as short as V_s is small, and a step that does \
 not resolve it misses some per cent of the energy, which the ledger shows. Without ambient pressure U has no minimum in V. \

@@ -1,6 +1,6 @@
 //! Conjugate gradients on packs.
 
-use super::{PACKS, Packed, Piece};
+use super::{PACKS, Packed, Piece, load};
 use crate::Indefinite;
 use opruga_core::threads::{each, each_with};
 use opruga_math::{Column, Lane, Pack, ROW, Register, Simd, WIDTH, Work};
@@ -180,11 +180,13 @@ impl<const D: usize> Packed<D> {
 
     /// Takes a right-hand side; gives its size √(b·B b) in the norm of the preconditioner.
     pub fn begin(&mut self, simd: Simd, threads: usize, b: &[f64]) -> f64 {
-        self.load(b, |piece| &mut piece.residual);
-        for piece in &mut self.pieces {
+        let nodes = &self.node;
+        each(threads, &mut self.pieces, |piece| {
+            load::<D>(nodes, piece.first, b, &mut piece.residual);
             piece.solution.fill(0.0);
-        }
-        self.size = self.advance(simd, threads, 0.0);
+            piece.sum = simd.run(Advance { piece, step: 0.0 });
+        });
+        self.size = self.sum();
         self.size.sqrt()
     }
 
@@ -211,9 +213,7 @@ impl<const D: usize> Packed<D> {
         let mut reached = Reached { iterations: 0, size: 0.0, indefinite: false };
         let mut turn = 0.0;
         // What earlier systems left must not come in: 0 · ∞ is no number.
-        for piece in &mut self.pieces {
-            piece.direction.fill(0.0);
-        }
+        each(threads, &mut self.pieces, |piece| piece.direction.fill(0.0));
         while rho > goal * goal && reached.iterations < most {
             self.turn(simd, threads, turn);
             let curvature = self.multiply_direction(simd, threads);
@@ -232,7 +232,7 @@ impl<const D: usize> Packed<D> {
             (turn, rho) = (next / rho, next);
         }
         reached.size = rho.sqrt();
-        self.unload(x, |piece| &piece.solution);
+        self.unload(threads, x, |piece| &piece.solution);
         Ok(reached)
     }
 }

@@ -13,7 +13,7 @@ mod gradients;
 use crate::Indefinite;
 use crate::blocks::{Block, held, inverse_of_positive, product};
 use crate::matrix::BlockMatrix;
-use opruga_core::threads::each;
+use opruga_core::threads::{each, each_block};
 use opruga_math::{Column, ROW, Simd, WIDTH};
 
 pub use gradients::Reached;
@@ -211,31 +211,24 @@ impl<const D: usize> Packed<D> {
 
     /// y = A x of the rounded entries, with nothing taken out.
     pub fn multiply(&mut self, simd: Simd, threads: usize, x: &[f64], y: &mut [f64]) {
-        self.load(x, |piece| &mut piece.direction);
+        let nodes = &self.node;
+        each(threads, &mut self.pieces, |piece| load::<D>(nodes, piece.first, x, &mut piece.direction));
         self.spread(threads);
         self.multiply_direction(simd, threads);
-        self.unload(y, |piece| &piece.product);
+        self.unload(threads, y, |piece| &piece.product);
     }
 
-    /// A vector of the nodes into packs.
-    fn load(&mut self, from: &[f64], to: impl Fn(&mut Piece<D>) -> &mut Column) {
-        for (node, seat) in self.seat.iter().enumerate() {
-            let (pack, lane) = (*seat as usize / WIDTH, *seat as usize % WIDTH);
-            let column = to(&mut self.pieces[pack / PACKS]);
-            for d in 0..D {
-                column[((pack % PACKS) * D + d) * WIDTH + lane] = from[node * D + d];
-            }
-        }
-    }
     /// Packs into a vector of the nodes.
-    fn unload(&self, to: &mut [f64], from: impl Fn(&Piece<D>) -> &Column) {
-        for (node, seat) in self.seat.iter().enumerate() {
-            let (pack, lane) = (*seat as usize / WIDTH, *seat as usize % WIDTH);
-            let column = from(&self.pieces[pack / PACKS]);
-            for d in 0..D {
-                to[node * D + d] = column[((pack % PACKS) * D + d) * WIDTH + lane];
+    fn unload(&self, threads: usize, to: &mut [f64], from: impl Fn(&Piece<D>) -> &Column + Sync) {
+        each_block(threads, D, [to], |first, [to]| {
+            for (seat, to) in self.seat[first / D..].iter().zip(to.as_chunks_mut::<D>().0) {
+                let (pack, lane) = (*seat as usize / WIDTH, *seat as usize % WIDTH);
+                let column = from(&self.pieces[pack / PACKS]);
+                for d in 0..D {
+                    to[d] = column[((pack % PACKS) * D + d) * WIDTH + lane];
+                }
             }
-        }
+        });
     }
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
@@ -245,5 +238,16 @@ impl<const D: usize> Packed<D> {
                 + vectors.into_iter().map(Column::heap_bytes).sum::<usize>()
         };
         self.pieces.iter().map(of_piece).sum::<usize>() + self.rows.heap_bytes() + 8 * self.seat.capacity()
+    }
+}
+
+/// A vector of the nodes into the packs of the piece that begins with this one.
+fn load<const D: usize>(nodes: &[u32], first: usize, from: &[f64], to: &mut Column) {
+    for (nodes, to) in nodes[first * WIDTH..].chunks(WIDTH).zip(to.chunks_exact_mut(D * WIDTH)) {
+        for (lane, node) in nodes.iter().enumerate() {
+            for d in 0..D {
+                to[d * WIDTH + lane] = from[*node as usize * D + d];
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! How a scene of the plane lies in the window.
 
+use crate::shown::Shown;
 use egui::{Pos2, Rect, Vec2};
 use opruga::draw::View;
 
@@ -34,6 +35,34 @@ impl Flat {
         self.scale = (room[0] / wide).min(room[1] / tall);
         let up = if view.y_down { -0.5 } else { 0.5 };
         self.center = [view.center()[0], view.center()[1] + up * f64::from(tools) / self.scale];
+    }
+
+    /// Makes a view that nobody has moved wider where a body of the plane leaves what is seen, by no more than two sizes to each
+    /// side of what was there first; whether it did.
+    pub(crate) fn widen(&self, view: &mut View, first: &[[f64; 3]; 2], shown: &Shown, rect: Rect) -> bool {
+        if shown.dimension != 2 {
+            return false;
+        }
+        let corners = [rect.min, rect.max].map(|corner| self.to_world(rect, corner, view.y_down));
+        let positions = || shown.picture.bodies.iter().flat_map(|body| &body.positions);
+        let mut wider = false;
+        for d in 0..2 {
+            let most = 2.0 * (first[1][d] - first[0][d]);
+            let (low, high) = positions().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[d]), b.max(p[d])));
+            let (low, high) = (low.max(first[0][d] - most), high.min(first[1][d] + most));
+            let edge = 0.02 * (corners[0][d] - corners[1][d]).abs();
+            let below = corners[0][d].min(corners[1][d]) + edge - low;
+            let above = high - corners[0][d].max(corners[1][d]) + edge;
+            if below > 0.0 && view.low[d] > first[0][d] - most {
+                view.low[d] -= below;
+                wider = true;
+            }
+            if above > 0.0 && view.high[d] < first[1][d] + most {
+                view.high[d] += above;
+                wider = true;
+            }
+        }
+        wider
     }
 
     pub(crate) fn to_screen(self, rect: Rect, point: [f64; 3], y_down: bool) -> Pos2 {
@@ -80,6 +109,33 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_view_that_nobody_has_moved_follows_a_body_that_leaves_it_and_not_for_ever() {
+        let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(390.0, 600.0));
+        let ball = |x: f64| opruga::draw::BodyPicture {
+            positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
+            ..Default::default()
+        };
+        let shown = |x: f64| Shown {
+            dimension: 2,
+            picture: opruga::draw::Picture { dimension: 2, bodies: vec![ball(x)], ..Default::default() },
+            ..Default::default()
+        };
+        let mut view = View::fit([&shown(0.0).picture]).expect("a view");
+        let (first, mut flat) = ([view.low, view.high], Flat::default());
+        flat.fit(&view, rect, None);
+        assert!(!flat.widen(&mut view, &first, &shown(0.0), rect), "what is seen whole stays as it is");
+        for step in 0..400 {
+            let x = 0.01 * f64::from(step);
+            if flat.widen(&mut view, &first, &shown(x), rect) {
+                flat.fit(&view, rect, None);
+            }
+            let right = flat.to_screen(rect, [x + 0.5, 0.5, 0.0], false);
+            assert!(x > 1.8 || rect.contains(right), "{x} {right:?}");
+        }
+        assert!(view.high[0] - view.low[0] < 4.0, "{:?}", view.high);
+    }
 
     #[test]
     fn what_is_under_the_pointer_stays_there_while_zooming() {

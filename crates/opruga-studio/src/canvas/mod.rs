@@ -61,6 +61,8 @@ pub struct Canvas {
     beside: space::Space,
     kept_beside: plane::Kept,
     scales: Option<View>,
+    /// The lowest and the highest corner of what was there when the view was fitted [m].
+    first: [[f64; 3]; 2],
     /// Whether two scenes were shown.
     two: bool,
     fitted: u64,
@@ -153,7 +155,7 @@ impl Canvas {
             Some(other) if other.contains(at) => (at - other.min.to_vec2() + rect.min.to_vec2(), true),
             _ => (at, false),
         };
-        let hover = response.hover_pos().map(within);
+        let hover = response.hover_pos().map(|at| pressing::pressed_at(ui).unwrap_or(at)).map(within);
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
         self.space.receive(ui);
         self.beside.receive(ui);
@@ -220,12 +222,14 @@ impl Canvas {
     fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
         if self.fitted == shown.opened && self.scales.is_some() {
             // The view follows the window until somebody moves it.
-            if let (Some(size), Some(view)) = (self.fitted_size, &self.scales)
-                && size != rect.size()
-            {
-                self.flat.fit(view, rect, self.tools);
-                self.space.look_at_all(view, rect.size());
-                self.fitted_size = Some(rect.size());
+            if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
+                if size != rect.size() {
+                    self.flat.fit(view, rect, self.tools);
+                    self.space.look_at_all(view, rect.size());
+                    self.fitted_size = Some(rect.size());
+                } else if matches!(self.doing, Doing::Nothing) && self.flat.widen(view, &self.first, shown, rect) {
+                    self.flat.fit(view, rect, self.tools);
+                }
             }
             return;
         }
@@ -237,6 +241,7 @@ impl Canvas {
         if let Some(view) = &self.scales {
             self.flat.fit(view, rect, self.tools);
             self.space.fit(view, rect.size());
+            self.first = [view.low, view.high];
         }
         self.range = None;
         self.kept.forget();

@@ -112,7 +112,8 @@ pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &B
     let room = (rect.width() - 40.0).max(40.0);
     let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 12.0);
     caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
-    let words = if beside.words.is_empty() { language.no_difference().into() } else { beside.words.join(", ") };
+    let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
+    let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
     let far = match (beside.distances, beside.center) {
         (Some([mean, largest]), _) => {
             let [mean, largest] = [mean, largest].map(format_value);
@@ -124,7 +125,7 @@ pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &B
     };
     caption(low(rect), Align2::CENTER_BOTTOM, format!("{words}{far}"), paper.ink, room);
     if let Some(reason) = &beside.stopped {
-        let text = format!("{}\n{reason}", language.right_stopped());
+        let text = format!("{}\n{}", language.right_stopped(), language.english(reason));
         caption(
             rect.center_top() + Vec2::new(0.0, 70.0),
             Align2::CENTER_TOP,

@@ -21,10 +21,20 @@ struct Press {
     beside: bool,
 }
 
+/// Where a button was pressed since the last picture: on a slow screen the pointer has gone on since.
+pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
+    let press = |event: &egui::Event| match event {
+        egui::Event::PointerButton { pos, pressed: true, .. } => Some(*pos),
+        _ => None,
+    };
+    ui.input(|i| i.events.iter().rev().find_map(press))
+}
+
 impl Canvas {
     /// Wheel, pinch, and dragging of the view.
     pub(super) fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
-        let Some(at) = at else { return };
+        let Some(latest) = at else { return };
+        let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
         let (scroll, pinch, touch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.multi_touch()));
         let at = touch.map_or(at, |touch| touch.center_pos);
         let factor = f64::from((scroll * 0.004).exp() * pinch);
@@ -71,7 +81,8 @@ impl Canvas {
             let pressed = buttons.into_iter().find(|b| i.pointer.button_pressed(*b));
             (i.key_down(egui::Key::Space), i.modifiers.shift, pressed, i.pointer.latest_pos(), i.pointer.any_down())
         });
-        let Some(at) = at else { return };
+        let Some(latest) = at else { return };
+        let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
         // Two fingers move the view: what the first of them took hold of is let go.
         if ui.input(|i| i.multi_touch().is_some()) {
             if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
@@ -127,7 +138,7 @@ impl Canvas {
             }
         }
         if !down {
-            self.end(shown, rect, at, asks);
+            self.end(shown, rect, latest + self.offset, asks);
         }
     }
 

@@ -4,7 +4,7 @@ use super::keeping::What;
 use crate::session::Request;
 use crate::shown::{Show, Shown};
 use crate::words::Language;
-use egui::{Align, Layout, RichText, Slider, Ui};
+use egui::{Align, Layout, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
 use opruga::draw::ColourMap;
 use opruga::pictures::Quantity;
 
@@ -34,14 +34,7 @@ pub enum Chosen {
 }
 
 /// The bar above the scene.
-pub fn tools(
-    ui: &mut Ui,
-    shown: &Shown,
-    words: Language,
-    narrow: bool,
-    working: bool,
-    asks: &mut Vec<Request>,
-) -> Chosen {
+pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mut Vec<Request>) -> Chosen {
     let mut chosen = Chosen::Nothing;
     ui.horizontal_wrapped(|ui| {
         if ui.button(words.scenes()).on_hover_text(format!("{}  (G)", words.scenes_hint())).clicked() {
@@ -50,32 +43,26 @@ pub fn tools(
         if ui.button(words.save()).on_hover_text(format!("{}  (Ctrl S)", words.save_scene())).clicked() {
             chosen = Chosen::Keep(What::Scene);
         }
-        ui.add_enabled_ui(!working, |ui| {
-            ui.menu_button(words.keep(), |ui| {
-                for (what, name) in [
-                    (What::Scene, words.save_scene()),
-                    (What::Picture, words.screenshot()),
-                    (What::Film, words.film()),
-                    (What::Animation, words.animation()),
-                    (What::Table, words.table()),
-                ] {
+        ui.menu_button(words.keep(), |ui| {
+            for what in [What::Scene, What::Picture, What::Film, What::Animation, What::Table] {
+                if ui.button(file_name(words, what)).clicked() {
+                    chosen = Chosen::Keep(what);
+                    ui.close();
+                }
+            }
+            if cfg!(target_arch = "wasm32") {
+                ui.separator();
+                for (other, name) in [(Chosen::Link, words.copy_link()), (Chosen::File, words.open_file())] {
                     if ui.button(name).clicked() {
-                        chosen = Chosen::Keep(what);
+                        chosen = other;
                         ui.close();
                     }
                 }
-                if cfg!(target_arch = "wasm32") {
-                    ui.separator();
-                    for (other, name) in [(Chosen::Link, words.copy_link()), (Chosen::File, words.open_file())] {
-                        if ui.button(name).clicked() {
-                            chosen = other;
-                            ui.close();
-                        }
-                    }
-                }
-            });
+            }
         });
-        ui.separator();
+        if !narrow {
+            ui.separator();
+        }
         for (name, key, step, ask) in
             [(words.undo(), "Ctrl Z", &shown.undo, Request::Undo), (words.redo(), "Ctrl Y", &shown.redo, Request::Redo)]
         {
@@ -101,6 +88,17 @@ pub fn tools(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| windows(ui, words, &mut chosen, true));
     });
     chosen
+}
+
+/// What a file is called.
+fn file_name(words: Language, what: What) -> &'static str {
+    match what {
+        What::Scene => words.save_scene(),
+        What::Picture => words.screenshot(),
+        What::Film => words.film(),
+        What::Animation => words.animation(),
+        What::Table => words.table(),
+    }
 }
 
 /// What opens other parts of the window, from left to right or from the right.
@@ -175,18 +173,51 @@ fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
 fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     let time = ui.label(words.time());
     let mut frame = shown.frames;
-    let room = ui.available_width() - 96.0;
+    let told = shown.recorded_until.is_some() && ui.available_width() > 420.0;
+    let room = ui.available_width() - if told { 236.0 } else { 96.0 };
     ui.spacing_mut().slider_width = room.max(40.0);
     let slider = Slider::new(&mut frame, 0..=shown.latest.max(1)).show_value(false);
-    if ui.add(slider).labelled_by(time.id).on_hover_text(words.rewind_hint()).changed() {
+    let response = ui.add(slider).labelled_by(time.id);
+    if let Some(until) = shown.recorded_until {
+        end_of_recording(ui, shown, words, until, response.rect);
+    }
+    if response.on_hover_text(words.rewind_hint()).changed() {
         asks.push(Request::Play(false));
         asks.push(Request::Seek(frame));
     }
     ui.label(RichText::new(format!("{:.2} s", shown.time)).monospace());
+    if let Some(until) = shown.recorded_until.filter(|_| told) {
+        let end = format!("{} {:.2} s", words.recording_until(), shown.frame * until as f64);
+        ui.label(RichText::new(end).size(11.5).weak()).on_hover_text(words.recording_hint());
+    }
 }
 
-/// The line on top: the numbers of the machine.
-pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
+/// How far a recording reaches on the way through time: a line along it, a mark at its end, and that in seconds.
+fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, way: Rect) {
+    // The handle of the slider stays within its ends.
+    let inner = way.shrink2(vec2(0.5 * way.height().min(way.width()) * 0.8, 0.0));
+    let share = until as f32 / shown.latest.max(1) as f32;
+    let (x, y) = (inner.left() + share.min(1.0) * inner.width(), way.center().y);
+    let ink = ui.visuals().warn_fg_color;
+    ui.painter().line_segment([pos2(inner.left(), y + 7.0), pos2(x, y + 7.0)], Stroke::new(2.0, ink));
+    ui.painter().line_segment([pos2(x, y - 8.0), pos2(x, y + 8.0)], Stroke::new(2.0, ink));
+    let end = format!("{} {:.2} s", words.recording_until(), shown.frame * until as f64);
+    let mark = Rect::from_center_size(pos2(x, y), vec2(10.0, 18.0));
+    let response = ui.interact(mark, ui.scope_id().with("end of the recording"), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &end));
+    response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
+}
+
+/// The line on top: the numbers of the machine, and what draws.
+pub fn status(
+    ui: &mut Ui,
+    shown: &Shown,
+    words: Language,
+    rate: f64,
+    narrow: bool,
+    drawn_by: Option<&[String; 2]>,
+    making: impl Iterator<Item = (What, u32)>,
+) {
     let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
     let h = shown.frame / f64::from(shown.substeps.max(1));
     let cost = shown.pace.frame_cost;
@@ -204,20 +235,29 @@ pub fn status(ui: &mut Ui, shown: &Shown, words: Language, rate: f64) {
         ui.label(small(format!("{:.2} ms", 1e3 * cost))).on_hover_text(words.step_time());
         let pace = format!("{moving:.2} × {}", words.real_time());
         if shown.playing && shown.pace.ratio < 0.95 {
-            let text = format!("{pace}: {:.1} × {}", 1.0 / shown.pace.ratio.max(1e-3), words.slower());
-            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20)));
+            let slower = format!("{:.1} × {}", 1.0 / shown.pace.ratio.max(1e-3), words.slower());
+            let text = if narrow { pace } else { format!("{pace}: {slower}") };
+            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20))).on_hover_text(slower);
         } else {
             ui.label(small(pace));
         }
         ui.label(small(format!("{nodes} {}", words.nodes())));
         ui.label(small(format!("{steps:.0} {}", words.steps_a_second())));
         ui.label(small(format!("{}: {margin}", words.margin()))).on_hover_text(words.substeps_hint());
+        if let Some([by, device]) = drawn_by {
+            ui.label(small(by.clone())).on_hover_text(format!("{}: {device}", words.drawn_by()));
+        }
         if shown.recorded > 0 {
             ui.label(small(format!("{}: {}", words.recorded(), shown.recorded)));
         }
+        for (what, hundredths) in making {
+            let text = format!("{}: {hundredths} %", file_name(words, what));
+            ui.label(small(text).strong()).on_hover_text(words.working());
+        }
         for warning in shown.warnings.iter().take(2) {
-            let text = format!("{} ({})", warning.code, warning.count);
-            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20))).on_hover_text(&warning.message);
+            let text = format!("{}: {} ({})", words.warning(), warning.code, warning.count);
+            let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
+            ui.label(text).on_hover_text(words.english(&warning.message));
         }
     });
 }

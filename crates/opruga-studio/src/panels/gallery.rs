@@ -101,8 +101,8 @@ impl Gallery {
             painter.rect_stroke(rect, 4.0, egui::Stroke::new(wide, edge), egui::StrokeKind::Inside);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
             ui.label(RichText::new(name).strong());
-            let title = opruga::scenes::find(name).map_or("", opruga::scenes::title);
-            ui.add(egui::Label::new(RichText::new(title).size(11.5).weak()).truncate());
+            let title = words.scene_title(name);
+            ui.add(egui::Label::new(RichText::new(&title).size(11.5).weak()).wrap());
             response.on_hover_text(title).clicked()
         })
         .inner

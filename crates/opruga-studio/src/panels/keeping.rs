@@ -7,10 +7,13 @@ use crate::document::Document;
 use crate::engine;
 use crate::pair;
 use crate::runner::{Copied, Link};
+use crate::said::Said;
 use crate::shown::{Severity, Show};
 use crate::work::{self, breathe};
 use opruga::Options;
 use opruga::draw::{GifWriter, Image, Mp4Writer, Picture, Style, View, draw};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Receiver;
 
 /// Pictures of a film for a simulated second.
@@ -33,63 +36,93 @@ pub enum What {
     Table,
 }
 
-/// Files that are being written.
+/// How much of a file is made.
+#[derive(Clone, Debug, Default)]
+pub struct Progress(Arc<AtomicU32>);
+
+impl Progress {
+    fn set(&self, done: u64, of: u64) {
+        let hundredths = 100 * done.min(of) / of.max(1);
+        self.0.store(hundredths as u32, Ordering::Relaxed);
+    }
+
+    /// In hundredths.
+    pub fn hundredths(&self) -> u32 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// A file that is being made.
+#[derive(Debug)]
+struct Making {
+    what: What,
+    progress: Progress,
+    stage: Stage,
+}
+
+/// How far a file is.
+#[derive(Debug)]
+enum Stage {
+    /// The simulation was asked for the scene.
+    Asked(Show, Receiver<Copied>),
+    /// It is made beside the interface.
+    Made(Receiver<Result<Said, Said>>),
+}
+
+/// Files that are being made.
 #[derive(Debug, Default)]
 pub struct Keeping {
-    asked: Option<(What, Show, Receiver<Copied>)>,
-    working: Option<Receiver<Result<String, String>>>,
-    message: Option<(String, Severity)>,
-    /// Whether the message is the place of a file.
-    written: bool,
+    making: Vec<Making>,
+    message: Option<(Said, Severity)>,
 }
 
 impl Keeping {
-    /// Whether a file is being written.
+    /// Whether a file is being made.
     pub fn is_working(&self) -> bool {
-        self.asked.is_some() || self.working.is_some()
+        !self.making.is_empty()
     }
 
-    /// Begins to write a file; where one is being written, nothing happens.
+    /// The files that are being made, and how far they are.
+    pub fn working(&self) -> impl Iterator<Item = (What, u32)> {
+        self.making.iter().map(|making| (making.what, making.progress.hundredths()))
+    }
+
+    /// Begins to make a file, beside those that are being made.
     pub fn begin(&mut self, what: What, link: &Link, show: Show) {
-        if !self.is_working() {
-            self.message = None;
-            self.asked = Some((what, show, link.copy()));
-        }
+        self.message = None;
+        self.making.push(Making { what, progress: Progress::default(), stage: Stage::Asked(show, link.copy()) });
     }
 
     /// Looks whether something is done.
     pub fn poll(&mut self) {
-        if let Some((what, show, copied)) = &self.asked
-            && let Ok(copied) = copied.try_recv()
-        {
-            let (what, show) = (*what, *show);
-            let file = work::spawn(async move { write(what, &copied, show).await });
-            (self.asked, self.working) = (None, Some(file));
-        }
-        if let Some(outcome) = self.working.as_ref().and_then(|working| working.try_recv().ok()) {
-            self.working = None;
-            self.written = outcome.is_ok();
-            self.message = Some(match outcome {
-                Ok(path) => (path, Severity::Told),
-                Err(error) => (error, Severity::Refused),
-            });
-        }
+        let message = &mut self.message;
+        self.making.retain_mut(|Making { what, progress, stage }| match stage {
+            Stage::Asked(show, copied) => {
+                if let Ok(copied) = copied.try_recv() {
+                    let (what, show, progress) = (*what, *show, progress.clone());
+                    *stage = Stage::Made(work::spawn(async move { write(what, &copied, show, &progress).await }));
+                }
+                true
+            }
+            Stage::Made(file) => {
+                let Ok(outcome) = file.try_recv() else { return true };
+                *message = Some(match outcome {
+                    Ok(written) => (written, Severity::Told),
+                    Err(refused) => (refused, Severity::Refused),
+                });
+                false
+            }
+        });
     }
 
     /// What there is to say.
-    pub fn message(&self) -> Option<(String, Severity)> {
-        self.message.clone()
-    }
-
-    /// Whether that is where the last file was written.
-    pub fn is_written(&self) -> bool {
-        self.written
+    pub fn message(&self) -> Option<&(Said, Severity)> {
+        self.message.as_ref()
     }
 
     /// Says something else in its place.
-    pub fn tell(&mut self, severity: Severity, text: String) {
-        self.written = false;
-        self.message = Some((text, severity));
+    pub fn tell(&mut self, severity: Severity, said: Said) {
+        self.message = Some((said, severity));
     }
 
     /// The message was read.
@@ -101,8 +134,8 @@ impl Keeping {
 /// Writes a file; where it is.
 ///
 /// # Errors
-/// A sentence for the person.
-async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String> {
+/// What there is to say to the person.
+async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Said, Said> {
     let ending = match what {
         What::Scene => "toml",
         What::Picture => "png",
@@ -110,33 +143,36 @@ async fn write(what: What, copied: &Copied, show: Show) -> Result<String, String
         What::Animation => "gif",
         What::Table => "csv",
     };
-    let bytes = made(what, copied, show).await?;
+    let bytes = made(what, copied, show, progress).await?;
     let first = hand_over(&copied.name, ending, &bytes)?;
     // Side by side there are two scenes.
-    let (What::Scene, Some(differences)) = (what, &copied.differences) else { return Ok(first) };
+    let (What::Scene, Some(differences)) = (what, &copied.differences) else {
+        return Ok(Said::Written(vec![first]));
+    };
     let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
     let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
-    Ok(format!("{first}, {second}"))
+    Ok(Said::Written(vec![first, second]))
 }
 
 /// A file in the folder `out/studio` that is not there yet.
 #[cfg(not(target_arch = "wasm32"))]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
     let folder = std::path::PathBuf::from("out").join("studio");
-    std::fs::create_dir_all(&folder).map_err(|e| format!("the folder {} cannot be made: {e}", folder.display()))?;
+    let named = || folder.display().to_string();
+    std::fs::create_dir_all(&folder).map_err(|e| Said::NoFolder(named(), e.to_string()))?;
     let path = |number: u32| {
         let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
         folder.join(name)
     };
     let free = (1..10_000).map(path).find(|path| !path.exists());
-    let path = free.ok_or_else(|| format!("{} is full", folder.display()))?;
+    let path = free.ok_or_else(|| Said::FolderFull(named()))?;
     opruga::io::safe_write::safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
     Ok(path.display().to_string())
 }
 
 /// A download.
 #[cfg(target_arch = "wasm32")]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
+fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
     let name = format!("{name}.{ending}");
     crate::browser::download(&name, bytes).map(|()| name)
 }
@@ -144,34 +180,34 @@ fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, String> {
 /// The bytes of a file.
 ///
 /// # Errors
-/// A sentence for the person.
+/// What there is to say to the person.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
-    work::finish(made(what, copied, show))
+pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Said> {
+    work::finish(made(what, copied, show, &Progress::default()))
 }
 
-async fn made(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Said> {
     match what {
         What::Scene => Ok(copied.text.clone().into_bytes()),
-        What::Table => table(copied).await,
-        What::Picture | What::Film | What::Animation => film(what, copied, show).await,
+        What::Table => table(copied, progress).await,
+        What::Picture | What::Film | What::Animation => film(what, copied, show, progress).await,
     }
 }
 
 /// The engine of the scene, from its start.
-fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, String> {
+fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Said> {
     let document = Document::new(&copied.name, &copied.text)?;
-    let built = pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default());
-    built.map_err(|refusal| refusal.to_string())
+    pair::build(&document, copied.differences.as_deref(), &copied.files, &Options::default())
 }
 
-async fn table(copied: &Copied) -> Result<Vec<u8>, String> {
+async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Said> {
     let mut engine = again(copied)?;
     let mut rows = Vec::new();
     rows.push(engine.row());
-    for _ in 0..copied.frames {
+    for frame in 0..copied.frames {
         breathe().await;
-        engine.frame().map_err(|e| e.to_string())?;
+        progress.set(frame, copied.frames);
+        engine.frame()?;
         rows.push(engine.row());
     }
     // Bodies come and go: a column for everything that there ever was.
@@ -189,16 +225,18 @@ async fn table(copied: &Copied) -> Result<Vec<u8>, String> {
     Ok(text.into_bytes())
 }
 
-async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String> {
+async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Vec<u8>, Said> {
     let mut engine = again(copied)?;
     let every = ((1.0 / RATE / engine.frame_seconds()).round() as u64).max(1);
     let mut pictures: Vec<Picture> = Vec::new();
     if what != What::Picture {
         pictures.push(engine.moment(&show));
     }
-    for _ in 0..copied.frames {
+    // Computing the scene is one half, drawing it the other.
+    for frame in 0..copied.frames {
         breathe().await;
-        engine.frame().map_err(|e| e.to_string())?;
+        progress.set(frame, 2 * copied.frames);
+        engine.frame()?;
         if what != What::Picture && engine.frames().is_multiple_of(every) {
             pictures.push(engine.moment(&show));
         }
@@ -213,23 +251,27 @@ async fn film(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, String
     let rate = 1.0 / (every as f64 * engine.frame_seconds());
     match what {
         What::Picture => pictures.last().map_or_else(
-            || Err("there is nothing to draw".into()),
-            |picture| image(picture)?.to_png().map_err(|e| e.to_string()),
+            || Err(Said::NothingToDraw),
+            |picture| image(picture)?.to_png().map_err(|e| e.to_string().into()),
         ),
         What::Film => {
             let mut writer =
                 Mp4Writer::new(Vec::new(), [style.width, style.height], rate).map_err(|e| e.to_string())?;
-            for picture in &pictures {
+            let count = pictures.len();
+            for (number, picture) in pictures.iter().enumerate() {
                 breathe().await;
+                progress.set((count + number) as u64, 2 * count as u64);
                 writer.push(&image(picture)?).map_err(|e| e.to_string())?;
             }
-            writer.finish().map_err(|e| e.to_string())
+            writer.finish().map_err(|e| e.to_string().into())
         }
         _ => {
             let step = pictures.len().div_ceil(MOST_GIF_FRAMES).max(1);
             let mut images: Vec<Image> = Vec::new();
-            for picture in pictures.iter().step_by(step) {
+            let count = pictures.len();
+            for (number, picture) in pictures.iter().enumerate().step_by(step) {
                 breathe().await;
+                progress.set((count + number) as u64, 2 * count as u64);
                 images.push(image(picture)?);
             }
             let samples: Vec<Image> = images.iter().step_by((images.len() / 8).max(1)).cloned().collect();

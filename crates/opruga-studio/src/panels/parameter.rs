@@ -1,8 +1,26 @@
 //! One parameter: its slider, unit and sentence, made from what its model says of it.
 
+use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, RichText, Slider, SliderClamping, Ui};
 use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Value};
 use std::collections::BTreeMap;
+
+/// A field of a kind in the panel of a scene of so many dimensions, in a language.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// Where the interface finds it.
+    pub path: &'a str,
+    /// What its kind is a kind of.
+    pub part: Part,
+    /// Its kind.
+    pub kind: &'a str,
+    /// What it says of itself.
+    pub field: &'a Field,
+    /// The dimension of the scene.
+    pub dimension: usize,
+    /// The language of the interface.
+    pub words: Language,
+}
 
 /// What is being set: while a slider is held it shows what the hand wants and not what came back.
 #[derive(Debug, Default)]
@@ -54,15 +72,16 @@ fn usual(unit: &str) -> f64 {
 }
 
 /// Shows a parameter; its new value if it was changed. Values that no slider can hold are shown and not changed.
-pub fn show(ui: &mut Ui, hand: &mut Hand, path: &str, kind: &str, field: &Field, now: Option<&Value>) -> Option<Value> {
+pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>) -> Option<Value> {
+    let Place { path, part, kind, field, words, .. } = place;
     let held = hand.held.as_ref().filter(|(held, _)| held == path).map(|(_, value)| value.clone());
     let now = held.or_else(|| now.cloned());
     let unit = if field.unit.is_empty() { String::new() } else { format!(" [{}]", field.unit) };
-    let words = field.name.replace('_', " ");
-    let label = RichText::new(format!("{words}{unit}")).size(12.0);
-    let about = about(field);
+    let name = words.field(part, kind, field.name);
+    let label = RichText::new(format!("{name}{unit}")).size(12.0);
+    let about = words.sentence(part, kind, field, place.dimension);
     ui.push_id(path, |ui| match (&field.range, now) {
-        (_, None) => ui.horizontal(|ui| absent(ui, label.weak(), &words, &about, kind, field)).inner,
+        (_, None) => ui.horizontal(|ui| absent(ui, place, &name, &unit, &about)).inner,
         (_, Some(Value::Number(x))) => number(ui, hand, path, field, label, &about, x, false).map(Value::Number),
         (_, Some(Value::Integer(x))) => {
             number(ui, hand, path, field, label, &about, x as f64, true).map(|x| Value::Integer(x.round() as i64))
@@ -70,7 +89,7 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, path: &str, kind: &str, field: &Field,
         (range, Some(now)) => {
             ui.horizontal(|ui| {
                 let name = ui.label(label).on_hover_text(about).id;
-                other(ui, name, range, &now)
+                other(ui, words, name, range, &now)
             })
             .inner
         }
@@ -78,28 +97,16 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, path: &str, kind: &str, field: &Field,
     .inner
 }
 
-/// The sentence of a field, what it may be and what it is where nobody says.
-fn about(field: &Field) -> String {
-    let default = match field.default {
-        Unset::Number(x) => x.to_string(),
-        Unset::Integer(x) => x.to_string(),
-        Unset::Boolean(x) => x.to_string(),
-        Unset::Text(x) => x.to_string(),
-        _ => return format!("{}\n{}", field.documentation, field.range.describe(2)),
-    };
-    format!("{}\n{}, {default}", field.documentation, field.range.describe(2))
-}
-
-/// A field about which the scene is silent, and a button that gives it a value.
-fn absent(ui: &mut Ui, label: RichText, words: &str, about: &str, kind: &str, field: &Field) -> Option<Value> {
-    ui.label(label).on_hover_text(about);
-    let start = starting(kind, field);
-    let layout = egui::Layout::right_to_left(egui::Align::Center);
-    ui.with_layout(layout, |ui| {
-        let button = ui.add_enabled(start.is_some(), egui::Button::new(format!("+ {words}")).small());
-        if button.on_hover_text(about).clicked() { start } else { None }
-    })
-    .inner
+/// A field about which the scene is silent: a button that gives it a value, or its name where a scene alone can.
+fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) -> Option<Value> {
+    let start = starting(place.kind, place.field);
+    if start.is_none() {
+        let about = format!("{about}\n{}", place.words.in_the_scene());
+        ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()).on_hover_text(about);
+        return None;
+    }
+    let button = egui::Button::new(RichText::new(format!("+ {name}{unit}")).size(12.0)).small();
+    if ui.add(button).on_hover_text(about).clicked() { start } else { None }
 }
 
 /// A slider below its name.
@@ -184,7 +191,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
 }
 
 /// A value that is no number.
-fn other(ui: &mut Ui, name: egui::Id, range: &Allowed, now: &Value) -> Option<Value> {
+fn other(ui: &mut Ui, words: Language, name: egui::Id, range: &Allowed, now: &Value) -> Option<Value> {
     match (range, now) {
         (Allowed::Boolean, Value::Boolean(flag)) => {
             let mut flag = *flag;
@@ -192,9 +199,9 @@ fn other(ui: &mut Ui, name: egui::Id, range: &Allowed, now: &Value) -> Option<Va
         }
         (Allowed::Choice(choices), Value::Text(word)) => {
             let mut chosen = word.clone();
-            let menu = ComboBox::from_id_salt("choice").selected_text(&chosen).show_ui(ui, |ui| {
+            let menu = ComboBox::from_id_salt("choice").selected_text(words.choice(&chosen)).show_ui(ui, |ui| {
                 for choice in *choices {
-                    ui.selectable_value(&mut chosen, (*choice).to_string(), *choice);
+                    ui.selectable_value(&mut chosen, (*choice).to_string(), words.choice(choice));
                 }
             });
             menu.response.labelled_by(name);

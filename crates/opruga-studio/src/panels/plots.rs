@@ -1,9 +1,11 @@
 //! Curves of the last moments: energy, gas, momentum, computing time.
 
+use crate::differences::Difference;
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, Plot, PlotPoints};
+use opruga::core::potential::Reading;
 use opruga::draw::OKABE_ITO;
 
 /// The most moments that are kept.
@@ -19,7 +21,7 @@ struct Moment {
     /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
     /// energy; not a number where the sides have it not in common.
     beside: Option<[f64; 5]>,
-    readings: Vec<(&'static str, f64)>,
+    readings: Vec<Reading>,
 }
 
 /// What was seen.
@@ -28,7 +30,7 @@ pub struct Plots {
     moments: Vec<Moment>,
     opened: u64,
     /// What the right side differs in.
-    words: Option<Vec<String>>,
+    differences: Option<Vec<Difference>>,
     body: Option<String>,
 }
 
@@ -45,9 +47,9 @@ impl Plots {
             self.body = selected.map(String::from);
         }
         // What has differed from the start is computed from the start: the old curves are those of others.
-        let words = shown.beside.as_ref().map(|beside| beside.words.clone());
-        if self.words != words {
-            self.words = words;
+        let differences = shown.beside.as_ref().map(|beside| beside.differences.clone());
+        if self.differences != differences {
+            self.differences = differences;
             self.moments.iter_mut().for_each(|moment| moment.beside = None);
         }
         if self.moments.last().is_some_and(|last| last.time == shown.time) {
@@ -119,8 +121,8 @@ impl Plots {
             let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
             plot(ui, "energy", words.energy(), size, lines);
             if gas {
-                let names: Vec<&'static str> =
-                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| *name).collect());
+                let names: Vec<&str> =
+                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| &**name).collect());
                 // Volume and pressure differ in size: each is shown as a share of its largest value.
                 let share = |name: &str| {
                     let values: Vec<[f64; 2]> = self
@@ -131,7 +133,9 @@ impl Plots {
                     let most = values.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
                     values.into_iter().map(|[t, x]| [t, if most > 0.0 { 100.0 * x / most } else { 0.0 }]).collect()
                 };
-                let lines = names.iter().take(4).map(|name| (*name, share(name))).collect();
+                let named: Vec<String> = names.iter().map(|name| words.reading(name)).collect();
+                let lines =
+                    names.iter().zip(&named).take(4).map(|(name, shown)| (shown.as_str(), share(name))).collect();
                 let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
                 let title = format!("{}: {} [% max]", words.gas(), body.map_or("", |body| body.title.as_str()));
                 plot(ui, "gas", &title, size, lines);

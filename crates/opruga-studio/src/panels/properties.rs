@@ -1,10 +1,10 @@
 //! The panel at the side: the body that was pressed, the world, the obstacles. All of it is made from what models,
 //! integrators, shapes and obstacles say of themselves, so that those that come later appear in it too.
 
-use super::parameter::{self, Hand};
+use super::parameter::{self, Hand, Place};
 use crate::session::{Edit, Placed, Request};
 use crate::shown::{BodyShown, Shown};
-use crate::words::Language;
+use crate::words::{Language, Part};
 use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
 use opruga::Registry;
 use opruga::core::spec::{Allowed, Default as Unset, Spec, Value, Values};
@@ -88,29 +88,24 @@ impl Properties {
             });
             for (number, obstacle) in shown.obstacles.iter().enumerate().take(16) {
                 let spec = kinds.obstacles.iter().find(|spec| spec.kind == obstacle.values.kind());
-                let title = format!("{}: {}", words.obstacle(), obstacle.values.kind().replace('_', " "));
+                let kind = obstacle.values.kind();
+                let title = format!("{}: {}", words.obstacle(), words.kind(Part::Obstacle, kind));
                 let header = CollapsingHeader::new(heading(&title)).id_salt(("obstacle", number));
                 header.default_open(false).show(ui, |ui| {
                     for field in spec.map_or(&[][..], |spec| spec.fields) {
-                        let path = format!("collider.{number}.{}", field.name);
-                        self.set(ui, &path, obstacle.values.kind(), field, obstacle.values.get(field.name), asks);
+                        let path = &format!("collider.{number}.{}", field.name);
+                        let dimension = kinds.dimension;
+                        let place = Place { path, part: Part::Obstacle, kind, field, dimension, words };
+                        self.set(ui, place, obstacle.values.get(field.name), asks);
                     }
                 });
             }
         });
     }
 
-    fn set(
-        &mut self,
-        ui: &mut Ui,
-        path: &str,
-        kind: &str,
-        field: &opruga::core::spec::Field,
-        now: Option<&Value>,
-        asks: &mut Vec<Request>,
-    ) {
-        if let Some(value) = parameter::show(ui, &mut self.hand, path, kind, field, now) {
-            asks.push(Request::Set(path.into(), value));
+    fn set(&mut self, ui: &mut Ui, place: Place<'_>, now: Option<&Value>, asks: &mut Vec<Request>) {
+        if let Some(value) = parameter::show(ui, &mut self.hand, place, now) {
+            asks.push(Request::Set(place.path.into(), value));
         }
     }
 
@@ -121,7 +116,8 @@ impl Properties {
         });
         if !body.readings.is_empty() {
             let mut readings: Vec<String> = Vec::new();
-            for (name, x) in body.readings.iter().take(4) {
+            // Those of single chambers are in the table and in the colours.
+            for (name, x) in body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4) {
                 let unit = if *name == "pressure" {
                     " Pa"
                 } else if *name == "volume" {
@@ -129,28 +125,31 @@ impl Properties {
                 } else {
                     ""
                 };
-                readings.push(format!("{} {}{unit}", name.replace('_', " "), opruga::draw::format_value(*x)));
+                readings.push(format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x)));
             }
             ui.label(RichText::new(readings.join("   ")).weak().size(11.5));
         }
         self.integrator(ui, words, body.integrator.as_ref(), Some(body), kinds, asks);
         for (number, model) in body.models.iter().enumerate() {
             let Some(spec) = kinds.models.iter().copied().find(|spec| spec.kind == model.kind()) else { continue };
-            let title = RichText::new(spec.kind.replace('_', " ")).strong();
+            let title = RichText::new(words.kind(Part::Model, spec.kind)).strong();
             let header =
                 CollapsingHeader::new(title).id_salt(("model", &body.name, spec.kind)).default_open(number < 2);
             let response = header.show(ui, |ui| {
                 for field in spec.fields {
-                    let path = format!("body.{}.models.{number}.{}", body.name, field.name);
-                    self.set(ui, &path, spec.kind, field, model.get(field.name), asks);
+                    let path = &format!("body.{}.models.{number}.{}", body.name, field.name);
+                    let dimension = kinds.dimension;
+                    let place = Place { path, part: Part::Model, kind: spec.kind, field, dimension, words };
+                    self.set(ui, place, model.get(field.name), asks);
                 }
                 self.another_model(ui, words, body, number, kinds, asks);
             });
-            response.header_response.on_hover_text(spec.summary);
+            response.header_response.on_hover_text(words.summary(Part::Model, spec));
         }
         let add = ComboBox::from_id_salt(("add", &body.name)).selected_text(words.add_model()).show_ui(ui, |ui| {
             for spec in &kinds.models {
-                if ui.button(spec.kind.replace('_', " ")).on_hover_text(spec.summary).clicked() {
+                let button = ui.button(words.kind(Part::Model, spec.kind));
+                if button.on_hover_text(words.summary(Part::Model, spec)).clicked() {
                     let mut models = body.models.clone();
                     models.push(kinds.begin(spec));
                     asks.push(Request::Models(body.number, models));
@@ -159,7 +158,7 @@ impl Properties {
             }
         });
         name(&add.response, words.add_model());
-        self.shape(ui, body, words, asks);
+        self.shape(ui, body, kinds.dimension, words, asks);
         let place = |turned: f64, scaled: f64| {
             Request::Edit(Edit::Place(body.name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
         };
@@ -192,19 +191,20 @@ impl Properties {
     ) {
         ui.horizontal(|ui| {
             let now = body.models[number].kind();
-            let menu =
-                ComboBox::from_id_salt(("kind", number)).selected_text(now.replace('_', " ")).show_ui(ui, |ui| {
-                    for spec in &kinds.models {
-                        let here = spec.kind == now;
-                        let choice = ui.selectable_label(here, spec.kind.replace('_', " ")).on_hover_text(spec.summary);
-                        if choice.clicked() && !here {
-                            let mut models = body.models.clone();
-                            models[number] = kinds.begin(spec);
-                            asks.push(Request::Models(body.number, models));
-                        }
+            let name_now = words.kind(Part::Model, now);
+            let menu = ComboBox::from_id_salt(("kind", number)).selected_text(&name_now).show_ui(ui, |ui| {
+                for spec in &kinds.models {
+                    let here = spec.kind == now;
+                    let choice = ui.selectable_label(here, words.kind(Part::Model, spec.kind));
+                    let choice = choice.on_hover_text(words.summary(Part::Model, spec));
+                    if choice.clicked() && !here {
+                        let mut models = body.models.clone();
+                        models[number] = kinds.begin(spec);
+                        asks.push(Request::Models(body.number, models));
                     }
-                });
-            name(&menu.response, &format!("{} {now}", words.models()));
+                }
+            });
+            name(&menu.response, &format!("{} {name_now}", words.models()));
             if ui.small_button("×").on_hover_text(words.remove_model()).clicked() {
                 let mut models = body.models.clone();
                 models.remove(number);
@@ -223,14 +223,16 @@ impl Properties {
         kinds: &Kinds,
         asks: &mut Vec<Request>,
     ) {
-        let now = own.map_or(words.of_the_scene(), |values| values.kind());
+        let now = own.map_or("", |values| values.kind());
+        let name = if now.is_empty() { words.of_the_scene().into() } else { words.kind(Part::Integrator, now) };
         ui.horizontal(|ui| {
             let label = ui.label(words.integrator());
             let salt = ("integrator", body.map(|body| body.name.as_str()));
-            let menu = ComboBox::from_id_salt(salt).selected_text(now.replace('_', " ")).show_ui(ui, |ui| {
+            let menu = ComboBox::from_id_salt(salt).selected_text(name).show_ui(ui, |ui| {
                 for spec in &kinds.integrators {
                     let here = spec.kind == now;
-                    let choice = ui.selectable_label(here, spec.kind.replace('_', " ")).on_hover_text(spec.summary);
+                    let choice = ui.selectable_label(here, words.kind(Part::Integrator, spec.kind));
+                    let choice = choice.on_hover_text(words.summary(Part::Integrator, spec));
                     if choice.clicked() && !here {
                         asks.push(Request::Integrator(body.map(|body| body.number), kinds.begin(spec)));
                     }
@@ -241,25 +243,28 @@ impl Properties {
         let Some(values) = own else { return };
         let Some(spec) = kinds.integrators.iter().find(|spec| spec.kind == values.kind()) else { return };
         for field in spec.fields {
-            let path = match body {
+            let path = &match body {
                 Some(body) => format!("body.{}.integrator.{}", body.name, field.name),
                 None => format!("integrator.{}", field.name),
             };
-            self.set(ui, &path, spec.kind, field, values.get(field.name), asks);
+            let dimension = kinds.dimension;
+            let place = Place { path, part: Part::Integrator, kind: spec.kind, field, dimension, words };
+            self.set(ui, place, values.get(field.name), asks);
         }
     }
 
     /// The number of nodes of the body's shape.
-    fn shape(&mut self, ui: &mut Ui, body: &BodyShown, words: Language, asks: &mut Vec<Request>) {
+    fn shape(&mut self, ui: &mut Ui, body: &BodyShown, dimension: usize, words: Language, asks: &mut Vec<Request>) {
         let Some(shape) = &body.shape else { return };
         let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == shape.kind()) else { return };
-        let title = RichText::new(format!("{}: {}", words.shape(), spec.kind.replace('_', " "))).strong();
+        let title = RichText::new(format!("{}: {}", words.shape(), words.kind(Part::Shape, spec.kind))).strong();
         CollapsingHeader::new(title).id_salt(("shape", &body.name)).default_open(false).show(ui, |ui| {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
-                let path = format!("shape.{}.{}", body.name, field.name);
+                let path = &format!("shape.{}.{}", body.name, field.name);
                 let now = shape.get(field.name);
+                let place = Place { path, part: Part::Shape, kind: spec.kind, field, dimension, words };
                 let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
-                let Some(value) = parameter::show(ui, &mut self.hand, &path, spec.kind, field, now) else { continue };
+                let Some(value) = parameter::show(ui, &mut self.hand, place, now) else { continue };
                 if slider && ui.input(|i| i.pointer.any_down()) {
                     // A new mesh for every step of the hand would be too much: the last one counts.
                     self.pending = Some((body.name.clone(), field.name, value));

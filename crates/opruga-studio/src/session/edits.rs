@@ -6,10 +6,10 @@
 
 use super::Session;
 use crate::document::{add_table, kind_table, numbers, toml};
-use crate::pair::{Refusal, read};
-use crate::shown::{Said, Severity, Step};
+use crate::pair::read;
+use crate::said::{Said, Step};
+use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};
-use opruga::io::SceneError;
 use toml_edit::{InlineTable, Value as Toml};
 
 /// How a body is set down: moved, turned about its middle and scaled [m, rad].
@@ -44,7 +44,7 @@ impl Session {
     }
 
     /// Takes a document that differs at its start.
-    fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Refusal> {
+    fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Said> {
         let held = self.held.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, 0)?;
         if held {
@@ -53,7 +53,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Refusal> {
+    pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Said> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));
         if self.at_start() && self.document.commands() == self.own_commands {
@@ -64,7 +64,7 @@ impl Session {
                 return Ok(());
             }
         }
-        let given = self.engine.set(path, value.clone()).map_err(Refusal::World)?;
+        let given = self.engine.set(path, value.clone()).map_err(Said::World)?;
         match self.document.last_set(self.engine.time(), path) {
             Some(table) => table["value"] = toml_edit::Item::Value(toml(&value)),
             None => {
@@ -80,7 +80,7 @@ impl Session {
         body: usize,
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Said> {
         self.branch()?;
         let past = self.past(if models.is_some() { Step::Models } else { Step::Integrator });
         let name = self.engine.name(body).unwrap_or_default();
@@ -101,7 +101,7 @@ impl Session {
                 return Ok(());
             }
         }
-        let given = self.engine.change(body, models, integrator).map_err(Refusal::World)?;
+        let given = self.engine.change(body, models, integrator).map_err(Said::World)?;
         self.write(given);
         self.remember(past);
         self.tell(Severity::Told, Said::GoesOn(name), None);
@@ -109,7 +109,7 @@ impl Session {
     }
 
     /// Another integrator for all bodies that have none of their own.
-    pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Refusal> {
+    pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Said> {
         self.branch()?;
         let past = self.past(Step::Integrator);
         if self.at_start() && self.document.commands() == self.own_commands {
@@ -131,8 +131,8 @@ impl Session {
                     // None of them, rather than some.
                     self.document = documents;
                     self.engine = self.build(&self.document)?;
-                    self.engine.rewind(&before).map_err(Refusal::World)?;
-                    return Err(Refusal::World(error));
+                    self.engine.rewind(&before).map_err(Said::World)?;
+                    return Err(Said::World(error));
                 }
             }
         }
@@ -141,7 +141,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Refusal> {
+    pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Said> {
         self.branch()?;
         match edit {
             Edit::Add(table) => {
@@ -165,7 +165,7 @@ impl Session {
             Edit::Shape(name, field, value) => {
                 let mut table = self.table_of(name)?;
                 let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
-                let shape = shape.ok_or_else(|| Refusal::Scene(format!("body `{name}` has no shape to change")))?;
+                let shape = shape.ok_or_else(|| Said::NoShape(name.clone()))?;
                 shape.insert(*field, toml(value));
                 shift(&mut table, self.way_of(name), self.dimension());
                 self.exchange(Step::Shape(field), Some(name), Some(table))
@@ -178,11 +178,8 @@ impl Session {
         usize::from(self.engine.shown(&self.show).dimension)
     }
 
-    fn table_of(&self, name: &str) -> Result<InlineTable, Refusal> {
-        self.document.body(name).ok_or_else(|| {
-            let error = SceneError::new("studio.copies", format!("`{name}` is one of several copies"));
-            Refusal::Scene(error.hint("take `copies` out of the scene to change them one by one").to_string())
-        })
+    fn table_of(&self, name: &str) -> Result<InlineTable, Said> {
+        self.document.body(name).ok_or_else(|| Said::Copy(name.to_string()))
     }
 
     /// How far the middle of a body has gone from where it was set down [m].
@@ -213,14 +210,14 @@ impl Session {
     }
 
     /// Writes a move, a turn about the body's middle and a factor into its table.
-    fn place(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Refusal> {
+    fn place(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Said> {
         let dimension = self.dimension();
         let shown = self.engine.shown(&self.show);
         let number = shown.bodies.iter().find(|body| body.name == name).map(|body| body.number);
         let center = number.and_then(|number| self.engine.rest_center(number));
-        let (middle, at) = center.ok_or_else(|| Refusal::Scene(format!("there is no body `{name}`")))?;
+        let (middle, at) = center.ok_or_else(|| Said::NoBody(name.to_string()))?;
         if !(placed.scaled > 0.0 && placed.scaled.is_finite()) {
-            return Err(Refusal::Scene(format!("a body cannot be scaled by {}; allowed: above 0", placed.scaled)));
+            return Err(Said::Scaled(placed.scaled));
         }
         let (sin, cos) = placed.turned.sin_cos();
         // The middle of the mesh after the turn; the position makes up for what it has moved.
@@ -252,7 +249,7 @@ impl Session {
     }
 
     /// Takes a body away, sets one down, or both.
-    fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Refusal> {
+    fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Said> {
         let past = self.past(step);
         let mut document = self.document.clone();
         if self.at_start() && document.commands() == self.own_commands {
@@ -275,7 +272,7 @@ impl Session {
         self.release();
         let now = self.engine.time();
         if let Some(name) = old {
-            let given = self.engine.remove(name).map_err(Refusal::World)?;
+            let given = self.engine.remove(name).map_err(Said::World)?;
             self.write(given);
         }
         if let Some(mut table) = new {
@@ -287,8 +284,8 @@ impl Session {
             }
             self.document.push_command(add_table(now, &table));
             let added = match read(&self.document, &self.files) {
-                Ok(scene) => self.engine.add_from(scene).map_err(Refusal::World),
-                Err(errors) => Err(Refusal::Scene(errors)),
+                Ok(scene) => self.engine.add_from(scene).map_err(Said::World),
+                Err(errors) => Err(Said::Because(errors)),
             };
             if let Err(refusal) = added {
                 self.back_to(past)?;
@@ -303,12 +300,12 @@ impl Session {
     }
 
     /// Undoes the first half of what was refused in its second.
-    fn back_to(&mut self, past: super::travel::Past) -> Result<(), Refusal> {
+    fn back_to(&mut self, past: super::travel::Past) -> Result<(), Said> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, frame)?;
         self.pins = past.pins;
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
-            self.frame().map_err(Refusal::World)?;
+            self.frame().map_err(Said::World)?;
         }
         self.goal = None;
         Ok(())

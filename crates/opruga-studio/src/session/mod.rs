@@ -9,6 +9,7 @@
 mod edits;
 mod pointer;
 mod recorded;
+mod seen;
 mod travel;
 
 pub use edits::{Edit, Placed};
@@ -19,14 +20,14 @@ use crate::document::Document;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
-use crate::pair::{self, Refusal};
-use crate::shown::{Message, Offer, Pace, Said, Severity, Show, Shown};
+use crate::pair;
+use crate::said::Said;
+use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::{Options, WorldError};
 use pointer::Held;
-use std::sync::Arc;
 use std::time::Duration;
 use travel::Past;
 
@@ -41,6 +42,15 @@ const SEEK_BUDGET: Duration = Duration::from_millis(40);
 pub enum Request {
     /// Open a scene.
     Open {
+        /// Its name.
+        name: String,
+        /// Its text.
+        text: String,
+        /// Where the files are that it names.
+        files: Files,
+    },
+    /// Open a scene that was made around a shape: it takes as many substeps as the shape needs.
+    OpenAround {
         /// Its name.
         name: String,
         /// Its text.
@@ -131,8 +141,8 @@ pub struct Session {
     opened: u64,
     /// What was refused because its step was too long.
     refused: Option<Request>,
-    /// Whether it was opened from a recording: frames whose states are there are not computed.
-    recorded: bool,
+    /// The recording that it was opened from.
+    recording: Option<recorded::Viewed>,
 }
 
 impl core::fmt::Debug for Session {
@@ -145,10 +155,10 @@ impl Session {
     /// Opens a scene.
     ///
     /// # Errors
-    /// Everything that is wrong with it, as one text.
-    pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, String> {
+    /// Everything that is wrong with it.
+    pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, Said> {
         let document = Document::unread(name, text, &files)?;
-        let engine = pair::build(&document, None, &files, &options).map_err(|refusal| refusal.to_string())?;
+        let engine = pair::build(&document, None, &files, &options)?;
         let mut session = Session {
             own_commands: document.commands(),
             document,
@@ -172,7 +182,7 @@ impl Session {
             messages: 0,
             opened: 1,
             refused: None,
-            recorded: false,
+            recording: None,
         };
         session.keep();
         Ok(session)
@@ -184,6 +194,7 @@ impl Session {
         let (before, edits) = (self.messages, request.is_edit());
         let outcome = match request {
             Request::Open { name, text, files } => self.open_another(&name, &text, files),
+            Request::OpenAround { name, text, files } => self.open_around(&name, &text, files),
             Request::Play(playing) => {
                 self.playing = playing;
                 self.pacing.rest();
@@ -191,7 +202,7 @@ impl Session {
             }
             Request::Step => {
                 self.playing = false;
-                self.frame().map_err(Refusal::World)
+                if self.stops_at_the_end() { Ok(()) } else { self.frame().map_err(Said::World) }
             }
             Request::Reset => self.reset(),
             Request::Replay => {
@@ -210,8 +221,8 @@ impl Session {
                 self.pacing.rest();
                 Ok(())
             }
-            Request::Grab(grip, body, point) => self.grab(grip, body, point, false).map_err(Refusal::World),
-            Request::GrabBeside(grip, body, point) => self.grab(grip, body, point, true).map_err(Refusal::World),
+            Request::Grab(grip, body, point) => self.grab(grip, body, point, false),
+            Request::GrabBeside(grip, body, point) => self.grab(grip, body, point, true),
             Request::Lead(point) => {
                 self.lead(point);
                 Ok(())
@@ -246,8 +257,8 @@ impl Session {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
             Ok(()) => {}
-            Err(Refusal::Scene(text)) => self.tell(Severity::Refused, Said::Because(text), None),
-            Err(Refusal::World(error)) => self.refuse(&error, Some(again)),
+            Err(Said::World(error)) => self.refuse(&error, Some(again)),
+            Err(said) => self.tell(Severity::Refused, said, None),
         }
     }
 
@@ -268,17 +279,20 @@ impl Session {
             }
             return;
         }
-        if !self.playing {
+        if !self.playing || self.stops_at_the_end() {
             return;
         }
         let (length, speed) = (self.engine.frame_seconds(), self.speed);
         let mut pacing = std::mem::take(&mut self.pacing);
         let outcome = pacing.run(elapsed, speed, length, budget, || {
             let start = clock();
-            self.frame().map(|()| clock().saturating_sub(start))
+            if self.stops_at_the_end() {
+                return Err(None);
+            }
+            self.frame().map(|()| clock().saturating_sub(start)).map_err(Some)
         });
         self.pacing = pacing;
-        if let Err(error) = outcome {
+        if let Err(Some(error)) = outcome {
             self.playing = false;
             self.refuse(&error, None);
         }
@@ -303,15 +317,32 @@ impl Session {
         }
     }
 
-    fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Refusal> {
-        let mut next = Session::open(name, text, files, self.options.clone()).map_err(Refusal::Scene)?;
+    fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+        let mut next = Session::open(name, text, files, self.options.clone())?;
         (next.show, next.speed, next.playing) = (self.show, self.speed, true);
         (next.opened, next.messages) = (self.opened + 1, self.messages);
         *self = next;
         Ok(())
     }
 
-    fn accept(&mut self, offer: &Offer) -> Result<(), Refusal> {
+    /// The same with as many substeps as it needs.
+    fn open_around(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+        match self.open_another(name, text, files.clone()) {
+            Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
+                self.open_with(name, text, files, with_a_margin(substeps))
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// The same with so many substeps.
+    fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
+        let mut document = Document::new(name, text)?;
+        document.set("time.substeps", &Value::Integer(i64::from(substeps)));
+        self.open_another(name, &document.text(), files)
+    }
+
+    fn accept(&mut self, offer: &Offer) -> Result<(), Said> {
         self.message = None;
         match offer {
             Offer::HalveStep => {
@@ -320,7 +351,7 @@ impl Session {
                 self.release();
                 self.seek(goal);
                 while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
-                    self.frame().map_err(Refusal::World)?;
+                    self.frame().map_err(Said::World)?;
                 }
                 self.goal = None;
                 let substeps = self.engine.shown(&self.show).substeps;
@@ -330,10 +361,20 @@ impl Session {
             }
             Offer::Substeps(substeps) => {
                 let refused = self.refused.take();
+                // A scene that was not opened has substeps of its own.
+                if let Some(Request::Open { name, text, files }) = refused {
+                    return self.open_with(&name, &text, files, *substeps);
+                }
                 self.set("time.substeps", Value::Integer(i64::from(*substeps)))?;
                 if let Some(request) = refused {
                     self.handle(request);
                 }
+                Ok(())
+            }
+            Offer::GoOn => {
+                self.leave_the_recording(self.latest);
+                self.playing = true;
+                self.pacing.rest();
                 Ok(())
             }
         }
@@ -352,87 +393,11 @@ impl Session {
             }
             WorldError::UnstableStep { substeps, .. } => {
                 self.refused = request;
-                // A little more than the least, so that the next change does not fail at once.
-                Some(Offer::Substeps(substeps.saturating_add(substeps / 8 + 1)))
+                Some(Offer::Substeps(with_a_margin(*substeps)))
             }
             _ => None,
         };
-        self.tell(Severity::Refused, Said::Because(error.to_string()), offer);
-    }
-
-    /// Everything that there is to see now.
-    pub fn shown(&mut self) -> Shown {
-        let mut shown = self.engine.shown(&self.show);
-        shown.name.clone_from(&self.document.name);
-        shown.latest = self.latest;
-        shown.playing = self.playing;
-        shown.speed = self.speed;
-        shown.pace = Pace { ratio: self.pacing.ratio(), frame_cost: self.pacing.cost() };
-        shown.undo = self.undo.last().map(|past| past.label.clone());
-        shown.redo = self.redo.last().map(|past| past.label.clone());
-        shown.message.clone_from(&self.message);
-        shown.opened = self.opened;
-        shown.recorded = self.document.commands().saturating_sub(self.own_commands);
-        shown.kept_bytes = self.keyframes.bytes();
-        let pins = self.pins_shown();
-        if let Some(right) = shown.beside.as_mut().and_then(|beside| Arc::get_mut(&mut beside.right)) {
-            let there = |(body, node, _): &(usize, u32, [f64; 3])| {
-                Some((*body, *node, self.engine.position_beside(*body, *node)?))
-            };
-            right.pins = pins.iter().filter_map(there).collect();
-            for body in right.bodies.iter_mut().take(if shown.bodies.len() <= 64 { 64 } else { 0 }) {
-                body.shape = self.shape_beside(&body.name, usize::from(shown.dimension));
-            }
-        }
-        shown.pins = pins;
-        shown.renamed.clone_from(&self.renamed);
-        self.give_titles(&mut shown);
-        if shown.bodies.len() <= 64 {
-            for body in &mut shown.bodies {
-                body.shape = self.document.shape(&body.name, usize::from(shown.dimension));
-            }
-        }
-        shown
-    }
-
-    /// Bodies that were set down anew keep the name of the body they were, unless there is another one of that name.
-    fn give_titles(&self, shown: &mut Shown) {
-        if self.renamed.is_empty() || shown.bodies.len() > 64 {
-            return;
-        }
-        let taken: Vec<String> = shown.bodies.iter().map(|body| body.name.clone()).collect();
-        for (place, body) in shown.bodies.iter_mut().enumerate() {
-            let mut title = &body.name;
-            // From the last that was renamed to the first: after an undo the same names may go round in a circle.
-            for (old, new) in self.renamed.iter().rev() {
-                if new == title {
-                    title = old;
-                }
-            }
-            if *title == body.name || taken.contains(title) {
-                continue;
-            }
-            body.title = title.clone();
-            let label = shown.picture.bodies.get_mut(place).map(|seen| &mut seen.label);
-            if let Some(label) = label.filter(|label| **label == body.name) {
-                label.clone_from(&body.title);
-            }
-        }
-    }
-
-    /// The shape of a body in the scene beside it, as far as its fields are plain values.
-    fn shape_beside(&self, name: &str, dimension: usize) -> Option<Values> {
-        let mut values = self.document.shape(name, dimension)?;
-        for difference in self.differences.iter().flatten() {
-            if let Difference::Shape(body, field, value) = difference
-                && body == name
-                && let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == values.kind())
-            {
-                // A value that the scene on the right was built with is allowed.
-                let _ = values.set(spec, field, value.clone(), dimension);
-            }
-        }
-        Some(values)
+        self.tell(Severity::Refused, Said::World(error.clone()), offer);
     }
 
     /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
@@ -496,4 +461,9 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }
+}
+
+/// A little more substeps than the least, so that the next change does not fail at once.
+fn with_a_margin(substeps: u32) -> u32 {
+    substeps.saturating_add(substeps / 8 + 1)
 }

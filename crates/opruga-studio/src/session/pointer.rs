@@ -2,8 +2,7 @@
 
 use super::Session;
 use crate::engine::Given;
-use crate::pair::Refusal;
-use crate::shown::Step;
+use crate::said::{Said, Step};
 use opruga::WorldError;
 
 /// The force of a push for each metre between the node and the pointer [N/m].
@@ -60,18 +59,12 @@ impl Session {
         [given.number, self.document.push_command(given.table)]
     }
 
-    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3], beside: bool) -> Result<(), WorldError> {
+    pub(super) fn grab(&mut self, grip: Grip, body: usize, point: [f64; 3], beside: bool) -> Result<(), Said> {
         self.release();
-        if let Err(refusal) = self.branch() {
-            return match refusal {
-                Refusal::World(error) => Err(error),
-                Refusal::Scene(message) => Err(WorldError::Path { path: "scene".into(), message }),
-            };
-        }
-        let missing = || WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() };
+        self.branch()?;
         let engine = &self.engine;
         let node = if beside { engine.nearest_beside(body, point) } else { engine.nearest(body, point) };
-        let node = node.ok_or_else(missing)?;
+        let node = node.ok_or_else(|| Said::NoBody(body.to_string()))?;
         let now = self.engine.frames();
         let mut held = Held { grip, body, node, command: None, pointer: point, moved: false, led: now + 1 };
         match grip {
@@ -110,10 +103,10 @@ impl Session {
     }
 
     /// Frees a node that a person or the scene has pinned.
-    pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Refusal> {
+    pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Said> {
         self.branch()?;
         let past = self.past(Step::Unpin);
-        self.unpin(body, node).map_err(Refusal::World)?;
+        self.unpin(body, node).map_err(Said::World)?;
         self.remember(past);
         Ok(())
     }

@@ -2,10 +2,21 @@
 
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
+use crate::said::Said;
+use crate::shown::{Offer, Severity};
 use opruga::io::Files;
 use opruga::io::recording::{Ending, Recording};
 use opruga::{Options, WorldError};
 use std::io::{Read, Seek};
+
+/// A recording that is viewed: frames whose states are there are not computed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Viewed {
+    /// The last frame that is as it was recorded.
+    until: u64,
+    /// Whether a person has begun a course of their own.
+    left: bool,
+}
 
 impl Session {
     /// Opens a recorded run at its first frame. As many of its states are held as the memory for keyframes takes; those
@@ -28,7 +39,8 @@ impl Session {
             document.take_override(path, value)?;
         }
         let options = Options { allow_unstable: options.allow_unstable || header.allow_unstable, ..options };
-        let mut session = Session::open(&header.name, &document.text(), files, options)?;
+        let opened = Session::open(&header.name, &document.text(), files, options);
+        let mut session = opened.map_err(|said| said.to_string())?;
         let damaged = |error: opruga::io::recording::RecordingError| error.to_string();
         let frames = recording.frames();
         let kept: Vec<u64> = frames.clone().filter(|frame| recording.kept(*frame) == Ok(*frame)).collect();
@@ -49,7 +61,7 @@ impl Session {
             session.keyframes.keep(frame, state);
         }
         session.latest = frames.end.saturating_sub(1);
-        session.recorded = true;
+        session.recording = Some(Viewed { until: session.latest, left: false });
         if let Ending::Damaged(error) = recording.ending() {
             return Err(format!("behind frame {}: {error}", session.latest));
         }
@@ -60,12 +72,44 @@ impl Session {
     /// Takes the next frame from the recording, if its state is there and nobody holds anything.
     pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
         let next = self.engine.frames() + 1;
-        if !self.recorded || self.held.is_some() || next > self.latest {
+        if self.recording.is_none() || self.held.is_some() || next > self.latest {
             return Ok(false);
         }
         match self.keyframes.before(next) {
             Some((frame, state)) if frame == next => self.engine.rewind(state).map(|()| true),
             _ => Ok(false),
+        }
+    }
+
+    /// The last frame that is as it was recorded.
+    pub(super) fn recorded_until(&self) -> Option<u64> {
+        self.recording.map(|viewed| viewed.until).filter(|until| *until > 0)
+    }
+
+    /// Whether a recording is seen in which nobody has begun a course of their own.
+    pub(super) fn is_as_recorded(&self) -> bool {
+        self.recording.is_some_and(|viewed| !viewed.left)
+    }
+
+    /// At the end of a recording time stands: what comes later was not recorded, and the person is asked for it.
+    pub(super) fn stops_at_the_end(&mut self) -> bool {
+        let stops = self.is_as_recorded() && self.engine.frames() >= self.latest && self.held.is_none();
+        if stops {
+            self.playing = false;
+            let time = self.engine.time();
+            self.tell(Severity::Told, Said::RecordingEnds(time), Some(Offer::GoOn));
+        }
+        stops
+    }
+
+    /// From a frame on things take a course of their own.
+    pub(super) fn leave_the_recording(&mut self, frame: u64) {
+        let Some(viewed) = &mut self.recording else { return };
+        let first = !viewed.left;
+        (viewed.until, viewed.left) = (viewed.until.min(frame), true);
+        if first {
+            let time = self.time_of(frame);
+            self.tell(Severity::Told, Said::OwnCourse(time), None);
         }
     }
 }

@@ -6,8 +6,9 @@ use crate::differences::Difference;
 use crate::document::Document;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
-use crate::pair::{self, Refusal};
-use crate::shown::{Said, Severity, Step};
+use crate::pair;
+use crate::said::{Said, Step};
+use crate::shown::Severity;
 
 /// A moment that can be gone back to.
 #[derive(Clone, Debug)]
@@ -38,20 +39,22 @@ impl Session {
     }
 
     /// What is done now replaces what was recorded later: the future is written anew from here.
-    pub(super) fn branch(&mut self) -> Result<(), Refusal> {
+    pub(super) fn branch(&mut self) -> Result<(), Said> {
         let now = self.engine.frames();
         if now >= self.latest {
+            self.leave_the_recording(now);
             return Ok(());
         }
         let mut document = self.document.clone();
         document.cut(self.own_commands, self.engine.time());
         let mut engine = self.build(&document)?;
-        engine.rewind(&self.engine.snapshot()).map_err(Refusal::World)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
         (self.document, self.engine) = (document, engine);
         self.cut_pins();
         self.keyframes.forget_after(now);
         self.latest = now;
         self.goal = None;
+        self.leave_the_recording(now);
         Ok(())
     }
 
@@ -81,13 +84,13 @@ impl Session {
     }
 
     /// Builds the world of a document, and the one on its right.
-    pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Refusal> {
+    pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Said> {
         pair::build(document, self.differences.as_deref(), &self.files, &self.options)
     }
 
     /// Shows the scene twice, the second time with differences, or once (none). Both go from the start to the present
     /// moment again: what differs has differed all the time.
-    pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Refusal> {
+    pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Said> {
         if differences == self.differences {
             return Ok(());
         }
@@ -109,8 +112,8 @@ impl Session {
     fn with_differences(
         &mut self,
         differences: Option<Vec<Difference>>,
-        act: impl FnOnce(&mut Session) -> Result<(), Refusal>,
-    ) -> Result<(), Refusal> {
+        act: impl FnOnce(&mut Session) -> Result<(), Said>,
+    ) -> Result<(), Said> {
         if differences == self.differences {
             return act(self);
         }
@@ -125,7 +128,7 @@ impl Session {
     }
 
     /// Builds the world of a document and goes to a frame that it shares with the present course of things.
-    pub(super) fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Refusal> {
+    pub(super) fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Said> {
         self.release();
         let mut engine = self.build(&document)?;
         let shared = frame.min(self.engine.frames().max(self.latest));
@@ -140,13 +143,16 @@ impl Session {
             self.keep();
         }
         self.pins.clear();
+        if frame < self.latest {
+            self.leave_the_recording(frame);
+        }
         self.latest = frame;
         self.goal = (frame > self.engine.frames()).then_some(frame);
         self.pacing.rest();
         Ok(())
     }
 
-    pub(super) fn step_back(&mut self) -> Result<(), Refusal> {
+    pub(super) fn step_back(&mut self) -> Result<(), Said> {
         let Some(past) = self.undo.last().cloned() else { return Ok(()) };
         let present = self.past(past.label.clone());
         self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
@@ -159,7 +165,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn step_forward(&mut self) -> Result<(), Refusal> {
+    pub(super) fn step_forward(&mut self) -> Result<(), Said> {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
         let present = self.past(future.label.clone());
         self.with_differences(future.differences, |session| {
@@ -177,7 +183,12 @@ impl Session {
         frame as f64 * self.engine.frame_seconds()
     }
 
-    pub(super) fn reset(&mut self) -> Result<(), Refusal> {
+    pub(super) fn reset(&mut self) -> Result<(), Said> {
+        if self.is_as_recorded() {
+            self.release();
+            self.seek(0);
+            return Ok(());
+        }
         let past = self.past(Step::Reset);
         let mut document = self.document.clone();
         let recorded = document.commands() > self.own_commands;

@@ -14,6 +14,9 @@ use std::time::{Duration, Instant};
 /// The size of a small laptop [points].
 pub(crate) const SIZE: [f32; 2] = [1280.0, 720.0];
 
+/// How long anything may take on a machine that has much else to do.
+const PATIENCE: Duration = Duration::from_secs(240);
+
 /// A window on a scene.
 pub(crate) struct Window {
     pub(crate) harness: Harness<'static, Option<Studio>>,
@@ -29,6 +32,11 @@ impl Window {
     pub(crate) fn open_at(scene: &str, size: [f32; 2], fine: f32) -> Window {
         let text = opruga::scenes::find(scene).expect("a scene of the program");
         let session = Session::open(scene, text, opruga::scenes::files(), Options::default()).expect("it opens");
+        Window::on(session, size, fine)
+    }
+
+    /// A window on a session.
+    pub(crate) fn on(session: Session, size: [f32; 2], fine: f32) -> Window {
         let textures = Textures::default();
         let mut session = Some(session);
         let show = move |ui: &mut egui::Ui, studio: &mut Option<Studio>| {
@@ -64,7 +72,7 @@ impl Window {
     pub(crate) fn until(&mut self, what: &str, holds: impl Fn(&Shown) -> bool) {
         let begin = Instant::now();
         while !holds(&self.shown()) {
-            if begin.elapsed() > Duration::from_secs(20) {
+            if begin.elapsed() > PATIENCE {
                 let Shown { name, frames, playing, message, .. } = &*self.shown();
                 panic!("{what}: {name}, frame {frames}, playing {playing}, {message:?}");
             }
@@ -79,7 +87,7 @@ impl Window {
         let begin = Instant::now();
         self.frames(2);
         while self.studio().is_drawing() {
-            assert!(begin.elapsed() < Duration::from_secs(60), "it is still drawing");
+            assert!(begin.elapsed() < PATIENCE, "it is still drawing");
             std::thread::sleep(Duration::from_millis(2));
             self.frames(1);
         }

@@ -38,7 +38,7 @@ const OVERLAP: Field = Field::new(
     Allowed::Choice(&["refuse", "union", "even_odd"]),
     "",
     Default::Text("refuse"),
-    "What holds where outlines cross: an error, what any part covers, or what an odd number of outlines enclose.",
+    "What holds where outlines cross, touch or lie in one another: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",

@@ -14,6 +14,27 @@ const NONE: &str = "Object.defineProperty(navigator, 'gpu', { value: undefined }
                     const get = HTMLCanvasElement.prototype.getContext; \
                     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { \
                       return kind.startsWith('webgl') ? null : get.call(this, kind, ...rest); }";
+/// How long the pictures of one scene may take.
+const LONGEST_MEASURE: Duration = Duration::from_secs(3600);
+/// Faults of WebGPU that a browser may have.
+const FAULTS: [(&str, &str); 4] = [
+    ("without WebGPU", "Object.defineProperty(navigator, 'gpu', { value: undefined });"),
+    ("without an adapter", "GPU.prototype.requestAdapter = async () => null;"),
+    ("without a device", "GPUAdapter.prototype.requestDevice = async () => { throw new Error('no device'); };"),
+    ("with a device that shows nothing", "GPUQueue.prototype.submit = () => {};"),
+];
+/// By how much two pictures differ below the line with the numbers: the share of pixels of visibly another colour.
+const DIFFER: &str = "async (first, second) => { \
+    const pixels = async (letters) => { \
+      const image = await createImageBitmap(await (await fetch('data:image/png;base64,' + letters)).blob()); \
+      const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d'); \
+      context.drawImage(image, 0, 0); \
+      return context.getImageData(0, 60, image.width, image.height - 60).data; }; \
+    const [a, b] = [await pixels(first), await pixels(second)]; \
+    let count = 0; \
+    for (let k = 0; k < a.length; k += 4) \
+      count += [0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 48); \
+    return 4 * count / a.length; }";
 /// The letters of a picture in which nothing is drawn are fewer.
 const FEWEST_LETTERS: usize = 60_000;
 
@@ -21,7 +42,7 @@ impl Trial {
     /// A device that is lost is replaced, and everything goes on as it was; where that happens again and again, the page says so
     /// and keeps the scene.
     pub(super) fn goes_on_on_another_device(&mut self) -> Outcome {
-        self.fresh("?draw=webgl")?;
+        self.fresh("?graphics=webgl")?;
         self.click("Add a model")?;
         self.click("drag")?;
         let models = |state: &Value| state["models"].as_array().map_or(0, Vec::len);
@@ -54,13 +75,64 @@ impl Trial {
         Ok(())
     }
 
-    /// The page runs on WebGPU too. What that draws is shown by no browser without a screen.
-    pub(super) fn runs_on_webgpu(&mut self) -> Outcome {
-        self.fresh("?draw=webgpu")?;
+    /// WebGPU draws where there is one that works, WebGL 2 where there is none, where it fails, or where somebody insists on it;
+    /// both draw the same, and the page says which one it is.
+    pub(super) fn on_webgpu(&mut self) -> Outcome {
+        self.browser.size([1280, 720], 1.0, false)?;
+        self.fresh("")?;
+        if self.browser.value("navigator.gpu?.requestAdapter().then((adapter) => !!adapter)")? != true {
+            println!("SKIPPED: this browser has no adapter of WebGPU");
+            return Ok(());
+        }
+        let of_webgpu = self.picture_by("webgpu", "WebGPU")?;
+        self.keep_picture("web-webgpu")?;
+        self.drags()?;
+        self.goes_on_after_the_driver_has_ended()?;
+        self.fresh("?graphics=webgl")?;
+        let of_webgl = self.picture_by("webgl", "WebGL 2")?;
+        let differ = self.browser.value(&format!("({DIFFER})({}, {})", json!(of_webgpu), json!(of_webgl)))?;
+        let share = differ.as_f64().unwrap_or(1.0);
+        println!("WebGPU and WebGL 2 draw the same but for {:.2} % of the pixels", 100.0 * share);
+        holds(share < 0.02, || format!("{share} of the pixels differ between WebGPU and WebGL 2"))?;
+        for (fault, script) in FAULTS {
+            let added = self.browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": script }))?;
+            self.fresh("")?;
+            let by = self.browser.value("opruga_drawn_by.name")?;
+            holds(by == "webgl", || format!("{fault}: it is drawn by {by}"))?;
+            self.drawn(fault)?;
+            let added = json!({ "identifier": added["identifier"] });
+            self.browser.call("Page.removeScriptToEvaluateOnNewDocument", added)?;
+        }
+        println!("where WebGPU is missing or fails, WebGL 2 draws");
+        Ok(())
+    }
+
+    /// The picture of one and the same moment, by what shall draw it, which the title and the line with the numbers name.
+    fn picture_by(&mut self, drawn_by: &str, named: &str) -> Result<String, String> {
         let by = self.browser.value("opruga_drawn_by.name")?;
-        holds(by == "webgpu", || format!("it is drawn by {by}"))?;
-        self.until("it moves", |state| state["frames"].as_u64() > Some(30))?;
-        println!("it runs on WebGPU");
+        holds(by == drawn_by, || format!("it is drawn by {by} and not by {drawn_by}"))?;
+        let title = self.browser.value("document.title")?;
+        holds(title.as_str().is_some_and(|title| title.ends_with(named)), || format!("the title is {title}"))?;
+        self.place(named)?;
+        self.until("frame 20", |state| state["frames"].as_u64() >= Some(20))?;
+        self.browser.value("opruga.seek(20)")?;
+        self.until("back at frame 20", |state| state["frames"].as_u64() == Some(20))?;
+        // The line with the numbers is that of the machine: it is left out.
+        self.drawn("at frame 20")?;
+        self.browser.picture()
+    }
+
+    /// The process of the graphics driver ends, and the page goes on with another one.
+    fn goes_on_after_the_driver_has_ended(&mut self) -> Outcome {
+        let before = self.state()?;
+        // Whether the answer comes before the process has ended is left to chance.
+        let _ = self.browser.call("Browser.crashGpuProcess", json!({}));
+        self.until_value("opruga_losses.length === 1 && document.querySelector('#cover').className === 'gone'")?;
+        let frames = before["frames"].as_u64().unwrap_or(0);
+        self.until("it goes on", |state| state["frames"].as_u64() > Some(frames + 5))?;
+        self.drawn("after the driver has ended")?;
+        let by = self.browser.value("opruga_drawn_by.name")?;
+        println!("after the driver of WebGPU has ended it is drawn by {by}");
         Ok(())
     }
 
@@ -110,9 +182,15 @@ impl Trial {
 
     /// Something is seen.
     fn drawn(&mut self, when: &str) -> Outcome {
-        std::thread::sleep(Duration::from_millis(500));
-        let letters = self.browser.picture()?.len();
-        holds(letters > FEWEST_LETTERS, || format!("nothing is seen {when}: a picture of {letters} letters"))
+        let begin = Instant::now();
+        loop {
+            let letters = self.browser.picture()?.len();
+            if letters > FEWEST_LETTERS {
+                return Ok(());
+            }
+            holds(begin.elapsed() < PATIENCE, || format!("nothing is seen {when}: a picture of {letters} letters"))?;
+            std::thread::sleep(Duration::from_millis(200));
+        }
     }
 
     fn until_value(&mut self, expression: &str) -> Outcome {
@@ -135,26 +213,38 @@ pub(in super::super) fn measure(page: &Path, pictures: u32) -> Outcome {
     let folder = std::env::temp_dir().join(format!("opruga-measure-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let (address, _) = server::serve(page.to_path_buf(), 0)?.start();
-    let browser = Browser::start(&folder)?;
-    let mut trial = Trial { browser, address, folder: folder.clone(), native: PathBuf::new() };
-    trial.browser.size([1280, 720], 1.0, false)?;
     let root = super::super::root()?;
-    let outcome = (|| {
+    let outcome = [("webgl", false), ("webgpu", true)].into_iter().try_for_each(|(by, webgpu)| {
+        let browser = Browser::start(&folder, webgpu)?;
+        let mut trial = Trial { browser, address: address.clone(), folder: folder.clone(), native: PathBuf::new() };
+        trial.browser.size([1280, 720], 1.0, false)?;
         for scene in ["scenes/ball", "benches/scenes/ring-10000", "scenes/thousand-balls", "scenes/giant-ring"] {
             let path = root.join(format!("{scene}.toml"));
             let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
             let name = scene.rsplit('/').next().unwrap_or(scene);
-            trial.fresh("?draw=webgl")?;
+            trial.fresh(&format!("?graphics={by}"))?;
             trial.browser.value(&format!("opruga.show({name:?}, {})", json!(text)))?;
             trial.until(name, |state| state["name"] == name && state["frames"].as_u64() > Some(2))?;
             // Large scenes are slow on a processor that draws as well.
             let count = if scene.ends_with("ball") || scene.ends_with("10000") { pictures } else { pictures / 4 };
-            let said = trial.browser.value(&format!("opruga_measure({})", count.max(10)))?;
-            println!("{}", said.as_str().unwrap_or_default());
+            let begin = format!(
+                "window.told = null; opruga_measure({}).then((told) => (window.told = told)); 0",
+                count.max(10)
+            );
+            trial.browser.value(&begin)?;
+            let begin = Instant::now();
+            let said = loop {
+                // A page that is busy answers late, but it answers.
+                if let Some(said) = trial.browser.value("window.told")?.as_str() {
+                    break said.to_string();
+                }
+                holds(begin.elapsed() < LONGEST_MEASURE, || format!("{name} is not measured within the hour"))?;
+                std::thread::sleep(Duration::from_secs(1));
+            };
+            println!("{said}");
         }
         Ok(())
-    })();
-    drop(trial);
+    });
     let _ = std::fs::remove_dir_all(&folder);
     outcome
 }

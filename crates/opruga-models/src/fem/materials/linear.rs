@@ -13,6 +13,7 @@ pub struct Linear;
 
 impl<const D: usize> Material<D> for Linear {
     const NAME: &'static str = "linear";
+    const TURNS: bool = false;
     #[inline(always)]
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
         let half = S::splat(0.5);

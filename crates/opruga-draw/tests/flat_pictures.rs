@@ -1,0 +1,107 @@
+//! What lies over what in flat pictures, and what is the same in all pictures of a run.
+#![allow(clippy::disallowed_methods)] // no physics here
+
+use opruga_draw::{ArrowKind, ArrowPicture, BodyPicture, Facets, Image, Legend, Picture, Style, View, draw};
+
+/// A ring of 24 nodes, squashed and moved.
+fn ring(center: f64, squash: f64) -> BodyPicture {
+    let node = |k: u32| {
+        let angle = std::f64::consts::TAU * f64::from(k) / 24.0;
+        [center + angle.cos() / squash, squash * angle.sin(), 0.0]
+    };
+    BodyPicture {
+        positions: (0..24).map(node).collect(),
+        facets: Facets::Edges((0..24).map(|k| [k, (k + 1) % 24]).collect()),
+        ..BodyPicture::default()
+    }
+}
+
+fn image(bodies: Vec<BodyPicture>, arrows: Vec<ArrowPicture>, view: &View) -> Image {
+    let picture = Picture { bodies, arrows, time: f64::NAN, ..Picture::default() };
+    draw(
+        &picture,
+        view,
+        &Style { width: 500, height: 300, header: false, footer: false, legend: false, ..Style::default() },
+    )
+    .expect("an image")
+}
+
+fn fitted(bodies: Vec<BodyPicture>) -> View {
+    View::fit([&Picture { bodies, ..Picture::default() }]).expect("a view")
+}
+
+/// The places at which two images differ.
+fn changed(a: &Image, b: &Image) -> Vec<[u32; 2]> {
+    let places = (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| [x, y]));
+    places.filter(|[x, y]| a.pixel(*x, *y) != b.pixel(*x, *y)).collect()
+}
+
+#[test]
+fn dots_are_in_all_pictures_of_a_run_or_in_none() {
+    let view = fitted(vec![ring(0.0, 0.4)]);
+    let dots = |squash: f64, nodes_drawn: bool, node_spacing: Option<f64>| {
+        image(vec![BodyPicture { nodes_drawn, node_spacing, ..ring(0.0, squash) }], Vec::new(), &view)
+    };
+    // Round or flat: 0.26 m have room and 0.05 m do not; what is asked for whatever the room is drawn.
+    for squash in [1.0, 0.7, 0.4] {
+        let without = dots(squash, false, None);
+        assert!(!changed(&dots(squash, true, Some(0.26)), &without).is_empty(), "{squash}");
+        assert!(changed(&dots(squash, true, Some(0.05)), &without).is_empty(), "{squash}");
+        assert!(!changed(&dots(squash, true, None), &without).is_empty(), "{squash}");
+    }
+}
+
+#[test]
+fn pressure_covers_no_neighbour_and_no_name() {
+    let pair = || vec![ring(0.0, 1.0), ring(2.2, 1.0)];
+    let arrow = |from: [f64; 2], vector: [f64; 2]| ArrowPicture {
+        kind: ArrowKind::Pressure,
+        from: [from[0], from[1], 0.0],
+        vector: [vector[0], vector[1], 0.0],
+    };
+    // One metre a pascal: longer than the gap of 0.2 m.
+    let mut view = fitted(pair());
+    (view.arrow, view.longest) = (1.0, [(ArrowKind::Pressure, 1.0)].into());
+    let plain = image(pair(), Vec::new(), &view);
+    let first = changed(&plain, &image(vec![ring(2.2, 1.0)], Vec::new(), &view));
+    let neighbour = changed(&plain, &image(vec![ring(0.0, 1.0)], Vec::new(), &view));
+    let outward = image(pair(), vec![arrow([1.0, 0.0], [1.0, 0.0])], &view);
+    let seen = changed(&outward, &plain);
+    assert!(!seen.is_empty() && !seen.iter().any(|place| neighbour.contains(place)), "over the neighbour");
+    // Where the pressure outside is larger, arrows lie over the body into which they lead.
+    let inward = changed(&image(pair(), vec![arrow([1.0, 0.0], [-1.0, 0.0])], &view), &plain);
+    assert!(inward.iter().filter(|place| first.contains(place)).count() > 20, "within its own body");
+
+    let named = || vec![BodyPicture { label: "hard".into(), ..ring(0.0, 1.0) }, ring(2.2, 1.0)];
+    let (plain, name) = (image(pair(), Vec::new(), &view), image(named(), Vec::new(), &view));
+    let down = vec![arrow([0.0, -1.0], [0.0, -0.4]), arrow([0.1, -1.0], [0.0, -0.4])];
+    let (bare, crossed) = (image(pair(), down.clone(), &view), image(named(), down, &view));
+    let ink = |image: &Image, [x, y]: [u32; 2]| image.pixel(x, y).iter().map(|c| u32::from(*c)).sum::<u32>() < 180;
+    let letters: Vec<[u32; 2]> = changed(&name, &plain).into_iter().filter(|place| ink(&name, *place)).collect();
+    assert!(letters.len() > 20 && letters.iter().all(|place| ink(&crossed, *place)), "{} letters", letters.len());
+    assert!(letters.iter().any(|[x, y]| bare.pixel(*x, *y) != plain.pixel(*x, *y)), "the arrows cross the name");
+}
+
+#[test]
+fn every_chamber_is_filled_with_its_own_colour() {
+    let (left, right) = (ring(0.0, 1.0), ring(3.0, 1.0));
+    let edges = |first: u32| (0..24).map(move |k| [first + k, first + (k + 1) % 24]);
+    let body = BodyPicture {
+        positions: [left.positions, right.positions].concat(),
+        facets: Facets::Edges(edges(0).chain(edges(24)).collect()),
+        scalar: [vec![0.0; 24], vec![1.0; 24]].concat(),
+        ..BodyPicture::default()
+    };
+    let picture = Picture {
+        bodies: vec![body],
+        time: f64::NAN,
+        legend: Some(Legend { range: Some([0.0, 1.0]), ..Legend::default() }),
+        ..Picture::default()
+    };
+    let view = View::fit([&picture]).expect("a view");
+    let style = Style { width: 500, height: 300, header: false, footer: false, legend: false, ..Style::default() };
+    let image = draw(&picture, &view, &style).expect("an image");
+    let [left, right] = [100, 400].map(|x| image.pixel(x, 150));
+    // The pale ends of the colours: violet and yellow.
+    assert!(left[2] > left[1] && right[2] < right[1], "{left:?} {right:?}");
+}

@@ -1,0 +1,329 @@
+//! How quadrilaterals and hexahedra resist the motions that their mean deformation does not see.
+//!
+//! The displacement of a cell of N corners is affine but for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ are
+//! those of vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). What they cost at small strain is taken
+//! from an assumed stress: with fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane, Pian and Tong
+//! 1986 in space; here without their mean) and the compliance of Hooke's law,
+//!
+//! K = Lᵀ H⁻¹ L,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s.
+//!
+//! Among the fields no combination is a pressure alone, so K stays finite as ν → 0.5, and H⁻¹ knows what free sides do: a
+//! box bends with E in plane stress and E/(1 − ν²) in plane strain.
+
+use super::elements::{CORNERS, Shape};
+use super::section::rest_gradient;
+
+/// Hourglass modes of a hexahedron.
+pub(super) const MOST_MODES: usize = 4;
+
+/// Amplitudes of a hexahedron: modes times axes.
+const MOST: usize = 12;
+
+/// Hourglass modes of a cell of N corners.
+pub(super) const fn modes<const D: usize, const N: usize>() -> usize {
+    N - 1 - D
+}
+
+/// Numbers of the stiffness of a cell: k₀, and the upper triangle of the rest row by row.
+pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
+    let size = modes::<D, N>() * D;
+    1 + size * (size + 1) / 2
+}
+
+/// The assumed stresses: two axes of the cell, and the axes whose coordinates are multiplied.
+const STRESSES: [(usize, usize, &[usize]); MOST] = [
+    (0, 0, &[1]),
+    (1, 1, &[0]),
+    (0, 0, &[2]),
+    (1, 1, &[2]),
+    (2, 2, &[0]),
+    (2, 2, &[1]),
+    (0, 0, &[1, 2]),
+    (1, 1, &[2, 0]),
+    (2, 2, &[0, 1]),
+    (0, 1, &[2]),
+    (1, 2, &[0]),
+    (2, 0, &[1]),
+];
+
+/// The axes whose coordinates an hourglass function multiplies.
+const fn axes<const D: usize>(mode: usize) -> &'static [usize] {
+    if D == 2 {
+        return &[0, 1];
+    }
+    match mode {
+        0 => &[1, 2],
+        1 => &[2, 0],
+        2 => &[0, 1],
+        _ => &[0, 1, 2],
+    }
+}
+
+fn product(corner: usize, axes: &[usize]) -> f64 {
+    axes.iter().map(|axis| CORNERS[corner][*axis]).product()
+}
+
+/// A cell at rest.
+#[derive(Debug)]
+pub(super) struct Rest<const D: usize, const N: usize> {
+    /// Its measure [m³].
+    pub(super) measure: f64,
+    /// For every corner its share in the mean of ∂x/∂X (D columns [1/m]) and in the hourglass amplitudes.
+    pub(super) weights: [[f64; N]; N],
+    /// L.
+    work: [[f64; MOST]; MOST],
+    /// ∫ s : s and ∫ tr s tr s.
+    inner: [[f64; MOST]; MOST],
+    trace: [[f64; MOST]; MOST],
+}
+
+impl<const D: usize, const N: usize> Rest<D, N> {
+    /// Of the corners of a cell whose determinants at Gauss's points and in the middle are positive.
+    pub(super) fn new<E: Shape<D, N>>(corners: &[[f64; D]; N], thickness: f64) -> Self {
+        let modes = modes::<D, N>();
+        // ∂Nₐ/∂X and the measures at Gauss's points.
+        let mut slopes = [[[0.0; D]; N]; N];
+        let mut measures = [0.0; N];
+        for q in 0..N {
+            let (inverse, determinant) = rest_gradient(corners, &E::SLOPES[q]);
+            measures[q] = E::WEIGHTS[q] * determinant * thickness;
+            for a in 0..N {
+                for j in 0..D {
+                    slopes[q][a][j] = (0..D).map(|k| E::SLOPES[q][a][k] * inverse[k][j]).sum();
+                }
+            }
+        }
+        let measure: f64 = measures.iter().sum();
+        let mut weights = [[0.0; N]; N];
+        for a in 0..N {
+            for j in 0..D {
+                weights[a][j] = (0..N).map(|q| measures[q] * slopes[q][a][j]).sum::<f64>() / measure;
+            }
+        }
+        // What is left of the hourglass functions without their affine parts, and such that mode α has the amplitude 1.
+        let mut rows = vec![vec![0.0; modes + N]; modes];
+        for (mode, row) in rows.iter_mut().enumerate() {
+            let h: [f64; N] = core::array::from_fn(|a| product(a, axes::<D>(mode)));
+            let along: [f64; D] = core::array::from_fn(|j| (0..N).map(|a| h[a] * corners[a][j]).sum());
+            for a in 0..N {
+                row[modes + a] = h[a] - (0..D).map(|j| along[j] * weights[a][j]).sum::<f64>();
+            }
+            for other in 0..modes {
+                row[other] = (0..N).map(|a| row[modes + a] * product(a, axes::<D>(other))).sum();
+            }
+        }
+        eliminate(&mut rows);
+        for (mode, row) in rows.iter().enumerate() {
+            for a in 0..N {
+                weights[a][D + mode] = row[modes + a];
+            }
+        }
+
+        let (at_middle, size) = (E::at([0.0; 3]).1, modes * D);
+        let mut jacobian = [[0.0; D]; D];
+        for i in 0..D {
+            for k in 0..D {
+                jacobian[i][k] = (0..N).map(|a| corners[a][i] * at_middle[a][k]).sum();
+            }
+        }
+        let mut tensors = [[[0.0; D]; D]; MOST];
+        let mut fields = [[0.0; N]; MOST];
+        for (s, (a, b, axes)) in STRESSES.iter().enumerate().take(size) {
+            for i in 0..D {
+                for j in 0..D {
+                    tensors[s][i][j] = 0.5 * (jacobian[i][*a] * jacobian[j][*b] + jacobian[i][*b] * jacobian[j][*a]);
+                }
+            }
+            let mean = (0..N).map(|q| measures[q] * product(q, axes)).sum::<f64>() / measure;
+            fields[s] = core::array::from_fn(|q| product(q, axes) - mean);
+        }
+        let mut rest = Rest {
+            measure,
+            weights,
+            work: [[0.0; MOST]; MOST],
+            inner: [[0.0; MOST]; MOST],
+            trace: [[0.0; MOST]; MOST],
+        };
+        for s in 0..size {
+            for mode in 0..modes {
+                // ∫ f ∂h/∂X of the field f of the stress.
+                let mut mean = [0.0; D];
+                for q in 0..N {
+                    for a in 0..N {
+                        let share = measures[q] * fields[s][q] * product(a, axes::<D>(mode));
+                        for j in 0..D {
+                            mean[j] += share * slopes[q][a][j];
+                        }
+                    }
+                }
+                for i in 0..D {
+                    rest.work[s][mode * D + i] = (0..D).map(|j| tensors[s][i][j] * mean[j]).sum();
+                }
+            }
+            for t in 0..size {
+                let both: f64 = (0..N).map(|q| measures[q] * fields[s][q] * fields[t][q]).sum();
+                let trace = |s: usize| (0..D).map(|i| tensors[s][i][i]).sum::<f64>();
+                let inner: f64 =
+                    tensors[s].as_flattened().iter().zip(tensors[t].as_flattened()).map(|(a, b)| a * b).sum();
+                rest.inner[s][t] = inner * both;
+                rest.trace[s][t] = trace(s) * trace(t) * both;
+            }
+        }
+        rest
+    }
+
+    /// The stiffness of a law whose strain is (s − c tr s 1)/2μ [N/m]: k₀ and, packed, the rest.
+    ///
+    /// k₀ is a lower bound of the eigenvalues, ‖K⁻²‖^(−1/2): what is the same in all directions needs not turn with the cell.
+    pub(super) fn stiffness(&self, mu: f64, c: f64, out: &mut Vec<f64>) {
+        let size = modes::<D, N>() * D;
+        // H = A Aᵀ, and A⁻¹ L.
+        let mut factor = [[0.0; MOST]; MOST];
+        let mut half = self.work;
+        for i in 0..size {
+            for j in 0..=i {
+                let inner: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+                let rest = self.inner[i][j] - c * self.trace[i][j] - inner;
+                factor[i][j] = if i == j { rest.sqrt() } else { rest / factor[j][j] };
+            }
+            for column in 0..size {
+                let done: f64 = (0..i).map(|k| factor[i][k] * half[k][column]).sum();
+                half[i][column] = (self.work[i][column] - done) / factor[i][i];
+            }
+        }
+        let mut whole = vec![vec![0.0; 2 * size]; size];
+        for (r, row) in whole.iter_mut().enumerate() {
+            for s in 0..size {
+                row[s] = 2.0 * mu * (0..size).map(|k| half[k][r] * half[k][s]).sum::<f64>();
+            }
+            row[size + r] = 1.0;
+        }
+        let stiffness: Vec<f64> = whole.iter().flat_map(|row| row[..size].to_vec()).collect();
+        eliminate(&mut whole);
+        let mut square = 0.0;
+        for r in 0..size {
+            for s in 0..size {
+                let twice: f64 = (0..size).map(|k| whole[r][size + k] * whole[k][size + s]).sum();
+                square += twice * twice;
+            }
+        }
+        let least = 1.0 / square.sqrt().sqrt();
+        out.push(least);
+        for r in 0..size {
+            for s in r..size {
+                out.push(stiffness[r * size + s] - if r == s { least } else { 0.0 });
+            }
+        }
+    }
+}
+
+/// Makes the first columns of as many rows the unit matrix (Gauss and Jordan, with the largest pivot).
+fn eliminate(rows: &mut [Vec<f64>]) {
+    for k in 0..rows.len() {
+        let mut best = k;
+        for r in k + 1..rows.len() {
+            best = if rows[r][k].abs() > rows[best][k].abs() { r } else { best };
+        }
+        rows.swap(k, best);
+        let pivot = rows[k][k];
+        rows[k].iter_mut().for_each(|x| *x /= pivot);
+        let own = rows[k].clone();
+        for (r, row) in rows.iter_mut().enumerate() {
+            let factor = row[k];
+            if r != k {
+                row.iter_mut().zip(&own).for_each(|(x, y)| *x -= factor * y);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::elements::{Hexahedron, Quadrilateral};
+    use super::*;
+
+    fn full(packed: &[f64], size: usize) -> Vec<Vec<f64>> {
+        let mut out = vec![vec![0.0; size]; size];
+        let mut next = 1;
+        for r in 0..size {
+            for s in r..size {
+                let own = packed[next] + if r == s { packed[0] } else { 0.0 };
+                (out[r][s], out[s][r]) = (own, own);
+                next += 1;
+            }
+        }
+        out
+    }
+
+    /// A box of a × b that bends to the curvature κ has the energy E I κ²/2 per length, I = t b³/12: u = (κ x y, …).
+    #[test]
+    fn a_box_bends_as_a_beam_does() {
+        let (a, b, mu) = (0.7, 0.2, 3.0);
+        let corners: [[f64; 2]; 4] = core::array::from_fn(|k| [0.5 * a * CORNERS[k][0], 0.5 * b * CORNERS[k][1]]);
+        let rest = Rest::new::<Quadrilateral>(&corners, 0.5);
+        for ratio in [0.0, 0.3, 0.4999] {
+            let young = 2.0 * mu * (1.0 + ratio);
+            for (c, modulus) in [(ratio, young / (1.0 - ratio * ratio)), (ratio / (1.0 + ratio), young)] {
+                let mut packed = Vec::new();
+                rest.stiffness(mu, c, &mut packed);
+                let stiffness = full(&packed, 2);
+                // κ x y with x = aξ/2, y = bη/2: the amplitude κ a b/4.
+                let amplitude: f64 = 0.25 * a * b;
+                let energy = 0.5 * stiffness[0][0] * amplitude * amplitude;
+                let expected = 0.5 * modulus * (0.5 * b * b * b / 12.0) * a;
+                assert!((energy / expected - 1.0).abs() < 1e-12, "ν = {ratio}: {energy} {expected}");
+                assert!(stiffness[0][1].abs() < 1e-12 * stiffness[0][0]);
+            }
+        }
+    }
+
+    /// In space a box that bends along x alone has E/(1 − ν²); if it may curve across too, E.
+    #[test]
+    fn a_block_bends_as_a_plate_and_as_a_beam() {
+        let (sides, mu, ratio) = ([0.7, 0.4, 0.2], 3.0, 0.4999);
+        let corners: [[f64; 3]; 8] = core::array::from_fn(|k| core::array::from_fn(|d| 0.5 * sides[d] * CORNERS[k][d]));
+        let rest = Rest::new::<Hexahedron>(&corners, 1.0);
+        let mut packed = Vec::new();
+        rest.stiffness(mu, ratio / (1.0 + ratio), &mut packed);
+        let stiffness = full(&packed, 12);
+        let young = 2.0 * mu * (1.0 + ratio);
+        let [a, b, c] = sides;
+        // u_x = κ x z: mode 1, axis 0; u_y = −νκ y z: mode 0, axis 1.
+        let (along, across) = (3, 1);
+        let (p, q) = (0.25 * a * c, -ratio * 0.25 * b * c);
+        let inertia = b * c * c * c / 12.0 * a;
+        let plate = stiffness[along][along] * p * p;
+        assert!((plate / (young / (1.0 - ratio * ratio) * inertia) - 1.0).abs() < 1e-12, "{plate}");
+        let beam = plate + 2.0 * stiffness[along][across] * p * q + stiffness[across][across] * q * q;
+        assert!((beam / (young * inertia) - 1.0).abs() < 1e-10, "{beam}");
+    }
+
+    /// Hourglass vectors see no affine field, amplitudes are those of the functions, and no mode is without stiffness, in
+    /// skewed and tapered cells too.
+    #[test]
+    fn no_cell_is_without_stiffness() {
+        let mut random = 5u64;
+        for _ in 0..200 {
+            let corners: [[f64; 3]; 8] = core::array::from_fn(|k| {
+                core::array::from_fn(|d| {
+                    random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    CORNERS[k][d] + 0.45 * ((random >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
+                })
+            });
+            let rest = Rest::new::<Hexahedron>(&corners, 1.0);
+            for mode in 0..4 {
+                for d in 0..4 {
+                    let affine = |a: usize| if d == 3 { 1.0 } else { corners[a][d] };
+                    let seen: f64 = (0..8).map(|a| rest.weights[a][3 + mode] * affine(a)).sum();
+                    assert!(seen.abs() < 1e-13, "{seen:e}");
+                    let own: f64 = (0..8).map(|a| rest.weights[a][3 + mode] * product(a, axes::<3>(d))).sum();
+                    assert!((own - f64::from(u8::from(d == mode))).abs() < 1e-13);
+                }
+            }
+            let mut packed = Vec::new();
+            rest.stiffness(1.0, 0.4999 / 1.4999, &mut packed);
+            assert_eq!(packed.len(), stiffness_numbers::<3, 8>());
+            assert!(packed[0] > 0.03, "{}", packed[0]);
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What is said to the person, as data: the interface puts it into words of its language ([`crate::words`]).
+
+use crate::words::Language;
+use opruga::WorldError;
+
+/// A thing that was done and can be undone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A parameter was set, by its path.
+    Set(String),
+    /// A body has other models.
+    Models,
+    /// The scene or a body has another integrator.
+    Integrator,
+    /// A body was added.
+    Add,
+    /// A body was copied.
+    Duplicate,
+    /// A body was moved, turned or scaled.
+    Move,
+    /// A field of a body's shape was changed.
+    Shape(&'static str),
+    /// A body was taken away.
+    Delete,
+    /// A point was let go.
+    Unpin,
+    /// Everything that was recorded was taken back.
+    Reset,
+    /// The scene was shown twice, or no longer.
+    Compare,
+    /// The right side differs in this.
+    Differ(String),
+}
+
+/// What a message says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Said {
+    /// Why something could not be done, in the English words of what refused it: the reader of scenes, the system.
+    Because(String),
+    /// What a world refuses.
+    World(WorldError),
+    /// This was undone, and the scene is at this time \[s\].
+    Undone(Step, f64),
+    /// This was done again, and the scene is at this time \[s\].
+    Redone(Step, f64),
+    /// The scene begins anew, without the pins of the pointer.
+    PinsLetGo,
+    /// A body of this name moves on with other models.
+    GoesOn(String),
+    /// All bodies move on with an integrator of this kind.
+    AllGoOn(String),
+    /// A body was set down anew.
+    SetDown,
+    /// The recording that is viewed ends at this time \[s\].
+    RecordingEnds(f64),
+    /// What was done begins a new course at this time of the recording \[s\].
+    OwnCourse(f64),
+    /// There is no body of this name.
+    NoBody(String),
+    /// A body of this name has no shape that could be changed.
+    NoShape(String),
+    /// A body of this name is one of several copies.
+    Copy(String),
+    /// A body cannot be scaled by this.
+    Scaled(f64),
+    /// What both sides shall differ in stands nowhere in the scene itself.
+    NoDifference(String),
+    /// A file is no text.
+    NoText(String),
+    /// A file is neither a scene nor a shape; the endings that are.
+    NoShapeFile(String, String),
+    /// A file whose name a scene cannot hold.
+    NameOfFile(String),
+    /// A file of so many bytes is too large; the most that are allowed.
+    TooLarge(String, u64, u64),
+    /// A file cannot be read.
+    Unreadable(String),
+    /// Files were written.
+    Written(Vec<String>),
+    /// The folder cannot be made, and why.
+    NoFolder(String, String),
+    /// The folder has no free name left.
+    FolderFull(String),
+    /// A browser does not take a file.
+    NoDownload(String),
+    /// There is nothing to draw.
+    NothingToDraw,
+    /// The link was copied.
+    LinkCopied,
+    /// A scene has too many letters for an address; the most that are allowed.
+    AddressTooLong(usize, usize),
+    /// The address names no scene; those that it could name.
+    AddressUnknown(String),
+    /// The scene in the address is not whole.
+    AddressCut,
+    /// The scene in the address is larger than so many bytes.
+    AddressTooLarge(u64),
+    /// The browser keeps its address.
+    AddressStays,
+}
+
+impl core::fmt::Display for Said {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(&Language::English.said(self))
+    }
+}
+
+impl From<String> for Said {
+    fn from(text: String) -> Said {
+        Said::Because(text)
+    }
+}
+
+impl From<WorldError> for Said {
+    fn from(error: WorldError) -> Said {
+        Said::World(error)
+    }
+}

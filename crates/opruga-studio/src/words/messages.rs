@@ -1,0 +1,213 @@
+//! Messages in words.
+
+use super::{Language, Part};
+use crate::differences::Difference;
+use crate::said::{Said, Step};
+use opruga::WorldError;
+use opruga::core::spec::Value;
+
+/// A sentence of both languages, the right one of which is taken.
+macro_rules! either {
+    ($language:expr, $english:literal, $croatian:literal) => {
+        match $language {
+            Language::English => format!($english),
+            Language::Croatian => format!($croatian),
+        }
+    };
+}
+
+impl Language {
+    /// What can be undone, in a word or two.
+    pub fn done(self, step: &Step) -> String {
+        match step {
+            // Of a path the last name is that of the field; what comes before it is seen in the panel.
+            Step::Set(path) | Step::Differ(path) => self.field_word(path.rsplit('.').next().unwrap_or(path)),
+            Step::Shape(field) => self.field_word(field),
+            Step::Models => self.step_models().into(),
+            Step::Integrator => self.step_integrator().into(),
+            Step::Add => self.step_add().into(),
+            Step::Duplicate => self.step_duplicate().into(),
+            Step::Move => self.step_move().into(),
+            Step::Delete => self.step_delete().into(),
+            Step::Unpin => self.step_unpin().into(),
+            Step::Reset => self.step_reset().into(),
+            Step::Compare => self.step_compare().into(),
+        }
+    }
+
+    /// In what the right side differs, in a few words for the picture.
+    pub fn difference(self, difference: &Difference) -> String {
+        let named = |field: &str, value: &Value| match value {
+            Value::Number(x) => format!("{} {}", self.field_word(field), opruga::draw::format_value(*x)),
+            Value::Text(word) => format!("{} {}", self.field_word(field), self.choice(word)),
+            value => format!("{} {value}", self.field_word(field)),
+        };
+        match difference {
+            Difference::Set(path, value) => named(path.split('.').next_back().unwrap_or_default(), value),
+            Difference::Shape(_, field, value) => named(field, value),
+            Difference::Models(_, models) => {
+                models.iter().map(|model| self.kind(Part::Model, model.kind())).collect::<Vec<_>>().join(" + ")
+            }
+            Difference::Integrator(_, values) => self.kind(Part::Integrator, values.kind()),
+        }
+    }
+
+    /// What a message says.
+    pub fn said(self, said: &Said) -> String {
+        match said {
+            Said::Because(text) => match self {
+                Language::English => text.clone(),
+                Language::Croatian => format!("Poruka je na engleskom:\n{text}"),
+            },
+            Said::World(error) => self.world_error(error),
+            Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
+            Said::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
+            Said::PinsLetGo => self.pins_let_go().into(),
+            Said::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
+            Said::AllGoOn(kind) => format!("{} `{}`", self.all_go_on(), self.kind(Part::Integrator, kind)),
+            Said::SetDown => self.set_down().into(),
+            Said::RecordingEnds(time) => either!(
+                self,
+                "The recording ends here, at t = {time:.2} s. What comes later is computed: a new course",
+                "Snimka ovdje završava, u t = {time:.2} s. Što slijedi tek se računa: to je novi tijek"
+            ),
+            Said::OwnCourse(time) => either!(
+                self,
+                "From t = {time:.2} s on this is a new course; the file of the recording stays as it is",
+                "Od t = {time:.2} s ovo je novi tijek; datoteka snimke ostaje kakva jest"
+            ),
+            Said::NoBody(name) => either!(self, "there is no body `{name}`", "nema tijela `{name}`"),
+            Said::NoShape(name) => {
+                either!(self, "body `{name}` has no shape to change", "tijelo `{name}` nema oblik koji bi se mijenjao")
+            }
+            Said::Copy(name) => either!(
+                self,
+                "`{name}` is one of several copies; take `copies` out of the scene to change them one by one",
+                "`{name}` je jedna od više kopija; ukloni `copies` iz prizora da ih mijenjaš jednu po jednu"
+            ),
+            Said::Scaled(by) => either!(
+                self,
+                "a body cannot be scaled by {by}; allowed: above 0",
+                "tijelo se ne može povećati {by} puta; dopušteno: više od 0"
+            ),
+            Said::NoDifference(about) => either!(
+                self,
+                "`{about}` stands nowhere in the scene itself; the two sides can differ in bodies that are there from the start \
+                 and are no copies",
+                "`{about}` ne stoji u samom prizoru; strane se mogu razlikovati u tijelima koja su ondje od početka i nisu kopije"
+            ),
+            Said::NoText(file) => either!(self, "{file} is no text in UTF-8", "{file} nije tekst u UTF-8"),
+            Said::NoShapeFile(file, known) => either!(
+                self,
+                "{file} is neither a scene nor a shape; allowed: {known}",
+                "{file} nije ni prizor ni oblik; dopušteno: {known}"
+            ),
+            Said::NameOfFile(file) => either!(
+                self,
+                "{file}: a scene cannot name this file; rename it without quotes and backslashes",
+                "{file}: prizor ne može imenovati tu datoteku; preimenuj je bez navodnika i obrnutih kosih crta"
+            ),
+            Said::TooLarge(file, bytes, most) => either!(
+                self,
+                "{file} has {bytes} bytes; allowed: at most {most}",
+                "{file} ima {bytes} bajtova; dopušteno: najviše {most}"
+            ),
+            Said::Unreadable(file) => either!(self, "{file} cannot be read", "{file} se ne može pročitati"),
+            Said::Written(files) => format!("{} {}", self.kept(), files.join(", ")),
+            Said::NoFolder(folder, why) => {
+                either!(self, "the folder {folder} cannot be made: {why}", "mapa {folder} ne može nastati: {why}")
+            }
+            Said::FolderFull(folder) => either!(self, "{folder} is full", "mapa {folder} je puna"),
+            Said::NoDownload(file) => {
+                either!(self, "the browser does not take the file {file}", "preglednik ne prima datoteku {file}")
+            }
+            Said::NothingToDraw => either!(self, "there is nothing to draw", "nema se što nacrtati"),
+            Said::LinkCopied => self.link_copied().into(),
+            Said::AddressTooLong(letters, most) => either!(
+                self,
+                "the scene is too large for an address: {letters} letters; allowed: {most}. Save it as a file",
+                "prizor je prevelik za adresu: {letters} znakova; dopušteno: {most}. Spremi ga kao datoteku"
+            ),
+            Said::AddressUnknown(known) => either!(
+                self,
+                "the address names no scene that comes with the program; allowed: {known}",
+                "adresa ne imenuje nijedan prizor iz programa; dopušteno: {known}"
+            ),
+            Said::AddressCut => either!(
+                self,
+                "the scene in the address is not whole: the address may have been cut off when it was copied",
+                "prizor u adresi nije cjelovit: adresa je možda odrezana pri kopiranju"
+            ),
+            Said::AddressTooLarge(most) => either!(
+                self,
+                "the scene in the address is too large; allowed: {most} bytes",
+                "prizor u adresi je prevelik; dopušteno: {most} bajtova"
+            ),
+            Said::AddressStays => {
+                either!(
+                    self,
+                    "the browser does not let its address be changed",
+                    "preglednik ne da mijenjati svoju adresu"
+                )
+            }
+        }
+    }
+
+    /// What a world refuses.
+    fn world_error(self, error: &WorldError) -> String {
+        if self == Language::English {
+            return error.to_string();
+        }
+        match error {
+            WorldError::UnstableStep { integrator, body, h, limit, substeps, .. } => format!(
+                "Korak h = {h:.3e} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je {limit:.3e} s. \
+                 Treba najmanje {substeps} podkoraka",
+                self.kind(Part::Integrator, integrator)
+            ),
+            WorldError::Diverged { body, node, time, last } => format!(
+                "Tijelo `{body}` je divergiralo: čvor {node}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
+                 t = {last} s"
+            ),
+            WorldError::NotConverged { body, message, hint } => format!(
+                "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",
+                self.english(&format!("{message}; hint: {hint}"))
+            ),
+            WorldError::Step { body, message } => format!(
+                "Tijelo `{body}`: model u tom stanju nema smisla; svijet je na zadnjoj dobroj sličici\n{}",
+                self.english(message)
+            ),
+            WorldError::Build { place, source } => {
+                let why = match source.code {
+                    "model.open_surface" => "treba zatvoreni obris ili zatvorenu plohu",
+                    "model.no_cavity" => "tijelo nema šupljine",
+                    "model.no_area" | "model.volume" => "tijelo ne obuhvaća ništa",
+                    "model.dimension" => "ne postoji u toj dimenziji",
+                    "model.mesh" => "treba drukčiju mrežu",
+                    "model.one_of" => "od parametara koji se isključuju treba točno jedan",
+                    "model.not_manifold" => "ploha se grana",
+                    "integrator.no_matrix" => "model ne zna matricu koju treba implicitni integrator",
+                    "integrator.real_time" => "to pravilo ne može biti točno samo „u stvarnom vremenu”",
+                    "static.rigid_modes" => "tijelo ništa ne drži",
+                    _ => "ne može",
+                };
+                format!("{place}: {why}\n{}", self.english(&source.to_string()))
+            }
+            WorldError::Path { path, message } => format!("`{path}` ne može\n{}", self.english(message)),
+            WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),
+        }
+    }
+
+    /// The name of a quantity in the legend of a picture.
+    pub fn quantity(self, label: &str) -> &str {
+        match (self, label) {
+            (Language::English, label) => label,
+            (Language::Croatian, "strain") => "deformacija",
+            (Language::Croatian, "elastic force") => "elastična sila",
+            (Language::Croatian, "pressure") => "tlak",
+            (Language::Croatian, "speed") => "brzina",
+            (Language::Croatian, "von Mises stress") => "naprezanje (von Mises)",
+            (Language::Croatian, "volume over that at rest") => "obujam / početni",
+            (Language::Croatian, label) => label,
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! How integrators, models, shapes, obstacles and their parameters are called, and what is said of them. In English that is what
+//! they say of themselves; in Croatian what stands in [`croatian`]. A kind of which nothing stands there, because a program has
+//! added it, is called as in the scene file, and its English sentence is marked as such.
+
+use super::{Language, croatian};
+use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Spec};
+
+/// What a kind is a kind of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// An integrator.
+    Integrator,
+    /// A model.
+    Model,
+    /// A shape.
+    Shape,
+    /// An obstacle.
+    Obstacle,
+}
+
+impl Part {
+    fn word(self) -> &'static str {
+        match self {
+            Part::Integrator => "integrator",
+            Part::Model => "model",
+            Part::Shape => "shape",
+            Part::Obstacle => "obstacle",
+        }
+    }
+}
+
+/// The name and the sentence of a kind.
+fn kind(part: Part, kind: &str) -> Option<(&'static str, &'static str)> {
+    let place = format!("{}.{kind}", part.word());
+    croatian::KINDS.iter().find(|(at, ..)| *at == place).map(|(_, name, about)| (*name, *about))
+}
+
+/// The name and the sentence of a field: its own, or those of all fields of this name.
+fn field(part: Part, kind: &str, field: &str) -> Option<(&'static str, &'static str)> {
+    let find = |kind: &str| {
+        let place = format!("{}.{kind}.{field}", part.word());
+        croatian::FIELDS.iter().find(|(at, ..)| *at == place)
+    };
+    find(kind).or_else(|| find("*")).map(|(_, name, about)| (*name, *about))
+}
+
+/// A word of the scene file as it is read aloud.
+fn plain(word: &str) -> String {
+    word.replace('_', " ")
+}
+
+impl Language {
+    /// The name of a kind.
+    pub fn kind(self, part: Part, word: &str) -> String {
+        let known = if self == Language::Croatian { kind(part, word) } else { None };
+        known.map_or_else(|| plain(word), |(name, _)| name.into())
+    }
+
+    /// One line about a kind.
+    pub fn summary(self, part: Part, spec: &Spec) -> String {
+        match (self, kind(part, spec.kind)) {
+            (Language::English, _) => spec.summary.into(),
+            (Language::Croatian, Some((_, about))) => about.into(),
+            (Language::Croatian, None) => self.english(spec.summary),
+        }
+    }
+
+    /// The name of a field of a kind.
+    pub fn field(self, part: Part, of: &str, word: &str) -> String {
+        let known = if self == Language::Croatian { field(part, of, word) } else { None };
+        known.map_or_else(|| plain(word), |(name, _)| name.into())
+    }
+
+    /// The name of a field of which the last word of its path alone is known.
+    pub(super) fn field_word(self, word: &str) -> String {
+        let of_world = match (self, word) {
+            (Language::English, _) => return plain(word),
+            (_, "gravity") => self.gravity(),
+            (_, "drag") => self.drag(),
+            (_, "substeps") => self.substeps(),
+            (_, "models") => self.models(),
+            (_, "integrator") => self.integrator(),
+            _ => "",
+        };
+        if !of_world.is_empty() {
+            return of_world.to_lowercase();
+        }
+        let known = croatian::FIELDS.iter().find(|(at, ..)| at.rsplit('.').next() == Some(word));
+        known.map_or_else(|| plain(word), |(_, name, _)| (*name).into())
+    }
+
+    /// The sentence of a field, what it may be, and what it is where nobody says.
+    pub fn sentence(self, part: Part, of: &str, about: &Field, dimension: usize) -> String {
+        let sentence = match (self, field(part, of, about.name)) {
+            (Language::English, _) => about.documentation.to_string(),
+            (Language::Croatian, Some((_, sentence))) => sentence.into(),
+            (Language::Croatian, None) => self.english(about.documentation),
+        };
+        let allowed = self.allowed(&about.range, dimension);
+        let default = match about.default {
+            Unset::Number(x) => x.to_string(),
+            Unset::Integer(x) => x.to_string(),
+            Unset::Boolean(x) => self.flag(x).into(),
+            Unset::Text(x) => self.choice(x),
+            _ => return format!("{sentence}\n{allowed}"),
+        };
+        format!("{sentence}\n{allowed}; {}: {default}", self.unsaid())
+    }
+
+    /// The name of a word that a field may take.
+    pub fn choice(self, word: &str) -> String {
+        let known = croatian::CHOICES.iter().find(|(known, _)| self == Language::Croatian && *known == word);
+        known.map_or_else(|| plain(word), |(_, name)| (*name).into())
+    }
+
+    /// The name of what a model tells of a body.
+    pub fn reading(self, word: &str) -> String {
+        let known = croatian::READINGS.iter().find(|(known, _)| self == Language::Croatian && *known == word);
+        known.map_or_else(|| plain(word), |(_, name)| (*name).into())
+    }
+
+    /// The title of a scene that comes with the program.
+    pub fn scene_title(self, name: &str) -> String {
+        let known = croatian::SCENES.iter().find(|(known, _)| self == Language::Croatian && *known == name);
+        let own = || self.english(opruga::scenes::find(name).map_or("", opruga::scenes::title));
+        known.map_or_else(own, |(_, title)| (*title).into())
+    }
+
+    fn flag(self, flag: bool) -> &'static str {
+        if flag { self.yes() } else { self.no() }
+    }
+
+    /// What values are allowed.
+    fn allowed(self, range: &Allowed, dimension: usize) -> String {
+        if let Allowed::Choice(choices) = range {
+            return choices.iter().map(|word| self.choice(word)).collect::<Vec<_>>().join(", ");
+        }
+        if self == Language::English {
+            return range.describe(dimension);
+        }
+        match range {
+            Allowed::Number { least, greatest } => {
+                let end = |bound: &Bound, closed: &str, open: &str| match bound {
+                    Bound::None => None,
+                    Bound::Closed(x) => Some(format!("{closed} {x}")),
+                    Bound::Open(x) => Some(format!("{open} {x}")),
+                };
+                let ends: Vec<String> =
+                    [end(least, ">=", ">"), end(greatest, "<=", "<")].into_iter().flatten().collect();
+                if ends.is_empty() { "konačan broj".into() } else { format!("broj {}", ends.join(" i ")) }
+            }
+            Allowed::Integer { least, greatest } => format!("cijeli broj od {least} do {greatest}"),
+            Allowed::Boolean => "da ili ne".into(),
+            Allowed::Text => "tekst od najviše 256 bajtova".into(),
+            Allowed::Vector => format!("{dimension} konačna broja"),
+            Allowed::Numbers => "popis konačnih brojeva".into(),
+            Allowed::Integers => "popis cijelih brojeva od 0".into(),
+            Allowed::Points => format!("popis točaka od {dimension} konačna broja"),
+            Allowed::Curve => "krivulja [[t, vrijednost], …] konačnih brojeva, t raste".into(),
+            Allowed::Path | Allowed::Choice(_) => "put [[t, x, y, …], …] konačnih brojeva, t raste".into(),
+        }
+    }
+
+    /// Words of which there are English ones alone, told as such.
+    pub(crate) fn english(self, text: &str) -> String {
+        match self {
+            Language::English => text.into(),
+            Language::Croatian => format!("{text} (na engleskom)"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Everything that the program knows, in both dimensions.
+    fn all() -> Vec<(Part, &'static Spec)> {
+        let registry = opruga::Registry::<2>::default();
+        let space = opruga::Registry::<3>::default();
+        let of = |part, list: Vec<&'static Spec>| list.into_iter().map(move |spec| (part, spec));
+        of(Part::Integrator, registry.integrators())
+            .chain(of(Part::Integrator, space.integrators()))
+            .chain(of(Part::Model, registry.models()))
+            .chain(of(Part::Model, space.models()))
+            .chain(of(Part::Shape, opruga::shapes::all()))
+            .chain(of(Part::Obstacle, opruga::collide::all(2)))
+            .chain(of(Part::Obstacle, opruga::collide::all(3)))
+            .collect()
+    }
+
+    #[test]
+    fn every_registered_kind_parameter_and_choice_has_a_croatian_name_and_sentence() {
+        let mut missing = BTreeSet::new();
+        for (part, spec) in all() {
+            let place = format!("{}.{}", part.word(), spec.kind);
+            if kind(part, spec.kind).is_none_or(|(name, about)| name.is_empty() || about.is_empty()) {
+                missing.insert(place.clone());
+            }
+            for about in spec.fields {
+                if field(part, spec.kind, about.name).is_none_or(|(name, about)| name.is_empty() || about.len() < 5) {
+                    missing.insert(format!("{place}.{}", about.name));
+                }
+                let Allowed::Choice(words) = about.range else { continue };
+                let unknown = words.iter().filter(|word| !croatian::CHOICES.iter().any(|(known, _)| known == *word));
+                missing.extend(unknown.map(|word| format!("{place}.{} = {word}", about.name)));
+            }
+        }
+        let titled = |name: &&str| croatian::SCENES.iter().any(|(known, _)| known == name);
+        missing.extend(opruga::scenes::names().filter(|name| !titled(name)).map(|name| format!("the scene {name}")));
+        assert!(missing.is_empty(), "without a name in words/croatian.rs: {missing:#?}");
+    }
+
+    #[test]
+    fn no_line_stands_in_the_table_twice_or_names_what_there_is_not() {
+        let there: BTreeSet<String> = all()
+            .into_iter()
+            .flat_map(|(part, spec)| {
+                let kind = format!("{}.{}", part.word(), spec.kind);
+                let fields = spec
+                    .fields
+                    .iter()
+                    .flat_map(|about| [spec.kind, "*"].map(|kind| format!("{}.{kind}.{}", part.word(), about.name)));
+                fields.chain([kind]).collect::<Vec<_>>()
+            })
+            .collect();
+        let lines: Vec<&str> = croatian::KINDS.iter().chain(croatian::FIELDS).map(|(at, ..)| *at).collect();
+        for at in &lines {
+            assert!(there.contains(*at), "{at} names nothing");
+        }
+        assert_eq!(lines.iter().collect::<BTreeSet<_>>().len(), lines.len(), "a line stands there twice");
+    }
+
+    #[test]
+    fn what_a_program_has_added_is_called_as_in_the_scene_and_its_sentence_is_told_to_be_english() {
+        let range = Allowed::Number { least: Bound::Open(0.0), greatest: Bound::None };
+        let about = Field::new("own_rate", range, "1/s", Unset::Number(2.0), "A rate of its own.");
+        assert_eq!(Language::Croatian.field(Part::Model, "own_model", "own_rate"), "own rate");
+        let sentence = Language::Croatian.sentence(Part::Model, "own_model", &about, 2);
+        assert_eq!(sentence, "A rate of its own. (na engleskom)\nbroj > 0; inače: 2");
+        assert_eq!(
+            Language::English.sentence(Part::Model, "own_model", &about, 2),
+            "A rate of its own.\na number > 0; default: 2"
+        );
+    }
+}
