@@ -19,6 +19,7 @@ use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_solve::blocks::nodes;
+use opruga_solve::dense::symmetric_eigen;
 
 /// Steps between two looks, and steps more after a look that found nothing: a look costs about as much as evaluating forces.
 const PERIOD: f64 = 24.0;
@@ -32,6 +33,9 @@ const PATIENCE: f64 = 12.0;
 
 /// By how much nodes are displaced, in sizes of the body: the cube root of its volume, the square root of its area.
 const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
+
+/// The axes of space.
+const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Cells below this part of their volume have none.
 const FLAT: f64 = 1e-3;
@@ -98,31 +102,81 @@ pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut
 }
 
 /// The kinetic energy [J], the sum of the forces that change velocities [N], and the mass [kg] of a body; a free one as seen
-/// from its centre of mass.
+/// from its centre of mass, and from axes that turn with it: what spins stands still too.
 fn motion<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> (f64, f64, f64) {
     let mut mass = 0.0;
-    let (mut speed, mut change) = ([0.0; D], [0.0; D]);
+    let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
     for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
-        let (v, m) = (system.state.v.at(node), system.mass.at(node));
+        let (x, v, m) = (system.state.x.at(node), system.state.v.at(node), system.mass.at(node));
         mass += m;
         for d in 0..D {
+            center[d] += m * x[d];
             speed[d] += m * v[d];
             change[d] += m * (v[d] - old[d]);
         }
     }
-    if !system.pins.is_empty() || system.contacts.is_some() {
+    let free = system.pins.is_empty() && system.contacts.is_none();
+    if !free {
         (speed, change) = ([0.0; D], [0.0; D]);
     }
+    let arm = |node: usize| -> [f64; D] {
+        let x = system.state.x.at(node);
+        core::array::from_fn(|d| x[d] - center[d] / mass)
+    };
+    let spin = if free { spin(system, &speed.map(|p| p / mass), &arm) } else { [0.0; 3] };
     let (mut kinetic, mut push) = (0.0, 0.0);
     for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
         let (v, m) = (system.state.v.at(node), system.mass.at(node));
+        let turning = turned(&spin, &arm(node));
+        let inward = turned(&spin, &turning);
         for d in 0..D {
-            let own = v[d] - speed[d] / mass;
+            let own = v[d] - speed[d] / mass - turning[d];
             kinetic += 0.5 * m * own * own;
-            push += m * (v[d] - old[d] - change[d] / mass).abs() / h;
+            push += m * ((v[d] - old[d] - change[d] / mass) / h - inward[d]).abs();
         }
     }
     (kinetic, push, mass)
+}
+
+/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean.
+fn spin<const D: usize>(system: &System<D>, speed: &[f64; D], arm: &dyn Fn(usize) -> [f64; D]) -> [f64; 3] {
+    let turns: Vec<[f64; 3]> = if D == 2 { vec![[0.0, 0.0, 1.0]] } else { UNITS.to_vec() };
+    let n = turns.len();
+    let (mut inertia, mut momentum) = (vec![0.0; n * n], vec![0.0; n]);
+    for node in 0..system.nodes {
+        let (v, m, arm) = (system.state.v.at(node), system.mass.at(node), arm(node));
+        let ways: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
+        for p in 0..n {
+            for d in 0..D {
+                momentum[p] += m * ways[p][d] * (v[d] - speed[d]);
+                for q in 0..n {
+                    inertia[p * n + q] += m * ways[p][d] * ways[q][d];
+                }
+            }
+        }
+    }
+    // A body on a line has no inertia about it.
+    let (values, vectors) = symmetric_eigen(&inertia, n);
+    let least = 1e-9 * values.last().copied().unwrap_or(0.0);
+    let mut out = [0.0; 3];
+    for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > least) {
+        let part = vector.iter().zip(&momentum).map(|(a, b)| a * b).sum::<f64>() / value;
+        for (turn, weight) in turns.iter().zip(vector) {
+            for d in 0..3 {
+                out[d] += part * weight * turn[d];
+            }
+        }
+    }
+    out
+}
+
+/// ω × r; in the plane ω is along z.
+fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
+    let r: [f64; 3] = core::array::from_fn(|d| if d < D { arm[d] } else { 0.0 });
+    core::array::from_fn(|d| {
+        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+        spin[e] * r[f] - spin[f] * r[e]
+    })
 }
 
 /// The size of a body that is flat, inside out or strained by nothing; none where its shape is one of its own.
