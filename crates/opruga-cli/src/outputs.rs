@@ -258,5 +258,9 @@ fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
         largest_residual: work.residual,
         accepted: work.accepted,
         halved: work.halved,
+        cut_off: work.cut_off,
+        largest_left: work.left,
+        disturbed: work.disturbed,
+        odd_rests: work.odd_rests,
     })
 }

@@ -36,9 +36,10 @@ pub enum StepError {
     },
     /// An implicit rule has not found the end of the step.
     #[error(
-        "`{integrator}` did not converge in {} at t = {} s: the forces are out of balance by {} N, and the last correction \
+        "`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction \
          was {} m; allowed: {} m",
-        counted(u64::from(*iterations), "iteration", "iterations"), number(*time), number(*residual), number(*correction),
+        counted(u64::from(*iterations), "iteration", "iterations"), number(*time),
+        beyond.as_ref().map_or_else(String::new, |part| format!(", beyond {part}")), number(*residual), number(*correction),
         number(*tolerance)
     )]
     NotConverged {
@@ -54,6 +55,10 @@ pub enum StepError {
         tolerance: f64,
         /// The time at the start of the step [s].
         time: f64,
+        /// Up to where it was found, such as `0.25 of the load`, where that was looked for in parts.
+        beyond: Option<String>,
+        /// What helps under the settings of the rule.
+        hint: &'static str,
     },
     /// A model has no meaning in this state.
     #[error("{model}: {message}")]

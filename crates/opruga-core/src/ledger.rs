@@ -40,6 +40,16 @@ pub struct SolverWork {
     pub accepted: u64,
     /// Steps that were halved since they had not converged.
     pub halved: u64,
+    /// Steps of the real-time setting that may be worse than it promises: a budget that was spent, or equations so slow to solve
+    /// that what is left says little.
+    pub cut_off: u64,
+    /// What was left out of balance at the end of such a step at most, as the way that it would move nodes if each stood
+    /// alone [m].
+    pub left: f64,
+    /// How often a body that stood still flat, inside out or folded was disturbed.
+    pub disturbed: u64,
+    /// How often that was in vain.
+    pub odd_rests: u64,
 }
 
 impl SolverWork {
@@ -51,5 +61,9 @@ impl SolverWork {
         self.residual = other.residual.larger(self.residual);
         self.accepted += other.accepted;
         self.halved += other.halved;
+        self.cut_off += other.cut_off;
+        self.left = other.left.larger(self.left);
+        self.disturbed += other.disturbed;
+        self.odd_rests += other.odd_rests;
     }
 }

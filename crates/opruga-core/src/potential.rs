@@ -238,6 +238,8 @@ pub struct CellState {
     pub stress: [[f64; 3]; 3],
     /// Its volume over that at rest, J.
     pub volume_ratio: f64,
+    /// Its volume at rest [m³], in the plane its area times the thickness.
+    pub measure: f64,
 }
 
 impl CellState {

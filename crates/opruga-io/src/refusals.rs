@@ -32,11 +32,10 @@ impl From<&WorldError> for SceneError {
             ))
             .value(time.to_string())
             .hint(format!("the output ends with the last good frame, t = {} s; more substeps may help", number(*last))),
-            WorldError::NotConverged { body, message } => {
-                let what = "more substeps, more `iterations`, or `when_not_converged = \"halve\"`";
+            WorldError::NotConverged { body, message, hint } => {
                 let said = split(say(format!("body `{body}`: {message}")));
                 let message = format!("{}; the world is at its last good frame", said.message);
-                SceneError { message, hint: said.hint.or_else(|| Some(what.into())), ..said }
+                SceneError { message, hint: Some((*hint).into()), ..said }
             }
             // The obstacle says itself which one it is.
             WorldError::Build { place, source } if place == "collider" => split(say(source.to_string())),

@@ -180,6 +180,14 @@ pub struct SolverSummary {
     pub accepted: u64,
     /// Steps that were made in two halves.
     pub halved: u64,
+    /// Steps in real time that may be worse than that setting promises.
+    pub cut_off: u64,
+    /// The most that such a step left out of balance, as the way that it would move nodes if each stood alone [m].
+    pub largest_left: f64,
+    /// How often a body that stood still flat, inside out or folded was disturbed.
+    pub disturbed: u64,
+    /// How often that was in vain.
+    pub odd_rests: u64,
 }
 
 /// Momentum at the end.

@@ -60,15 +60,14 @@ pub enum WorldError {
         message: String,
     },
     /// An implicit integrator has not found the end of a step.
-    #[error(
-        "body `{body}`: {message}; the world is at its last good frame; hint: more substeps, more `iterations`, or \
-         `when_not_converged = \"halve\"`"
-    )]
+    #[error("body `{body}`: {message}; the world is at its last good frame; hint: {hint}")]
     NotConverged {
         /// The body.
         body: String,
         /// What the integrator says.
         message: String,
+        /// What helps under the settings of the integrator.
+        hint: &'static str,
     },
     /// A name, path or value does not fit.
     #[error("`{path}`: {message}")]

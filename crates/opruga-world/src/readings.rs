@@ -281,9 +281,27 @@ impl<const D: usize> World<D> {
         );
         count(
             "step.halved",
-            "a step was made in two halves since Newton's method had not converged (`when_not_converged = \"halve\"`)",
+            "a step, of time or of the load, was made in two halves since Newton's method had not converged \
+             (`when_not_converged = \"halve\"`)",
             solver.halved,
         );
+        count(
+            "step.cut_off",
+            &format!(
+                "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces \
+                 out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the \
+                 step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
+                number(solver.left)
+            ),
+            solver.cut_off,
+        );
+        count(
+            "step.disturbed",
+            "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a \
+             hundredth and by a tenth",
+            solver.disturbed,
+        );
+        count("step.odd_rest", &self.odd_rest(), solver.odd_rests);
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
             for member in &island.system.members {
@@ -299,6 +317,31 @@ impl<const D: usize> World<D> {
             count(code, message, n);
         }
         out
+    }
+    /// Which body stands still in a shape that is not its own, by its worst cell.
+    fn odd_rest(&self) -> String {
+        if self.flows.solver.odd_rests == 0 {
+            return String::new();
+        }
+        let mut worst: Option<(f64, String)> = None;
+        for body in (0..self.alive.len()).filter(|body| self.alive[*body]) {
+            for cell in self.cell_states_here(body) {
+                let odd = (cell.volume_ratio - 1.0).abs();
+                if worst.as_ref().is_none_or(|(most, _)| odd > *most) {
+                    let name = &self.blueprint.bodies[body].name;
+                    let text = format!(
+                        "; now the cell farthest from its volume is {} of body `{name}`, J = {:.4}",
+                        cell.cell, cell.volume_ratio
+                    );
+                    worst = Some((odd, text));
+                }
+            }
+        }
+        format!(
+            "a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did \
+             not end{}; hint: another start, or a material that pushes such cells back (`fixed_corotated`)",
+            worst.map_or_else(String::new, |(_, text)| text)
+        )
     }
     pub(crate) fn state_hash_here(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;

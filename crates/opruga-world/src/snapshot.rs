@@ -102,10 +102,12 @@ impl<const D: usize> World<D> {
             out.count(n);
         }
         let s = &f.solver;
-        for n in [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved] {
+        for n in [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.cut_off, s.disturbed, s.odd_rests]
+        {
             out.count(n);
         }
         out.number(s.residual);
+        out.number(s.left);
     }
 
     pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
@@ -242,17 +244,17 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
-        let mut solver = [0; 5];
+        let mut solver = [0; 8];
         for n in &mut solver {
             *n = reader.count()?;
         }
-        let residual = reader.number()?;
+        let (residual, left) = (reader.number()?, reader.number()?);
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
         let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
-        let [steps, iterations, linear_iterations, accepted, halved] = solver;
+        let [steps, iterations, linear_iterations, accepted, halved, cut_off, disturbed, odd_rests] = solver;
         rest.flows = Flows {
             user,
             gas,
@@ -267,7 +269,18 @@ impl<const D: usize> World<D> {
             limited_pulls,
             lost_bodies,
             open_frames,
-            solver: SolverWork { steps, iterations, linear_iterations, accepted, halved, residual },
+            solver: SolverWork {
+                steps,
+                iterations,
+                linear_iterations,
+                residual,
+                accepted,
+                halved,
+                cut_off,
+                left,
+                disturbed,
+                odd_rests,
+            },
         };
         Ok(rest)
     }

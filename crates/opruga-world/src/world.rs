@@ -229,8 +229,8 @@ impl<const D: usize> World<D> {
                 Err(StepError::Model { model, message }) => {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }
                 }
-                Err(error @ StepError::NotConverged { .. }) => {
-                    WorldError::NotConverged { body: body(0), message: error.to_string() }
+                Err(error @ StepError::NotConverged { hint, .. }) => {
+                    WorldError::NotConverged { body: body(0), message: error.to_string(), hint }
                 }
                 Ok(()) => WorldError::Step { body: body(0), message: String::new() },
             });

@@ -233,6 +233,33 @@ fn solvers_agree_on_consistent_masses() {
     }
 }
 
+/// Statics has no inertia: whatever the masses, a beam sags as far, and swings about there with frequencies of its own.
+#[test]
+fn a_balance_is_the_same_with_consistent_and_lumped_masses() {
+    let sag = |mass: &str, material: &str| {
+        let mesh = Mesh::<3>::grid([0.0; 3], [1.0, 0.3, 0.3], [4, 2, 2]).expect("a mesh");
+        let mesh = mesh.into_simplices().expect("tetrahedra").into_quadratic().expect("quadratic ones");
+        let mut blueprint = body(mesh, mass, "equilibrium");
+        blueprint.surroundings.gravity = [0.0, -9.81, 0.0];
+        blueprint.bodies[0].pins =
+            vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }];
+        let spec = Registry::<3>::default().model("fem").expect("a model").spec();
+        blueprint.bodies[0].models[0].set(spec, "material", text(material), 3).expect("a field");
+        let mut beam = world(blueprint);
+        beam.frame().expect("a balance");
+        let frequencies: Vec<f64> = beam.modes(0, 2).expect("modes").iter().map(|mode| mode.omega()).collect();
+        (beam.energy().elastic, beam.energy().kinetic, frequencies)
+    };
+    for material in ["st_venant_kirchhoff", "stable_neo_hookean"] {
+        let (consistent, moving, of_consistent) = sag("consistent", material);
+        let (lumped, _, of_lumped) = sag("lumped", material);
+        assert!((consistent / lumped - 1.0).abs() < 0.02 && moving == 0.0, "{material}: {consistent} {lumped}");
+        for (consistent, lumped) in of_consistent.iter().zip(&of_lumped) {
+            assert!((consistent / lumped - 1.0).abs() < 0.05, "{material}: {of_consistent:?} {of_lumped:?}");
+        }
+    }
+}
+
 #[test]
 fn what_moves_nodes_by_their_own_masses_refuses_consistent_ones_and_says_what_helps() {
     let mesh = || Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [2, 1]).unwrap();

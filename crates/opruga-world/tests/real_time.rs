@@ -6,6 +6,7 @@ mod common;
 use common::{clamp, solid, text};
 use opruga_core::spec::Value;
 use opruga_math::Lane;
+use opruga_math::words::number;
 use opruga_mesh::{Cut, Mesh};
 use opruga_world::blueprint::Blueprint;
 use opruga_world::{Options, Registry, World};
@@ -178,6 +179,71 @@ fn a_slender_beam_of_many_cells_hangs_as_deep_as_the_published_one() {
     }
     let sunk = -tip(&beam, &mesh.positions);
     assert!((sunk / 0.014_686 - 1.0).abs() < 0.01, "{sunk}");
+}
+
+/// Slender beams of quadratic tetrahedra: their first swing is that of exact steps, they stay in their plane and come to rest where
+/// statics says, and no budget is spent before that.
+#[test]
+fn slender_beams_swing_and_rest_as_with_exact_steps() {
+    for cells in [[16, 2, 2], [14, 2, 1], [32, 2, 2]] {
+        let mesh = Mesh::grid([0.0; 3], [1.0, 0.1, 0.1], cells).unwrap();
+        let mesh = mesh.into_simplices().unwrap().into_quadratic().unwrap();
+        let last = mesh.positions.len() as u32 - 1;
+        let beam = |rule: &str, accuracy: &str, damping: f64| {
+            let more = [
+                ("poissons_ratio", Value::Number(0.3)),
+                ("material", text("st_venant_kirchhoff")),
+                ("damping", Value::Number(damping)),
+            ];
+            world(clamped(mesh.clone(), rule, accuracy, 1e8, &more), 1)
+        };
+        let ((quick, world_after), (exact, _)) = (
+            swing(beam("backward_euler", "real_time", 0.0), &mesh, 12),
+            swing(beam("backward_euler", "exact", 0.0), &mesh, 12),
+        );
+        let lowest = |path: &[f64]| path.iter().copied().fold(0.0, Lane::smaller);
+        let (a, b) = (lowest(&quick), lowest(&exact));
+        assert!((a / b - 1.0).abs() < 0.03, "{cells:?}: {a} {b}");
+        let work = world_after.solver_work();
+        println!("{cells:?}, {} nodes: {a} {b}, {work:?}", last + 1);
+        assert_eq!(work.cut_off, 0, "{cells:?}: {work:?}");
+        let sideways = (0..=last).map(|n| {
+            let shift = world_after.position(0, n)[2] - mesh.positions[n as usize][2];
+            shift.abs()
+        });
+        let of_statics = {
+            let mut still = beam("equilibrium", "", 0.0);
+            still.frame().unwrap();
+            still
+        };
+        // Tetrahedra of one cut are not quite alike on both sides: statics turns them out of the plane as well.
+        let natural = (0..=last).map(|n| (of_statics.position(0, n)[2] - mesh.positions[n as usize][2]).abs());
+        let (sideways, natural) = (sideways.fold(0.0, Lane::larger), natural.fold(0.0, Lane::larger));
+        assert!(sideways < 3.0 * natural + 1e-5, "{cells:?}: {sideways} {natural}");
+        if cells[0] == 16 {
+            let (path, _) = swing(beam("backward_euler", "real_time", 0.01), &mesh, 300);
+            let wanted = tip(&of_statics, &mesh.positions);
+            assert!((path[299] / wanted - 1.0).abs() < 1e-3, "{} {wanted}", path[299]);
+            assert!((path[299] - path[250]).abs() < 1e-3 * wanted.abs(), "{} {}", path[299], path[250]);
+        }
+    }
+}
+
+/// A slender beam whose matrix is not factored takes many products, and errs in its bending: that is not passed over in silence.
+#[test]
+fn steps_that_may_be_worse_than_promised_are_counted_with_what_is_left() {
+    let mesh = Mesh::grid([0.0; 3], [1.0, 0.1, 0.1], [16, 2, 2]).unwrap();
+    let mesh = mesh.into_simplices().unwrap().into_quadratic().unwrap();
+    let mut blueprint = clamped(mesh, "backward_euler", "real_time", 1e8, &[("poissons_ratio", Value::Number(0.3))]);
+    let spec = Registry::<3>::default().integrator("backward_euler").expect("an integrator").spec();
+    blueprint.integrator.set(spec, "linear_solver", text("conjugate_gradients"), 3).expect("a field");
+    let mut beam = world(blueprint, 1);
+    (0..20).for_each(|_| beam.frame().unwrap());
+    let work = beam.solver_work();
+    assert!(work.cut_off > 0 && work.cut_off <= work.steps && work.left > 0.0 && work.left < 0.1, "{work:?}");
+    let warning = beam.warnings().into_iter().find(|warning| warning.code == "step.cut_off").expect("a warning");
+    assert_eq!(warning.count, work.cut_off);
+    assert!(warning.message.contains(&format!("{} m", number(work.left))), "{warning:?}");
 }
 
 fn cpu() -> f64 {

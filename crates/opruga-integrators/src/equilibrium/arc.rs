@@ -1,6 +1,6 @@
 //! A step along the curve of equilibria.
 
-use super::{COMPLETE, Equilibrium, SPEC};
+use super::{COMPLETE, Equilibrium, Reached, SPEC};
 use crate::implicit::linear::Filter;
 use crate::implicit::newton::{Balance, Solved, evaluate, mixture};
 use crate::implicit::room::Room;
@@ -48,7 +48,7 @@ pub(super) fn follow<const D: usize>(
                 return Ok(reached);
             }
             // Past the end: the equilibrium under the whole load is near.
-            rule.balance(system, room, 1.0, h)?;
+            rule.balance(system, room, Reached { load: 1.0, held: 1.0, time: h }, h)?;
             system.history.numbers[COMPLETE] = 1.0;
             return Ok(1.0);
         }

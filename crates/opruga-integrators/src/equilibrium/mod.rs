@@ -4,8 +4,10 @@
 //! and pointers that change (quasi-static motion); one step is enough where nothing does.
 //!
 //! Newton's method looks for the balance downhill: on the potential U, where there is one, every iteration lowers it. From
-//! far away it helps to put the weight and the loads on in parts (`load_steps`). What a body loses on its way to the
-//! equilibrium is entered as `loss_damping`.
+//! far away it helps to put the weight and the loads on in parts (`load_steps`), or to let that be tried where the whole is too
+//! much (`when_not_converged = "halve"`). In statics every change of energy is work from outside: what a weight that is let
+//! down slowly would give, and the springs do not take, is held back by the hand that lets it down, and is entered with the
+//! work of the loads as `work_user`.
 //!
 //! **Through a snap** (`arc_length`): where a shallow arch gives way, no equilibrium is near the old one. Then the load is an
 //! unknown as well: each step goes a given way along the curve of equilibria, through its limits where the load falls, until
@@ -27,19 +29,22 @@
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
 mod arc;
+mod restraint;
 pub mod rigid;
 #[cfg(test)]
 mod tests;
 
 use crate::implicit::newton::{Balance, Solved, solve};
 use crate::implicit::room::Room;
-use crate::implicit::settings::{Settings, Solver, fields};
-use crate::implicit::step::{commit, report, same_bits_everywhere};
+use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
+use crate::implicit::standstill;
+use crate::implicit::step::{MOST_HALVINGS, commit, report, same_bits_everywhere};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::{Stage, System};
+use opruga_math::words::number;
 use opruga_solve::blocks::nodes;
 
 /// The parameters.
@@ -98,21 +103,83 @@ impl<const D: usize> IntegratorKind<D> for EquilibriumKind {
         false
     }
     fn build(&self, values: &Values) -> Result<Box<dyn Integrator<D>>, BuildError> {
-        Ok(Box::new(Equilibrium::new(values)))
+        let rule = Equilibrium::new(values);
+        if rule.arc_length.is_some() && rule.settings.solver == Solver::MatrixFree {
+            let message = "`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix; allowed with it: \"auto\", \
+                           \"conjugate_gradients\", \"cholesky\"";
+            return Err(BuildError::new(SPEC.kind, "integrator.no_matrix", message));
+        }
+        Ok(Box::new(rule))
+    }
+}
+
+/// Up to where a step has come: the part of the load that is on, that of the way of what is held, and the time after its
+/// start [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reached {
+    load: f64,
+    held: f64,
+    time: f64,
+}
+
+impl Reached {
+    /// Half the way to another point.
+    fn midway(self, to: Reached) -> Reached {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        Reached { load: mean(self.load, to.load), held: mean(self.held, to.held), time: mean(self.time, to.time) }
     }
 }
 
 impl Equilibrium {
     fn new(values: &Values) -> Equilibrium {
-        let mut settings = Settings::new(values);
-        settings.iterations = values.integer("iterations").map_or(200, |n| n as u32);
-        if settings.solver == Solver::MatrixFree {
-            settings.solver = Solver::ConjugateGradients;
-        }
         Equilibrium {
             load_steps: values.integer("load_steps").unwrap_or(1) as u32,
             arc_length: values.number("arc_length"),
-            settings,
+            settings: Settings::new(values),
+        }
+    }
+
+    /// Goes to a balance, by halves where it is not found at once.
+    fn go<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        room: &mut Room<D>,
+        (from, to): (Reached, Reached),
+        h: f64,
+        halvings: u32,
+    ) -> Result<(), StepError> {
+        room.u1.copy_from_slice(&room.u);
+        let outcome = self.balance(system, room, to, h);
+        let Err(StepError::NotConverged { .. }) = &outcome else { return outcome };
+        if self.settings.otherwise == Otherwise::Halve && halvings < MOST_HALVINGS {
+            system.work.solver.halved += 1;
+            room.hold(system, from.held, h);
+            for k in 0..room.u.len() {
+                room.u[k] = if room.held[k].is_nan() { room.u1[k] } else { room.held[k] };
+            }
+            let middle = from.midway(to);
+            self.go(system, room, (from, middle), h, halvings + 1)?;
+            return self.go(system, room, (middle, to), h, halvings + 1);
+        }
+        outcome.map_err(|error| self.told(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
+    }
+
+    /// An error with how far the load was on, and what helps in statics.
+    fn told<const D: usize>(&self, error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
+        match error {
+            StepError::NotConverged { integrator, iterations, residual, correction, tolerance, time, .. } => {
+                StepError::NotConverged {
+                    integrator,
+                    iterations,
+                    residual,
+                    correction,
+                    tolerance,
+                    time,
+                    beyond: from.map(|from| format!("{} of the load", number(from.load))),
+                    hint: self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none()),
+                }
+            }
+            other => other,
         }
     }
 
@@ -121,10 +188,12 @@ impl Equilibrium {
         &self,
         system: &mut System<D>,
         room: &mut Room<D>,
-        load: f64,
+        at: Reached,
         h: f64,
     ) -> Result<(), StepError> {
-        let balance = Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: h, h, load, impulse: 1.0, echo: 0.0 };
+        room.hold(system, at.held, h);
+        let balance =
+            Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Solved::default();
         // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
         let loose = system.contacts.is_some() && !rigid::unheld_motions(system).is_empty();
@@ -147,13 +216,11 @@ impl Equilibrium {
 
     /// Names the motions of the whole that neither pins nor the contacts of the last iteration hold.
     fn refuse_what_is_free<const D: usize>(&self, system: &System<D>, room: &Room<D>) -> Result<(), StepError> {
-        let mut positions = nodes::<D>(&room.x0).to_vec();
-        for (x, u) in positions.iter_mut().zip(nodes::<D>(&room.u)) {
-            for d in 0..D {
-                x[d] += u[d];
-            }
+        let mut x = system.state.x.clone();
+        for (node, (from, way)) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.u)).enumerate() {
+            x.set(node, core::array::from_fn(|d| from[d] + way[d]));
         }
-        rigid::refuse_what_contact_leaves_free(system, &positions, &room.contacting.directions())
+        rigid::refuse_what_contact_leaves_free(system, &x, &room.contacting.directions())
     }
 
     fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
@@ -174,18 +241,34 @@ impl Equilibrium {
         for k in 0..room.u.len() {
             room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
         }
+        let whole = Reached { load: 1.0, held: 1.0, time: h };
         match self.arc_length {
-            Some(length) if !complete => load = arc::follow(self, system, room, length, load, h)?,
-            _ if complete => self.balance(system, room, 1.0, h)?,
+            Some(length) if !complete => {
+                load = arc::follow(self, system, room, length, load, h)
+                    .map_err(|error| self.told(error, system, Some(Reached { load, ..whole })))?;
+            }
+            _ if complete => {
+                let start = Reached { held: 0.0, time: 0.0, ..whole };
+                self.go(system, room, (start, whole), h, 0)?;
+            }
             _ => {
+                let mut from = Reached { load: 0.0, held: 0.0, time: 0.0 };
                 for part in 1..=self.load_steps {
                     load = f64::from(part) / f64::from(self.load_steps);
-                    self.balance(system, room, load, h)?;
+                    let to = Reached { load, ..whole };
+                    self.go(system, room, (from, to), h, 0)?;
+                    from = to;
                 }
             }
         }
+        // A shape that is none of the body's own is left.
+        let mut times = 0;
+        while self.arc_length.is_none() && standstill::disturb_balance(system, room, times) {
+            self.balance(system, room, whole, h).map_err(|error| self.told(error, system, None))?;
+            times += 1;
+        }
         room.u1.copy_from_slice(&room.u);
-        // The work of loads and pins by the mean of their forces at both ends.
+        // The work of loads and pins by the mean of their forces at both ends, and of the hand that leads the body there.
         for (v, u) in room.v1.iter_mut().zip(&room.u) {
             *v = u / h;
         }
@@ -194,7 +277,7 @@ impl Equilibrium {
         system.evaluate(Stage::Current, h, 0.0, &mut room.force)?;
         let after = system.stored_energy(Stage::Current, h);
         let given: f64 = system.work.user.iter().sum::<f64>() - room.work_before;
-        system.work.damping[0] += before + given - after;
+        system.work.user[0] += after - before - given;
         if self.arc_length.is_some() {
             for d in 0..D {
                 for node in 0..system.nodes {

@@ -1,14 +1,16 @@
 //! The motions of a body as a whole that nothing holds.
 
+use super::restraint::free_motions;
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::potential::{Account, Definiteness, Sink};
+use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
 
 /// Refuses a body that can move as a whole.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
-    let free = free_motions(system);
+    let free = free_motions(system, &system.state.x, &[]);
     if free.is_empty() {
         return Ok(());
     }
@@ -25,13 +27,13 @@ pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<
 /// A motion of the whole: a translation and a rotation about the centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
-    translation: [f64; D],
+    pub(super) translation: [f64; D],
     /// One number in the plane, three in space.
-    rotation: Vec<f64>,
+    pub(super) rotation: Vec<f64>,
 }
 
 impl<const D: usize> Motion<D> {
-    fn turns(&self) -> bool {
+    pub(super) fn turns(&self) -> bool {
         self.rotation.iter().any(|x| x.abs() > 1e-6)
     }
     /// `translation along x`, `rotation`.
@@ -53,11 +55,17 @@ impl<const D: usize> Motion<D> {
 }
 
 /// Adds up φᵀ K ψ for all pairs of motions.
-struct Projection<'a> {
+pub(super) struct Projection<'a> {
     motions: &'a [Vec<f64>],
-    out: Vec<f64>,
-    /// The largest entry that was met.
-    largest: f64,
+    pub(super) out: Vec<f64>,
+    /// The largest entry of K that was met.
+    pub(super) largest: f64,
+}
+
+impl Projection<'_> {
+    pub(super) fn of(motions: &[Vec<f64>]) -> Projection<'_> {
+        Projection { motions, out: vec![0.0; motions.len() * motions.len()], largest: 0.0 }
+    }
 }
 
 impl<const D: usize> Sink<D> for Projection<'_> {
@@ -85,22 +93,13 @@ impl<const D: usize> Sink<D> for Projection<'_> {
     }
 }
 
-/// The motions of the whole that neither pins nor loads with a stiffness nor the weight of a pendulum hold, translations
-/// first.
-fn free_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let mut free = unheld_motions(system);
-    if free.iter().all(Motion::turns) {
-        free.retain(|motion| !swings(system, motion, &center(system)));
-    }
-    free
-}
-
-fn center<const D: usize>(system: &System<D>) -> [f64; D] {
+/// The mean of the places of the nodes.
+pub(super) fn center<const D: usize>(x: &Columns<D>, nodes: usize) -> [f64; D] {
     let mut center = [0.0; D];
-    for node in 0..system.nodes {
-        let x = system.state.x.at(node);
+    for node in 0..nodes {
+        let x = x.at(node);
         for d in 0..D {
-            center[d] += x[d] / system.nodes as f64;
+            center[d] += x[d] / nodes as f64;
         }
     }
     center
@@ -110,14 +109,14 @@ fn center<const D: usize>(system: &System<D>) -> [f64; D] {
 /// nodes at the given places.
 pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     system: &System<D>,
-    positions: &[[f64; D]],
+    x: &Columns<D>,
     touched: &[(usize, [f64; D])],
 ) -> Result<(), StepError> {
-    let mut free = unheld_by(system, positions, touched);
-    if free.iter().all(Motion::turns) {
-        free.retain(|motion| !swings(system, motion, &center(system)));
+    if touched.is_empty() {
+        return Ok(());
     }
-    if touched.is_empty() || free.is_empty() {
+    let free = free_motions(system, x, touched);
+    if free.is_empty() {
         return Ok(());
     }
     let names: Vec<String> = free.iter().map(Motion::name).collect();
@@ -131,29 +130,26 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
 
 /// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
 pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    let positions: Vec<[f64; D]> = (0..system.nodes).map(|node| system.state.x.at(node)).collect();
-    unheld_by(system, &positions, &[])
+    loose_motions(system, &system.state.x, &[], true)
 }
 
-/// The same of nodes at the given places, some of which are held along the given directions as well.
-fn unheld_by<const D: usize>(
+/// The motions of the whole that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
+/// places; translations first.
+pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
-    positions: &[[f64; D]],
+    x: &Columns<D>,
     touched: &[(usize, [f64; D])],
 ) -> Vec<Motion<D>> {
-    let nodes = system.nodes;
-    let position = |node: usize| positions[node];
-    let mut center = [0.0; D];
-    for x in positions {
-        for d in 0..D {
-            center[d] += x[d] / nodes as f64;
-        }
-    }
-    // Translations, then rotations about the centre, each scaled to a mean displacement of one.
+    loose_motions(system, x, touched, false)
+}
+
+/// All motions of the whole: translations, then rotations about the centre, each scaled to a mean displacement of one.
+fn all_motions<const D: usize>(x: &Columns<D>, nodes: usize) -> Vec<Motion<D>> {
+    let center = center(x, nodes);
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
     for node in 0..nodes {
-        let x = position(node);
+        let x = x.at(node);
         size += (0..D).map(|d| (x[d] - center[d]) * (x[d] - center[d])).sum::<f64>();
     }
     let size = (size / nodes as f64).sqrt();
@@ -170,10 +166,19 @@ fn unheld_by<const D: usize>(
             motions.push(Motion { translation: [0.0; D], rotation });
         }
     }
-    let shapes: Vec<Vec<f64>> = motions
-        .iter()
-        .map(|motion| (0..nodes).flat_map(|node| displacement(motion, &position(node), &center)).collect())
-        .collect();
+    motions
+}
+
+fn loose_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+    by_stiffness: bool,
+) -> Vec<Motion<D>> {
+    let nodes = system.nodes;
+    let motions = all_motions(x, nodes);
+    let center = center(x, nodes);
+    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_at(x, nodes, motion, &center)).collect();
     let n = motions.len();
 
     // How much each combination moves held axes, or strains what acts from outside.
@@ -193,11 +198,13 @@ fn unheld_by<const D: usize>(
             }
         }
     }
-    let mut projection = Projection { motions: &shapes, out: vec![0.0; n * n], largest: 0.0 };
-    system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
-    if projection.largest > 0.0 {
-        for (held, strained) in held.iter_mut().zip(&projection.out) {
-            *held += strained / projection.largest;
+    if by_stiffness {
+        let mut projection = Projection::of(&shapes);
+        system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
+        if projection.largest > 0.0 {
+            for (held, strained) in held.iter_mut().zip(&projection.out) {
+                *held += strained / projection.largest;
+            }
         }
     }
     // A rotation about the line on which all nodes lie moves nothing.
@@ -225,35 +232,47 @@ fn unheld_by<const D: usize>(
         .filter(|(value, _)| **value <= 1e-10 * largest || largest == 0.0)
         .map(|(_, vector)| (0..n).map(|p| (0..m).map(|k| vector[k] * real[k][p]).sum()).collect())
         .collect();
-    simplest(loose, n).iter().map(|weights| combine(&motions, weights)).collect()
+    of_weights(&motions, loose)
+}
+
+/// The motions of sums of others, as simple as may be.
+pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec<f64>>) -> Vec<Motion<D>> {
+    // In parts of translations and of rotations, which are the same for all lists of motions.
+    let turns = if D == 2 { 1 } else { 3 };
+    let longest = |motion: &Motion<D>| motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let most = motions.iter().map(longest).fold(0.0, |most: f64, r| if r > most { r } else { most });
+    let scale = if most > 0.0 { most } else { 1.0 };
+    let rows = weights
+        .iter()
+        .map(|weights| combine(motions, weights))
+        .map(|motion| {
+            let row = motion.translation.iter().copied().chain(motion.rotation.iter().map(|r| r / scale));
+            row.collect::<Vec<f64>>()
+        })
+        .collect();
+    simplest(rows, D + turns)
+        .into_iter()
+        .map(|row| Motion {
+            translation: core::array::from_fn(|d| row[d]),
+            rotation: row[D..].iter().map(|r| r * scale).collect(),
+        })
+        .collect()
 }
 
 /// The displacements of all nodes in a motion, one coordinate after the other.
 pub fn shape_of<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Vec<f64> {
-    let center = center(system);
-    (0..system.nodes).flat_map(|node| displacement(motion, &system.state.x.at(node), &center)).collect()
+    let (x, nodes) = (&system.state.x, system.nodes);
+    shape_at(x, nodes, motion, &center(x, nodes))
 }
 
-/// Whether weight or loads bring a turning body to a place of its own, as that of a pendulum: they do work on the way, of
-/// first or of second order.
-fn swings<const D: usize>(system: &System<D>, motion: &Motion<D>, center: &[f64; D]) -> bool {
-    let (mut first, mut second, mut size) = (0.0, 0.0, 0.0);
-    for node in 0..system.nodes {
-        let way = displacement(motion, &system.state.x.at(node), center);
-        // The turn goes on: ω × (ω × r).
-        let turned: [f64; D] = core::array::from_fn(|d| way[d] + center[d]);
-        let still = Motion { translation: [0.0; D], rotation: motion.rotation.clone() };
-        let curve = displacement(&still, &turned, center);
-        let mass = system.mass.at(node);
-        for d in 0..D {
-            let weight = mass * system.gravity[d];
-            first += weight * way[d];
-            second += weight * curve[d];
-            size += (weight * way[d]).abs() + (weight * curve[d]).abs();
-        }
-    }
-    let loaded = system.members.iter().any(|member| member.potential.account() == Account::User);
-    loaded || first.abs() + second.abs() > 1e-9 * size
+/// The same of nodes at the given places, of a motion about the given centre.
+pub(super) fn shape_at<const D: usize>(
+    x: &Columns<D>,
+    nodes: usize,
+    motion: &Motion<D>,
+    center: &[f64; D],
+) -> Vec<f64> {
+    (0..nodes).flat_map(|node| displacement(motion, &x.at(node), center)).collect()
 }
 
 /// Row echelon form from the rotations backward: as many motions as possible are plain translations along axes.
@@ -295,7 +314,7 @@ fn combine<const D: usize>(motions: &[Motion<D>], weights: &[f64]) -> Motion<D> 
     out
 }
 
-fn displacement<const D: usize>(motion: &Motion<D>, x: &[f64; D], center: &[f64; D]) -> [f64; D] {
+pub(super) fn displacement<const D: usize>(motion: &Motion<D>, x: &[f64; D], center: &[f64; D]) -> [f64; D] {
     let mut out = motion.translation;
     let arm: [f64; D] = core::array::from_fn(|d| x[d] - center[d]);
     if D == 2 {

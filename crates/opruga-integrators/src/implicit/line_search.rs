@@ -141,7 +141,9 @@ pub(super) fn potential<const D: usize>(
             inertia += mass * way * way;
         }
     }
-    if let Some(coupled) = &system.inertia {
+    if balance.sigma != 0.0
+        && let Some(coupled) = &system.inertia
+    {
         // The forces were evaluated last, and with them the way.
         inertia += coupled.square::<D>(&room.way);
     }

@@ -189,10 +189,14 @@ impl<const D: usize> Linear<D> {
             let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
             self.whole.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
         }
-        for block in &mut self.diagonal {
+        // Without a matrix the products have to learn of it as well.
+        for (node, block) in self.diagonal.iter_mut().enumerate() {
+            let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
+            let more = part * if size > 0.0 { size } else { 1.0 };
             for d in 0..D {
-                block[d][d] += part * block[d][d].abs();
+                block[d][d] += more;
             }
+            self.added.push((node, isotropic(more)));
         }
     }
 

@@ -20,6 +20,9 @@
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
+//! | `growth` | refuses what accepted steps blow up |
+//! | `slenderness` | for which bodies the real-time setting factors its matrix |
+//! | `standstill` | bodies that stand still flat, inside out or folded |
 //! | `impact` | what obstacles do at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, else
@@ -38,6 +41,7 @@
 
 pub(crate) mod contact;
 mod contact_derivatives;
+mod growth;
 pub(crate) mod impact;
 mod kept;
 mod line_search;
@@ -47,5 +51,7 @@ pub(crate) mod newton;
 mod real_time;
 pub(crate) mod room;
 pub(crate) mod settings;
+mod slenderness;
+pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod theta;

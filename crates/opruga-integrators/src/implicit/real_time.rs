@@ -35,6 +35,10 @@ const NOTHING: f64 = 1e-9;
 /// Products with the matrix in an iteration at most.
 const PRODUCTS: u32 = 1000;
 
+/// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
+/// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
+const MANY_PRODUCTS: u32 = 120;
+
 /// What the setting adds to what a rule remembers: the reference shape of the matrix and the velocities before the step;
 /// which matrix it is, and the length of the step.
 pub(crate) const COLUMNS: usize = 2;
@@ -223,7 +227,12 @@ pub(crate) fn solve<const D: usize>(
     balance: &Balance,
     settings: &Settings,
 ) -> Result<Solved, StepError> {
-    let task = Task { balance, direct: settings.solver.is_direct_in_real_time::<D>(system.nodes) };
+    let direct = match room.direct {
+        Some((solver, direct)) if solver == settings.solver => direct,
+        _ => settings.solver.is_direct_in_real_time(system),
+    };
+    room.direct = Some((settings.solver, direct));
+    let task = Task { balance, direct };
     let number = room.own.numbers;
     let mut solved = Solved { converged: true, ..Solved::default() };
     // Whether the matrix is of this step.
@@ -232,7 +241,7 @@ pub(crate) fn solve<const D: usize>(
     if fresh {
         task.make_here(system, room, CLAMPED);
     }
-    let (mut first, mut undecided) = (0.0, false);
+    let (mut first, mut undecided, mut slow) = (0.0, false, false);
     loop {
         let last = solved.iterations == settings.iterations;
         // Which nodes are held, and how far they have to go.
@@ -254,6 +263,13 @@ pub(crate) fn solve<const D: usize>(
             if size > (WORN * first).larger(floor) && system.history.numbers[number] > 0.0 {
                 system.history.numbers[number] = -CLAMPED;
             }
+            let as_promised = size <= (ENOUGH * first).larger(floor);
+            if slow || !as_promised {
+                let left = size / room.kept.stiffness().sqrt();
+                let work = &mut system.work.solver;
+                work.cut_off += 1;
+                work.left = left.larger(work.left);
+            }
             return Ok(solved);
         }
         if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
@@ -267,6 +283,7 @@ pub(crate) fn solve<const D: usize>(
         solved.iterations += 1;
         let (products, found) = task.direction(system, room, moves, (linear * first).larger(floor));
         solved.products += products;
+        slow |= products > MANY_PRODUCTS;
         if !found {
             solved.converged = false;
             return Ok(solved);

@@ -5,6 +5,7 @@ use super::impact::Struck;
 use super::kept::Kept;
 use super::linear::Linear;
 use super::mixing::Mixing;
+use super::settings::Solver;
 use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
@@ -53,6 +54,8 @@ pub(crate) struct Room<const D: usize> {
     /// What the rule will still add to velocities out of what it remembers [m/s].
     pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
+    /// Whether the real-time setting factors its matrix with a solver that is asked for, once that was found out.
+    pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
     pub(crate) kept: Kept<D>,
     /// Where the history of the real-time setting begins, behind that of the rule.
@@ -95,6 +98,7 @@ impl<const D: usize> Default for Room<D> {
             free: Vec::new(),
             projectors: Vec::new(),
             linear: Linear::default(),
+            direct: None,
             kept: Kept::default(),
             own: HistorySize::default(),
             contacting: Contacting::default(),

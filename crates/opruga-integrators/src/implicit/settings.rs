@@ -1,7 +1,9 @@
 //! The parameters that all implicit rules have.
 
+use super::slenderness::is_slender;
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
+use opruga_core::system::System;
 
 /// How the equations of a step are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +78,37 @@ pub(crate) const OTHERWISE: Field = Field::new(
 (these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
 );
 
+/// The number of Newton's iterations in statics.
+pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
+    "iterations",
+    Allowed::Integer { least: 1, greatest: 1000 },
+    "",
+    Default::Integer(200),
+    "Iterations of Newton's method at most, for every part of the load.",
+);
+/// The linear solver of statics.
+pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field::new(
+    "linear_solver",
+    Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
+    "",
+    Default::Text("auto"),
+    "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
+processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
+the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes. Without inertia the equations of a slender body \
+take conjugate gradients many products, most of all without a matrix. `arc_length` factors a matrix, and is refused with \
+\"matrix_free\".",
+);
+/// What to do without convergence in statics.
+pub(crate) const OTHERWISE_OF_STATICS: Field = Field::new(
+    "when_not_converged",
+    Allowed::Choice(&["error", "halve", "accept"]),
+    "",
+    Default::Text("error"),
+    "What happens where no balance is found: an error that leaves the state as it was, two steps of half the load and half the \
+way of what is held (these again, up to 1/256), or a state that counts all the same and is counted in a warning. With \
+`arc_length` the way along the curve is halved in any case.",
+);
+
 /// The fields of a rule that steps through time, or of statics: its own, and those that say how equations are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
@@ -83,8 +116,10 @@ macro_rules! fields {
         &[$($own,)* ACCURACY, ITERATIONS, TOLERANCE, LINEAR_SOLVER, OTHERWISE]
     }};
     (of_statics $(, $own:expr)*) => {{
-        use $crate::implicit::settings::{ITERATIONS, LINEAR_SOLVER, TOLERANCE};
-        &[$($own,)* ITERATIONS, TOLERANCE, LINEAR_SOLVER]
+        use $crate::implicit::settings::{
+            ITERATIONS_OF_STATICS, LINEAR_SOLVER_OF_STATICS, OTHERWISE_OF_STATICS, TOLERANCE,
+        };
+        &[$($own,)* ITERATIONS_OF_STATICS, TOLERANCE, LINEAR_SOLVER_OF_STATICS, OTHERWISE_OF_STATICS]
     }};
 }
 pub(crate) use fields;
@@ -96,9 +131,13 @@ pub(crate) const ACCURACY: Field = Field::new(
     "",
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
-from the motion of the last step, at most 100 products each with a matrix that is kept as long as it leads to the end of a \
-step; a fifth of what is out of balance may be left, and is made up for in the steps that follow. Rules that damp nothing \
-(`implicit_midpoint`, `newmark`) would add it up, and refuse the setting.",
+from the motion of the last step, each with the factor or at most 1000 products of a matrix that is kept as long as it leads \
+to the end of a step; a fifth of what is out of balance may be left, and is made up for in the steps that follow. Measured \
+against exact steps of the same length, of clamped cubes and beams that swing under their weight: amplitude within 3 %, period \
+within 1 %, at rest within 1 % of the statics. Steps that end with more left are counted in a warning (`step.cut_off`) with the \
+size of what is left. Not for results that are compared with others, for bodies that are slender and of many thousand nodes, \
+or where a motion is decided by little, as in buckling. Rules that damp nothing (`implicit_midpoint`, `newmark`) would add up \
+what is left, and refuse the setting.",
 );
 
 /// Rules that keep what a step leaves out of balance.
@@ -147,13 +186,40 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// What helps a step of a rule through time that did not converge.
+    pub(crate) fn hint(&self) -> &'static str {
+        match (self.real_time, self.otherwise) {
+            (true, _) => "more substeps, or `accuracy = \"exact\"`",
+            (_, Otherwise::Halve) => "more substeps, or more `iterations`; the step was already halved down to 1/256",
+            _ => "more substeps, more `iterations`, or `when_not_converged = \"halve\"`",
+        }
+    }
+    /// What helps where no balance is found; `alone` says that there are no obstacles.
+    pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> &'static str {
+        match (by_arc, self.otherwise, alone) {
+            (true, ..) => "a shorter `arc_length`, or more `iterations`",
+            (_, Otherwise::Halve, true) => {
+                "the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap"
+            }
+            (_, Otherwise::Halve, false) => {
+                "the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest"
+            }
+            (_, _, true) => {
+                "`when_not_converged = \"halve\"` or more `load_steps`; where a body gives way, `arc_length`"
+            }
+            (_, _, false) => "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
+        }
+    }
+}
+
 impl Solver {
-    /// Whether the sparse factor is taken for a body in real time, where it is kept: for small stiff ones.
-    pub(crate) fn is_direct_in_real_time<const D: usize>(self, nodes: usize) -> bool {
+    /// Whether the sparse factor is taken for a body in real time, where it is kept: for small stiff ones and for slender ones.
+    pub(crate) fn is_direct_in_real_time<const D: usize>(self, system: &System<D>) -> bool {
         match self {
             Solver::Cholesky => true,
             Solver::ConjugateGradients | Solver::MatrixFree => false,
-            Solver::Auto => nodes >= 50 && (D == 2 || nodes <= 600),
+            Solver::Auto => system.nodes >= 50 && (D == 2 || system.nodes <= 600 || is_slender(system)),
         }
     }
     /// Whether the sparse factor is taken for a body.

@@ -1,11 +1,13 @@
 //! A step of an implicit rule from start to ledger.
 
 use super::contact::{SMALL, dot};
+use super::growth;
 use super::impact::Ending;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
 use super::room::{Room, write};
-use super::settings::{Otherwise, Settings, Solver};
+use super::settings::{Otherwise, Settings};
+use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
 use opruga_core::potential::{Account, Views};
@@ -83,7 +85,10 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn history(&self) -> HistorySize {
         let own = self.rule.history();
         let more = |here: usize| if self.settings.real_time { here } else { 0 };
-        HistorySize { columns: own.columns + more(real_time::COLUMNS), numbers: own.numbers + more(real_time::NUMBERS) }
+        HistorySize {
+            columns: own.columns + more(real_time::COLUMNS),
+            numbers: own.numbers + more(real_time::NUMBERS) + growth::NUMBERS + standstill::NUMBERS,
+        }
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         self.rule.amplification(omega, c, h)
@@ -110,7 +115,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
 }
 
 /// Halvings of a step at most.
-const MOST_HALVINGS: u32 = 8;
+pub(crate) const MOST_HALVINGS: u32 = 8;
 
 /// Makes a step of h, or two of half the length where it does not converge.
 fn advance_in<R: Rule<D>, const D: usize>(
@@ -154,7 +159,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     let in_contact = rule.in_contact();
     let mut used = in_contact.filter(|_| touches(system, room, h)).unwrap_or(rule);
     let mut energy = None;
-    let (balance, rule) = loop {
+    let (balance, solved, rule) = loop {
         let (balance, solved) = solve(used, settings, system, room, h)?;
         if let Some(other) = in_contact.filter(|_| used.in_contact().is_some() && room.contacting.any()) {
             // A contact that nobody has foreseen.
@@ -166,19 +171,24 @@ fn attempt<R: Rule<D>, const D: usize>(
         }
         let work = system.work;
         end(used, system, room, &balance, h);
-        let Some(calmed) = used.calmed().filter(|_| room.contacting.any_at_rest()) else { break (balance, used) };
+        let Some(calmed) = used.calmed().filter(|_| room.contacting.any_at_rest()) else {
+            break (balance, solved, used);
+        };
         if energy.is_none() {
             energy = Some(energy_before(system, room, h)?);
         }
-        let Some(before) = energy.flatten() else { break (balance, used) };
+        let Some(before) = energy.flatten() else { break (balance, solved, used) };
         if !gains(system, room, before, h)? {
             // What is entered below goes by the stage.
             newton::evaluate(system, room, &balance, false)?;
-            break (balance, used);
+            break (balance, solved, used);
         }
         system.work = work;
         used = calmed;
     };
+    let own = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
+    let time = system.time;
+    growth::check(system, room, own, &solved, |hint| refusal(R::NAME, settings, room, &solved, time, hint))?;
     finish(system, room);
     if R::TRAPEZOID && !rule.is_trapezoid() {
         take_back(&mut system.work, &begun, &work_before);
@@ -197,7 +207,7 @@ fn attempt<R: Rule<D>, const D: usize>(
         real_time::remember(system, room, h);
     }
     system.end_implicit(h);
-    Ok(())
+    standstill::look(system, room, own + growth::NUMBERS, h)
 }
 
 /// Takes out of a ledger what was entered between two moments.
@@ -332,14 +342,28 @@ fn accept_or_refuse<const D: usize>(
         system.work.solver.accepted += 1;
         return Ok(());
     }
-    Err(StepError::NotConverged {
+    Err(refusal(integrator, settings, room, solved, system.time, settings.hint()))
+}
+
+/// The error of a step that did not converge.
+fn refusal<const D: usize>(
+    integrator: &'static str,
+    settings: &Settings,
+    room: &Room<D>,
+    solved: &Solved,
+    time: f64,
+    hint: &'static str,
+) -> StepError {
+    StepError::NotConverged {
         integrator,
         iterations: solved.iterations,
         residual: room.largest_residual(),
         correction: solved.correction,
         tolerance: settings.tolerance * room.extent,
-        time: system.time,
-    })
+        time,
+        beyond: None,
+        hint,
+    }
 }
 
 /// Writes the end of the step into the state.
@@ -352,7 +376,5 @@ pub(crate) fn commit<const D: usize>(system: &mut System<D>, room: &Room<D>) {
 /// Whether the same bits come out on every processor.
 pub(crate) fn same_bits_everywhere<const D: usize>(settings: &Settings, system: &System<D>) -> bool {
     let Settings { real_time, solver, .. } = *settings;
-    let direct: fn(Solver, usize) -> bool =
-        if real_time { Solver::is_direct_in_real_time::<D> } else { Solver::is_direct::<D> };
-    !direct(solver, system.nodes)
+    !if real_time { solver.is_direct_in_real_time(system) } else { solver.is_direct::<D>(system.nodes) }
 }

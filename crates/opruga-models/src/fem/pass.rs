@@ -259,7 +259,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     }
                 }
                 let stress = sum.map(|row| row.map(|s| s / now));
-                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure });
+                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure, measure });
             }
         }
     }

@@ -168,10 +168,9 @@ impl Language {
                 "Tijelo `{body}` je divergiralo: čvor {node}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
                  t = {last} s"
             ),
-            WorldError::NotConverged { body, message } => format!(
-                "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici. Pomaže više podkoraka, više \
-                 iteracija, ili „prepolovi” gdje ne konvergira\n{}",
-                self.english(message)
+            WorldError::NotConverged { body, message, hint } => format!(
+                "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",
+                self.english(&format!("{message}; hint: {hint}"))
             ),
             WorldError::Step { body, message } => format!(
                 "Tijelo `{body}`: model u tom stanju nema smisla; svijet je na zadnjoj dobroj sličici\n{}",

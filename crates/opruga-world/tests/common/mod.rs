@@ -12,17 +12,22 @@ pub(crate) fn text(value: &str) -> Value {
     Value::Text(value.into())
 }
 
-fn values(spec: &'static Spec, set: &[(&str, Value)]) -> Values {
-    let mut values = Values::defaults(spec, 3);
+fn values<const D: usize>(spec: &'static Spec, set: &[(&str, Value)]) -> Values {
+    let mut values = Values::defaults(spec, D);
     for (name, value) in set {
-        values.set(spec, name, value.clone(), 3).expect("a field of the test's own");
+        values.set(spec, name, value.clone(), D).expect("a field of the test's own");
     }
     values
 }
 
 /// A body of 1000 kg/m³ under an integrator, with fields of both, at steps of 1/60 s.
-pub(crate) fn solid(mesh: Mesh<3>, rule: &str, of_rule: &[(&str, Value)], material: &[(&str, Value)]) -> Blueprint<3> {
-    let registry = Registry::<3>::default();
+pub(crate) fn solid<const D: usize>(
+    mesh: Mesh<D>,
+    rule: &str,
+    of_rule: &[(&str, Value)],
+    material: &[(&str, Value)],
+) -> Blueprint<D> {
+    let registry = Registry::<D>::default();
     Blueprint {
         name: "test".into(),
         title: String::new(),
@@ -30,23 +35,23 @@ pub(crate) fn solid(mesh: Mesh<3>, rule: &str, of_rule: &[(&str, Value)], materi
         seed: 0,
         time: Time { seconds: 1e3, frame: 1.0 / 60.0, substeps: 1 },
         surroundings: Surroundings {
-            gravity: [0.0; 3],
+            gravity: [0.0; D],
             drag: 0.0,
             largest_force: None,
             largest_velocity: None,
             largest_distance: None,
         },
-        integrator: values(registry.integrator(rule).expect("an integrator").spec(), of_rule),
+        integrator: values::<D>(registry.integrator(rule).expect("an integrator").spec(), of_rule),
         bodies: vec![BodyBlueprint {
             name: "body".into(),
             mesh: Arc::new(mesh),
-            translation: [0.0; 3],
-            velocity: [0.0; 3],
+            translation: [0.0; D],
+            velocity: [0.0; D],
             angular_velocity: Vec::new(),
             mass: Mass::Density(1000.0),
             thickness: 1.0,
             integrator: None,
-            models: vec![values(registry.model("fem").expect("a model").spec(), material)],
+            models: vec![values::<D>(registry.model("fem").expect("a model").spec(), material)],
             pins: Vec::new(),
         }],
         colliders: Vec::new(),
@@ -57,6 +62,6 @@ pub(crate) fn solid(mesh: Mesh<3>, rule: &str, of_rule: &[(&str, Value)], materi
 }
 
 /// Holds the nodes of the left side.
-pub(crate) fn clamp() -> Vec<PinBlueprint<3>> {
-    vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; 3], motion: Vec::new() }]
+pub(crate) fn clamp<const D: usize>() -> Vec<PinBlueprint<D>> {
+    vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; D], motion: Vec::new() }]
 }

@@ -1,0 +1,241 @@
+//! Which motions of a body as a whole the loads leave free: those under which loads and weight do no work of any order.
+//!
+//! In a motion q of the whole (displacements φ_q, turning by ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. Were
+//! the forces carried along, it would change by ω_q × F. Only the difference can bring a body to a place of its own:
+//!
+//! P_pq = Σ φ_p·(ω_q × F + K φ_q)
+//!
+//! is zero for pressure, which follows the body whatever its strength; it is φ_p·K φ_q for a spring to a pointer; and for a dead
+//! load or the weight it is zero for the turn about the axis along which they act, and where their resultant passes through what
+//! holds the body. In some poses a dead load has no second-order work though it has some in others (a pendulum that stands
+//! out sideways), so the body is looked at in several.
+
+use super::rigid::{Motion, Projection, center, displacement, of_weights, shape_at, unpinned_motions};
+use opruga_core::potential::{Account, Definiteness};
+use opruga_core::state::{Columns, View};
+use opruga_core::system::{Member, System};
+use opruga_core::tile::Tile;
+use opruga_math::{Column, WIDTH};
+use opruga_solve::dense::symmetric_eigen;
+
+/// Times after the present one at which loads are looked at [s]: some begin at zero.
+const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
+
+/// Restraints below this part of the loads are none; squared, since P is squared.
+const NOTHING: f64 = 1e-14;
+
+/// How far the body is turned to look at it in another pose [rad], with its sine and cosine.
+const TURN: f64 = 0.9;
+const SINE: f64 = 0.783_326_909_627_483_4;
+const COSINE: f64 = 0.621_609_968_270_664_4;
+
+/// The motions of the whole that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that hold nodes along the
+/// given directions, with the nodes at the given places; translations first.
+pub(super) fn free_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    touched: &[(usize, [f64; D])],
+) -> Vec<Motion<D>> {
+    let mut free = unpinned_motions(system, x, touched);
+    let center = center(x, system.nodes);
+    // Loads with a stiffness, where the body is.
+    for member in outer(system) {
+        let mut restraint = Restraint::new(&free, center);
+        for time in TIMES {
+            restraint.add(system, x, Source::Stiff(member), system.time + time);
+        }
+        free = restraint.left();
+    }
+    if !free.iter().all(Motion::turns) {
+        return free;
+    }
+    // The others and the weight, which may hold what only turns.
+    let mut restraint = Restraint::new(&free, center);
+    let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
+    for x in poses(system, x, &free, &center) {
+        for time in times {
+            restraint.add(system, &x, Source::Dead, system.time + time);
+        }
+    }
+    restraint.left()
+}
+
+/// The loads.
+fn outer<const D: usize>(system: &System<D>) -> impl Iterator<Item = &Member<D>> {
+    system.members.iter().filter(|member| member.potential.account() == Account::User)
+}
+
+/// The forces that are looked at: those of a load if it has a stiffness, or the weight with those of all loads that have none.
+#[derive(Clone, Copy, Debug)]
+enum Source<'a, const D: usize> {
+    Stiff(&'a Member<D>),
+    Dead,
+}
+
+/// The sum of PᵀP over poses, times and loads, each P relative to the size of its parts.
+struct Restraint<'a, const D: usize> {
+    motions: &'a [Motion<D>],
+    /// What they turn about.
+    center: [f64; D],
+    sum: Vec<f64>,
+}
+
+impl<'a, const D: usize> Restraint<'a, D> {
+    fn new(motions: &'a [Motion<D>], center: [f64; D]) -> Self {
+        Restraint { motions, center, sum: vec![0.0; motions.len() * motions.len()] }
+    }
+
+    /// Adds what loads do in a pose, at a time.
+    fn add(&mut self, system: &System<D>, x: &Columns<D>, source: Source<'_, D>, time: f64) {
+        let n = self.motions.len();
+        let shape = |motion| shape_at(x, system.nodes, motion, &self.center);
+        let shapes: Vec<Vec<f64>> = self.motions.iter().map(shape).collect();
+        let rest = Columns::zeros(system.places());
+        let view = View {
+            x: x.slices(),
+            v: rest.slices(),
+            nodes: system.nodes,
+            layout: system.layout,
+            time,
+            threads: system.threads,
+        };
+        let mut force = vec![[0.0; D]; system.nodes];
+        let mut part = vec![0.0; n * n];
+        let mut size = 0.0;
+        match source {
+            Source::Stiff(member) => {
+                let mut projection = Projection::of(&shapes);
+                member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut projection);
+                if projection.largest == 0.0 {
+                    return;
+                }
+                add_forces(system, member, &view, &mut force);
+                part.copy_from_slice(&projection.out);
+                size = projection.largest;
+            }
+            Source::Dead => {
+                for (node, force) in force.iter_mut().enumerate() {
+                    *force = system.gravity.map(|g| system.mass.at(node) * g);
+                }
+                for member in outer(system) {
+                    let mut projection = Projection::of(&shapes);
+                    member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut projection);
+                    if projection.largest == 0.0 {
+                        add_forces(system, member, &view, &mut force);
+                    }
+                }
+            }
+        }
+        for (p, shape) in shapes.iter().enumerate() {
+            for (q, motion) in self.motions.iter().enumerate() {
+                for (node, force) in force.iter().enumerate() {
+                    let turned = turned(motion, force);
+                    // Motions are scaled to ways of about one.
+                    for d in 0..D {
+                        part[p * n + q] += shape[node * D + d] * turned[d];
+                        size += turned[d].abs();
+                    }
+                }
+            }
+        }
+        if !(size > 0.0 && size.is_finite()) {
+            return;
+        }
+        if matches!(source, Source::Stiff(_)) {
+            // What a load with a stiffness delivers is the symmetric part.
+            for p in 0..n {
+                for q in 0..p {
+                    let mean = 0.5 * (part[p * n + q] + part[q * n + p]);
+                    (part[p * n + q], part[q * n + p]) = (mean, mean);
+                }
+            }
+        }
+        for p in 0..n {
+            for q in 0..n {
+                self.sum[p * n + q] += (0..n).map(|k| part[k * n + p] * part[k * n + q]).sum::<f64>() / (size * size);
+            }
+        }
+    }
+
+    /// The motions that nothing restrains.
+    fn left(&self) -> Vec<Motion<D>> {
+        let n = self.motions.len();
+        let (values, vectors) = symmetric_eigen(&self.sum, n);
+        let loose: Vec<Vec<f64>> =
+            values.iter().zip(vectors).filter(|(value, _)| **value <= NOTHING).map(|(_, vector)| vector).collect();
+        if loose.len() == n { self.motions.to_vec() } else { of_weights(self.motions, loose) }
+    }
+}
+
+/// Adds the forces of a load in a state.
+fn add_forces<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>, out: &mut [[f64; D]]) {
+    let places = system.places();
+    let mut columns: [Column; D] = core::array::from_fn(|_| Column::zeros(places + WIDTH));
+    let mut slots = Column::default();
+    let mut tile = Tile {
+        range: 0..places,
+        force: columns.each_mut().map(|column| &mut **column),
+        power: &mut [0.0; WIDTH],
+        weight: None,
+        slots: &mut slots,
+    };
+    member.potential.add_force(system.simd, view, &member.scratch, &mut tile);
+    for (node, force) in out.iter_mut().enumerate() {
+        for d in 0..D {
+            force[d] += columns[d][node];
+        }
+    }
+}
+
+/// ω × F.
+fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
+    let turn = Motion { translation: [0.0; D], rotation: motion.rotation.clone() };
+    displacement(&turn, force, &[0.0; D])
+}
+
+/// The body as it is, turned by each of the motions, and by all of them.
+fn poses<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    motions: &[Motion<D>],
+    center: &[f64; D],
+) -> Vec<Columns<D>> {
+    let turns = if D == 2 { 1 } else { 3 };
+    let mut all = Motion { translation: [0.0; D], rotation: vec![0.0; turns] };
+    for motion in motions {
+        for d in 0..D {
+            all.translation[d] += motion.translation[d];
+        }
+        all.rotation.iter_mut().zip(&motion.rotation).for_each(|(sum, r)| *sum += r);
+    }
+    let others = motions.iter().chain((motions.len() > 1).then_some(&all));
+    core::iter::once(x.clone()).chain(others.map(|motion| pose(x, system.nodes, motion, center))).collect()
+}
+
+/// The body after a motion was gone on with until it had turned by [`TURN`].
+fn pose<const D: usize>(x: &Columns<D>, nodes: usize, motion: &Motion<D>, center: &[f64; D]) -> Columns<D> {
+    let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let mut out = x.clone();
+    if speed == 0.0 {
+        return out;
+    }
+    // Places move by φ = t + ω × (x − c). The axis passes through c + ω × t/|ω|²; along it the translation goes on.
+    let axis: Vec<f64> = motion.rotation.iter().map(|r| r / speed).collect();
+    let unit = Motion { translation: [0.0; D], rotation: axis.clone() };
+    let across = turned(&unit, &motion.translation);
+    let through: [f64; D] = core::array::from_fn(|d| center[d] + across[d] / speed);
+    let along: f64 = if D == 3 { (0..D).map(|d| axis[d] * motion.translation[d]).sum() } else { 0.0 };
+    for node in 0..nodes {
+        let x = x.at(node);
+        let arm: [f64; D] = core::array::from_fn(|d| x[d] - through[d]);
+        // Rodrigues: x + sin θ n × r + (1 − cos θ) n × (n × r).
+        let first = turned(&unit, &arm);
+        let second = turned(&unit, &first);
+        let mut to: [f64; D] = core::array::from_fn(|d| x[d] + SINE * first[d] + (1.0 - COSINE) * second[d]);
+        for d in 0..D {
+            to[d] += if D == 3 { axis[d] * along * TURN / speed } else { 0.0 };
+        }
+        out.set(node, to);
+    }
+    out
+}

@@ -1,0 +1,48 @@
+//! What steps that count though they did not converge may do: a body that such steps have blown up is refused.
+
+use super::newton::Solved;
+use super::room::Room;
+use opruga_core::error::StepError;
+use opruga_core::system::System;
+use opruga_math::Lane;
+use opruga_solve::blocks::nodes;
+
+/// What the state remembers: the size of the body when it was first stepped [m].
+pub(crate) const NUMBERS: usize = 1;
+
+/// How large a body may become by steps that did not converge, in its sizes when it was first stepped.
+const LARGEST: f64 = 100.0;
+
+/// Refuses the end of a step, in `room.u1`, that did not converge and is beyond every measure; `slot` is the place of what is
+/// remembered.
+pub(crate) fn check<const D: usize>(
+    system: &mut System<D>,
+    room: &Room<D>,
+    slot: usize,
+    solved: &Solved,
+    refused: impl FnOnce(&'static str) -> StepError,
+) -> Result<(), StepError> {
+    let size = &mut system.history.numbers[slot];
+    if *size <= 0.0 {
+        *size = room.extent;
+    }
+    if solved.converged {
+        return Ok(());
+    }
+    let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    for (from, way) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.u1)) {
+        for d in 0..D {
+            low[d] = (from[d] + way[d]).smaller(low[d]);
+            high[d] = (from[d] + way[d]).larger(high[d]);
+        }
+    }
+    let largest = LARGEST * *size;
+    // Written so that what is no number is too large.
+    if (0..D).all(|d| high[d] - low[d] <= largest) {
+        return Ok(());
+    }
+    Err(refused(
+        "steps that counted though they had not converged have made the body a hundred times as large as it was: more substeps, \
+         or `when_not_converged = \"halve\"`",
+    ))
+}

@@ -1,0 +1,69 @@
+//! Whether a body is slender, by which of its nodes touch: then the sparse factor is narrow, and conjugate gradients, which pass
+//! news on by one cell a product, are slow and end before the whole has bent.
+
+use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::system::{Stage, System};
+
+/// A body is slender where no layer of cells has more nodes than so many times the number of layers.
+const SLENDER: usize = 8;
+
+/// Nodes times nodes of the widest layer at most: the size of the factor.
+const LARGEST_FACTOR: usize = 400_000;
+
+/// Which nodes touch which, as they arrive.
+struct Touching {
+    neighbours: Vec<Vec<u32>>,
+}
+
+impl<const D: usize> Sink<D> for Touching {
+    fn block(&mut self, a: usize, b: usize, _value: [[f64; D]; D]) {
+        if a != b {
+            self.neighbours[a].push(b as u32);
+        }
+    }
+    /// Parts of rank one are kept apart from the matrix that is factored.
+    fn low_rank(&mut self, _c: f64, _u: &[(usize, [f64; D])]) {}
+}
+
+/// Whether the factor of a body's matrix is narrow for its size. It depends on what touches what alone, not on the state.
+pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
+    let mut touching = Touching { neighbours: vec![Vec::new(); system.nodes] };
+    system.hessian(Stage::Current, 0.0, Definiteness::Exact, &mut touching);
+    for list in &mut touching.neighbours {
+        list.sort_unstable();
+        list.dedup();
+    }
+    // From one end: the last node of a walk from anywhere.
+    let Some(end) = layers(&touching.neighbours, 0).last().and_then(|layer| layer.first().copied()) else {
+        return false;
+    };
+    let layers = layers(&touching.neighbours, end as usize);
+    let widest = layers.iter().map(Vec::len).max().unwrap_or(0);
+    let reached: usize = layers.iter().map(Vec::len).sum();
+    reached == system.nodes && widest <= SLENDER * layers.len() && widest * system.nodes <= LARGEST_FACTOR
+}
+
+/// The nodes that are reached from one in no, one, two, … steps.
+fn layers(neighbours: &[Vec<u32>], from: usize) -> Vec<Vec<u32>> {
+    let mut seen = vec![false; neighbours.len()];
+    if neighbours.is_empty() {
+        return Vec::new();
+    }
+    seen[from] = true;
+    let mut layers = vec![vec![from as u32]];
+    while let Some(last) = layers.last() {
+        let mut next = Vec::new();
+        for node in last {
+            for other in &neighbours[*node as usize] {
+                if !std::mem::replace(&mut seen[*other as usize], true) {
+                    next.push(*other);
+                }
+            }
+        }
+        if next.is_empty() {
+            break;
+        }
+        layers.push(next);
+    }
+    layers
+}

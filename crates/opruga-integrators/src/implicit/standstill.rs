@@ -1,0 +1,258 @@
+//! Bodies that stand still in a shape which is none of theirs: flat, inside out, or folded.
+//!
+//! A body that was squeezed onto a plane, a line or a point, or turned inside out, may be in balance there by symmetry alone:
+//! no force leads out of the plane, though the energy falls on both sides of it. Newton's method, which follows the forces,
+//! stays. So bodies are looked at now and then, and where one has come to rest while cells have no volume or a negative one,
+//! or while cells are strained though nothing acts on the body, its free nodes are displaced by chance, the same chance in
+//! every run: first by 10⁻⁴ of its size, then, each time after it had time to leave, by a hundredth and a tenth. Every time is
+//! counted. What is still so after the last time stays, and is counted as such.
+//!
+//! At rest is a body whose kinetic energy and whose forces out of balance are small against the energy U that its cells hold,
+//! ½ Σ m v² ≪ U and Σ m |a| L ≪ U; the time to leave is a multiple of L √(M/U), where L is its size and M its mass.
+//!
+//! Bodies of models without cells, such as springs, are left alone.
+
+use super::room::Room;
+use opruga_core::error::StepError;
+use opruga_core::potential::{Account, CellState};
+use opruga_core::state::Columns;
+use opruga_core::system::{Stage, System};
+use opruga_math::{Lane, sum_in_fixed_order};
+use opruga_solve::blocks::nodes;
+use opruga_solve::dense::symmetric_eigen;
+
+/// Steps between two looks, and steps more after a look that found nothing: a look costs about as much as evaluating forces.
+const PERIOD: f64 = 24.0;
+const LEISURE: f64 = 72.0;
+
+/// Kinetic energy, and forces out of balance times the size, that count as rest, as parts of the stored energy.
+const REST: f64 = 1e-3;
+
+/// How long a disturbed body has to leave, in units of L √(M/U).
+const PATIENCE: f64 = 12.0;
+
+/// By how much nodes are displaced, in sizes of the body: the cube root of its volume, the square root of its area.
+const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
+
+/// The axes of space.
+const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Cells below this part of their volume have none.
+const FLAT: f64 = 1e-3;
+
+/// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
+const STRAINED: f64 = 1e-3;
+
+/// What the state remembers: steps since the last look, how often the body was disturbed since it was seen in a shape of its
+/// own, one more where that was in vain, and when it was disturbed last [s].
+pub(crate) const NUMBERS: usize = 3;
+
+/// Looks at a body at the end of a step of h [s], now and then; `first` is the place of what is remembered.
+pub(crate) fn look<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    first: usize,
+    h: f64,
+) -> Result<(), StepError> {
+    let [steps, times, last] = core::array::from_fn(|k| system.history.numbers[first + k]);
+    system.history.numbers[first] = steps + 1.0;
+    if steps + 1.0 < PERIOD {
+        return Ok(());
+    }
+    system.history.numbers[first] = 0.0;
+    let Some(size) = odd_size(system, Stage::Current) else {
+        (system.history.numbers[first], system.history.numbers[first + 1]) = (-LEISURE, 0.0);
+        return Ok(());
+    };
+    if times > SIZES.len() as f64 {
+        return Ok(());
+    }
+    let energy = stored(system, &mut room.force)?;
+    let (kinetic, push, mass) = motion(system, room, h);
+    let patience = PATIENCE * size * (mass / energy).sqrt();
+    let had_time = system.time - last > patience;
+    let waits = times > 0.0 && !had_time;
+    if waits || !(kinetic <= REST * energy && push * size <= REST * energy) {
+        return Ok(());
+    }
+    system.history.numbers[first + 1] = times + 1.0;
+    system.history.numbers[first + 2] = system.time;
+    match SIZES.get(times as usize) {
+        Some(part) => disturb_state(system, &mut room.force, part * size, times as u64)?,
+        None => system.work.solver.odd_rests += 1,
+    }
+    Ok(())
+}
+
+/// Displaces a balance that was looked for, in `room.u`, if it is none of the body's own; `times` is how often that was done.
+/// Gives whether it did.
+pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut Room<D>, times: usize) -> bool {
+    let Some(size) = odd_size(system, Room::<D>::STAGE) else { return false };
+    let Some(part) = SIZES.get(times) else {
+        system.work.solver.odd_rests += 1;
+        return false;
+    };
+    system.work.solver.disturbed += 1;
+    for k in 0..room.u.len() {
+        if room.held[k].is_nan() {
+            room.u[k] += part * size * chance(k, times as u64);
+        }
+    }
+    true
+}
+
+/// The kinetic energy [J], the sum of the forces that change velocities [N], and the mass [kg] of a body; a free one as seen
+/// from its centre of mass, and from axes that turn with it: what spins stands still too.
+fn motion<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> (f64, f64, f64) {
+    let mut mass = 0.0;
+    let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
+    for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
+        let (x, v, m) = (system.state.x.at(node), system.state.v.at(node), system.mass.at(node));
+        mass += m;
+        for d in 0..D {
+            center[d] += m * x[d];
+            speed[d] += m * v[d];
+            change[d] += m * (v[d] - old[d]);
+        }
+    }
+    let free = system.pins.is_empty() && system.contacts.is_none();
+    if !free {
+        (speed, change) = ([0.0; D], [0.0; D]);
+    }
+    let arm = |node: usize| -> [f64; D] {
+        let x = system.state.x.at(node);
+        core::array::from_fn(|d| x[d] - center[d] / mass)
+    };
+    let spin = if free { spin(system, &speed.map(|p| p / mass), &arm) } else { [0.0; 3] };
+    let (mut kinetic, mut push) = (0.0, 0.0);
+    for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
+        let (v, m) = (system.state.v.at(node), system.mass.at(node));
+        let turning = turned(&spin, &arm(node));
+        let inward = turned(&spin, &turning);
+        for d in 0..D {
+            let own = v[d] - speed[d] / mass - turning[d];
+            kinetic += 0.5 * m * own * own;
+            push += m * ((v[d] - old[d] - change[d] / mass) / h - inward[d]).abs();
+        }
+    }
+    (kinetic, push, mass)
+}
+
+/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean.
+fn spin<const D: usize>(system: &System<D>, speed: &[f64; D], arm: &dyn Fn(usize) -> [f64; D]) -> [f64; 3] {
+    let turns: Vec<[f64; 3]> = if D == 2 { vec![[0.0, 0.0, 1.0]] } else { UNITS.to_vec() };
+    let n = turns.len();
+    let (mut inertia, mut momentum) = (vec![0.0; n * n], vec![0.0; n]);
+    for node in 0..system.nodes {
+        let (v, m, arm) = (system.state.v.at(node), system.mass.at(node), arm(node));
+        let ways: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
+        for p in 0..n {
+            for d in 0..D {
+                momentum[p] += m * ways[p][d] * (v[d] - speed[d]);
+                for q in 0..n {
+                    inertia[p * n + q] += m * ways[p][d] * ways[q][d];
+                }
+            }
+        }
+    }
+    // A body on a line has no inertia about it.
+    let (values, vectors) = symmetric_eigen(&inertia, n);
+    let least = 1e-9 * values.last().copied().unwrap_or(0.0);
+    let mut out = [0.0; 3];
+    for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > least) {
+        let part = vector.iter().zip(&momentum).map(|(a, b)| a * b).sum::<f64>() / value;
+        for (turn, weight) in turns.iter().zip(vector) {
+            for d in 0..3 {
+                out[d] += part * weight * turn[d];
+            }
+        }
+    }
+    out
+}
+
+/// ω × r; in the plane ω is along z.
+fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
+    let r: [f64; 3] = core::array::from_fn(|d| if d < D { arm[d] } else { 0.0 });
+    core::array::from_fn(|d| {
+        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+        spin[e] * r[f] - spin[f] * r[e]
+    })
+}
+
+/// The size of a body that is flat, inside out or strained by nothing; none where its shape is one of its own.
+fn odd_size<const D: usize>(system: &System<D>, stage: Stage) -> Option<f64> {
+    let view = system.view(stage, system.time);
+    let (mut volume, mut odd) = (0.0, false);
+    let alone = is_left_alone(system);
+    for member in &system.members {
+        let cells = member.potential.cell_states(&view, 0);
+        odd |= cells.iter().any(|cell| is_odd(cell, alone));
+        volume += cells.iter().map(|cell| cell.measure).sum::<f64>();
+    }
+    odd.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
+}
+
+/// Whether a cell of a body that stands still has no shape of its own; `alone` says that nothing acts on the body.
+fn is_odd(cell: &CellState, alone: bool) -> bool {
+    // Written so that what is no number is odd.
+    let solid = cell.volume_ratio > FLAT;
+    !solid || alone && (cell.volume_ratio - 1.0).abs() > STRAINED
+}
+
+/// Whether nothing acts on the cells of a body that stands still but themselves.
+fn is_left_alone<const D: usize>(system: &System<D>) -> bool {
+    let view = system.view(Stage::Current, system.time);
+    system.pins.is_empty()
+        && system.contacts.is_none()
+        && system.members.iter().all(|member| {
+            let potential = &member.potential;
+            potential.account() == Account::Elastic
+                && (!potential.views().energy || !potential.cell_states(&view, 0).is_empty())
+        })
+}
+
+/// Displaces the free nodes of a state; the energy that this takes is work from outside.
+fn disturb_state<const D: usize>(
+    system: &mut System<D>,
+    force: &mut Columns<D>,
+    size: f64,
+    times: u64,
+) -> Result<(), StepError> {
+    let kept = system.state.x.clone();
+    let before = system.stored_energy(Stage::Current, 0.0);
+    for node in 0..system.nodes {
+        let mut x = kept.at(node);
+        for d in 0..D {
+            x[d] += size * chance(node * D + d, times);
+        }
+        system.state.x.set(node, x);
+    }
+    system.hold(Stage::Current, 0.0);
+    system.work.solver.disturbed += 1;
+    if system.evaluate(Stage::Current, 0.0, 0.0, force).is_err() {
+        // The law has no meaning there.
+        system.state.x = kept;
+        return system.evaluate(Stage::Current, 0.0, 0.0, force);
+    }
+    system.work.user[0] += system.stored_energy(Stage::Current, 0.0) - before;
+    Ok(())
+}
+
+/// The energy that the models of a body with cells hold [J].
+fn stored<const D: usize>(system: &mut System<D>, force: &mut Columns<D>) -> Result<f64, StepError> {
+    system.evaluate(Stage::Current, 0.0, 0.0, force)?;
+    let view = system.view(Stage::Current, system.time);
+    let elastic = system.members.iter().filter(|member| member.potential.account() == Account::Elastic);
+    Ok(elastic.map(|member| sum_in_fixed_order(&member.potential.energy(system.simd, &view, &member.scratch))).sum())
+}
+
+/// A number from −1 to 1 that belongs to a coordinate and a time of asking.
+fn chance(coordinate: usize, times: u64) -> f64 {
+    let mut state = (coordinate as u64 + 1) ^ (times << 48);
+    for _ in 0..3 {
+        // Knuth's linear congruential generator, and the mixing of its upper bits into the lower ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state ^= state >> 29;
+    }
+    (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}

@@ -1,0 +1,223 @@
+//! Statics: which bodies are held, by what; loads in halves; solvers; the ledger.
+
+mod common;
+
+use common::{clamp, solid, text};
+use opruga_core::spec::Value;
+use opruga_mesh::Mesh;
+use opruga_world::blueprint::*;
+use opruga_world::{Options, World, WorldError};
+
+const MATERIAL: [(&str, Value); 2] = [("youngs_modulus", Value::Number(1e6)), ("poissons_ratio", Value::Number(0.3))];
+
+fn statics<const D: usize>(mesh: Mesh<D>, fields: &[(&str, Value)]) -> Blueprint<D> {
+    solid(mesh, "equilibrium", fields, &MATERIAL)
+}
+
+fn square() -> Blueprint<2> {
+    statics(Mesh::<2>::grid([0.0; 2], [1.0; 2], [2; 2]).unwrap(), &[])
+}
+
+fn cube() -> Blueprint<3> {
+    statics(Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).unwrap(), &[])
+}
+
+/// What a world says of the motions that nothing holds; nothing where it takes the scene.
+fn refusal<const D: usize>(blueprint: &Blueprint<D>) -> Option<String> {
+    match World::new(blueprint.clone(), Options::default()) {
+        Ok(_) => None,
+        Err(WorldError::Build { source, .. }) => {
+            assert_eq!(source.code, "static.rigid_modes", "{source}");
+            let told = source.message.split(';').next().unwrap_or_default();
+            Some(told.trim_start_matches("nothing holds the body against ").to_string())
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+fn nodes<const D: usize>(list: &[u32]) -> Selector<D> {
+    Selector::Nodes(list.to_vec())
+}
+
+fn pin<const D: usize>(blueprint: &mut Blueprint<D>, node: u32, axes: [bool; D]) {
+    blueprint.bodies[0].pins.push(PinBlueprint { select: nodes(&[node]), axes, motion: Vec::new() });
+}
+
+fn load<const D: usize>(blueprint: &mut Blueprint<D>, select: Selector<D>, kind: LoadKind<D>) {
+    blueprint.loads.push(LoadBlueprint { body: 0, select, kind, curve: Vec::new() });
+}
+
+const ONE: Option<&str> = Some("rotation: 1 rigid mode");
+
+#[test]
+fn a_pressure_holds_nothing_whatever_its_strength() {
+    for pressure in [0.0, 1.0, -1.0, 1e5] {
+        let mut free = cube();
+        load(&mut free, Selector::Boundary, LoadKind::Pressure(pressure));
+        let told = refusal(&free).expect("a refusal");
+        assert!(told.ends_with(": 6 rigid modes"), "{pressure}: {told}");
+        let mut hung = square();
+        pin(&mut hung, 0, [true, true]);
+        load(&mut hung, Selector::Boundary, LoadKind::Pressure(pressure));
+        assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
+        // On one side it drives the square round and round.
+        hung.loads[0].select = Selector::Side("top".into());
+        assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
+        let mut hung = cube();
+        pin(&mut hung, 0, [true; 3]);
+        load(&mut hung, Selector::Side("top".into()), LoadKind::Pressure(pressure));
+        assert!(refusal(&hung).is_some_and(|told| told.ends_with(": 3 rigid modes")), "{pressure}");
+        // Held at three corners it is held.
+        pin(&mut hung, 2, [false, true, true]);
+        pin(&mut hung, 6, [false, false, true]);
+        assert_eq!(refusal(&hung), None, "{pressure}");
+    }
+}
+
+#[test]
+fn a_dead_load_holds_what_turns_unless_it_acts_where_that_is_held_or_along_its_axis() {
+    let force = |select: Selector<2>, force: [f64; 2]| {
+        let mut hung = square();
+        pin(&mut hung, 0, [true, true]);
+        load(&mut hung, select, LoadKind::Force(force));
+        hung
+    };
+    assert_eq!(refusal(&force(nodes(&[8]), [1.0, 0.0])), None);
+    assert_eq!(refusal(&force(nodes(&[8]), [0.0, 0.0])).as_deref(), ONE);
+    assert_eq!(refusal(&force(nodes(&[0]), [1.0, 0.0])).as_deref(), ONE);
+    // A couple of dead forces turns the square until they pull against each other.
+    let mut couple = force(nodes(&[2]), [1.0, 0.0]);
+    load(&mut couple, nodes(&[6]), LoadKind::Force([-1.0, 0.0]));
+    assert_eq!(refusal(&couple), None);
+    // Two that cancel are none.
+    couple.loads[1].select = nodes(&[2]);
+    assert_eq!(refusal(&couple).as_deref(), ONE);
+    // One that begins at nothing.
+    let mut later = force(nodes(&[8]), [1.0, 0.0]);
+    later.loads[0].curve = vec![vec![0.0, 0.0], vec![1.0, 1.0]];
+    assert_eq!(refusal(&later), None);
+    // A traction is dead as well.
+    let mut drawn = square();
+    pin(&mut drawn, 0, [true, true]);
+    load(&mut drawn, Selector::Side("right".into()), LoadKind::Traction([1.0, 0.0]));
+    assert_eq!(refusal(&drawn), None);
+
+    // In space a weight leaves the turn about its own axis, however the body hangs at first.
+    for (gravity, told) in [
+        ([0.0, -9.81, 0.0], "rotation about an axis along y: 1 rigid mode"),
+        ([-9.81, 0.0, 0.0], "rotation about an axis along x: 1 rigid mode"),
+        ([3.0, -4.0, 0.0], "rotation about an axis along (-0.600, 0.800, 0.000): 1 rigid mode"),
+    ] {
+        for node in [0, 8, 26] {
+            let mut hung = cube();
+            hung.surroundings.gravity = gravity;
+            pin(&mut hung, node, [true; 3]);
+            let found = refusal(&hung).expect("a refusal");
+            let turned = told.replace("-0.600, 0.800", "0.600, -0.800");
+            assert!(found == told || found == turned, "{found}");
+        }
+    }
+    // At its centre nothing turns it back; hung up at an edge it swings.
+    let mut middle = cube();
+    middle.surroundings.gravity = [0.0, -9.81, 0.0];
+    pin(&mut middle, 13, [true; 3]);
+    assert!(refusal(&middle).is_some_and(|told| told.ends_with("3 rigid modes")));
+    let mut hinge = cube();
+    hinge.surroundings.gravity = [0.0, -9.81, 0.0];
+    pin(&mut hinge, 0, [true; 3]);
+    pin(&mut hinge, 2, [true; 3]);
+    assert_eq!(refusal(&hinge), None);
+    // What falls freely turns freely.
+    let mut falling = cube();
+    falling.surroundings.gravity = [0.0, -9.81, 0.0];
+    assert!(refusal(&falling).is_some_and(|told| told.ends_with("6 rigid modes")), "{:?}", refusal(&falling));
+}
+
+/// Half the work of a weight that is let down slowly is held back, and nothing is damped where nothing damps.
+#[test]
+fn the_ledger_of_statics_counts_no_damping_of_a_body_that_has_none() {
+    let mut beam = statics(Mesh::<3>::grid([0.0; 3], [1.0, 0.2, 0.2], [8, 2, 2]).unwrap(), &[]);
+    beam.surroundings.gravity = [0.0, -9.81, 0.0];
+    beam.bodies[0].pins = clamp();
+    let mut beam = World::new(beam, Options::default()).unwrap();
+    let before = beam.energy();
+    beam.frame().unwrap();
+    let after = beam.energy();
+    assert!(after.elastic > 0.01, "{after:?}");
+    assert_eq!((after.loss_damping, after.loss_contact, after.loss_friction), (0.0, 0.0, 0.0));
+    let change = after.elastic + after.gravity - before.elastic - before.gravity;
+    assert!((after.work_user / change - 1.0).abs() < 1e-9 && change < 0.0, "{after:?}");
+    assert!(after.closure < 1e-9, "{after:?}");
+}
+
+#[test]
+fn every_solver_is_taken_at_its_word_and_finds_the_same_balance() {
+    let tip = |solver: &str| {
+        let mesh = Mesh::<3>::grid([0.0; 3], [1.0, 0.4, 0.4], [5, 2, 2]).unwrap();
+        let mut beam = statics(mesh, &[("linear_solver", text(solver))]);
+        beam.surroundings.gravity = [0.0, -9.81, 0.0];
+        beam.bodies[0].pins = clamp();
+        let mut beam = World::new(beam, Options::default()).unwrap();
+        beam.frame().unwrap();
+        (beam.position(0, beam.node_count(0) as u32 - 1), beam.solver_work())
+    };
+    let (wanted, of_factor) = tip("cholesky");
+    let (assembled, of_assembled) = tip("conjugate_gradients");
+    let (free, of_free) = tip("matrix_free");
+    for d in 0..3 {
+        assert!((assembled[d] - wanted[d]).abs() < 1e-8 && (free[d] - wanted[d]).abs() < 1e-8, "{d}: {free:?}");
+    }
+    // The factor takes one product an iteration; without a matrix there is no incomplete factor to help.
+    assert_eq!(of_factor.linear_iterations, of_factor.iterations);
+    assert!(of_free.linear_iterations > of_assembled.linear_iterations, "{of_free:?} {of_assembled:?}");
+    let mut arc = statics(
+        Mesh::<2>::grid([0.0; 2], [1.0; 2], [2; 2]).unwrap(),
+        &[("linear_solver", text("matrix_free")), ("arc_length", Value::Number(0.1))],
+    );
+    arc.bodies[0].pins = clamp();
+    let error = World::new(arc, Options::default()).expect_err("a refusal");
+    assert_eq!(error.code(), "integrator.no_matrix");
+}
+
+/// A beam under many times its weight: too much at once for few iterations, and found by halves, or told how far it went.
+#[test]
+fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
+    let bent = |iterations: i64, policy: &str, weight: f64| {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.1], [16, 2]).unwrap();
+        let mut beam = statics(
+            mesh,
+            &[
+                ("iterations", Value::Integer(iterations)),
+                ("when_not_converged", text(policy)),
+                ("tolerance", Value::Number(1e-6)),
+            ],
+        );
+        beam.surroundings.gravity = [0.0, -weight];
+        beam.bodies[0].pins = clamp();
+        let mut beam = World::new(beam, Options::default()).unwrap();
+        let outcome = beam.frame();
+        let tip = beam.position(0, beam.node_count(0) as u32 - 1);
+        (outcome.map_err(|error| error.to_string()), tip, beam.solver_work(), beam.warnings())
+    };
+    let (outcome, wanted, ..) = bent(200, "error", 10.0);
+    outcome.unwrap();
+    let (outcome, ..) = bent(6, "error", 10.0);
+    let told = outcome.expect_err("a refusal");
+    assert!(
+        told.contains("did not converge in 6 iterations") && told.contains("when_not_converged = \"halve\""),
+        "{told}"
+    );
+    let (outcome, found, work, warnings) = bent(6, "halve", 10.0);
+    outcome.unwrap();
+    assert!(work.halved > 0 && warnings.iter().any(|warning| warning.code == "step.halved"), "{work:?}");
+    for d in 0..2 {
+        assert!((found[d] - wanted[d]).abs() < 1e-6, "{found:?} {wanted:?}");
+    }
+    let (outcome, _, work, _) = bent(1, "halve", 10.0);
+    let told = outcome.expect_err("a refusal");
+    assert_eq!(work.halved, 0, "a frame that fails leaves no trace");
+    assert!(told.contains("already halved") && !told.contains("or `when_not_converged"), "{told}");
+    let (outcome, _, work, _) = bent(2, "accept", 10.0);
+    outcome.unwrap();
+    assert_eq!(work.accepted, 1);
+}
