@@ -406,7 +406,7 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
                 "[[body]]\nname = \"block\"\nshape = {shape}\ndensity = 1000.0\nmodels = [ {{ kind = \"fem\", youngs_modulus = 1e5, \
                  poissons_ratio = 0.4 }} ]\n"
             )
-            + &floor(-0.05, friction, 0.0)
+            + &floor(-0.099, friction, 0.0)
     };
     let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
     for (friction, shape) in [(0.0, square), (0.5, square)] {
