@@ -19,9 +19,12 @@ const LONGEST_MEASURE: Duration = Duration::from_secs(3600);
 /// Faults of WebGPU that a browser may have.
 const FAULTS: [(&str, &str); 4] = [
     ("without WebGPU", "Object.defineProperty(navigator, 'gpu', { value: undefined });"),
-    ("without an adapter", "GPU.prototype.requestAdapter = async () => null;"),
-    ("without a device", "GPUAdapter.prototype.requestDevice = async () => { throw new Error('no device'); };"),
-    ("with a device that shows nothing", "GPUQueue.prototype.submit = () => {};"),
+    ("without an adapter", "if (window.GPU) GPU.prototype.requestAdapter = async () => null;"),
+    (
+        "without a device",
+        "if (window.GPUAdapter) GPUAdapter.prototype.requestDevice = async () => { throw new Error('no device'); };",
+    ),
+    ("with a device that shows nothing", "if (window.GPUQueue) GPUQueue.prototype.submit = () => {};"),
 ];
 /// By how much two pictures differ below the line with the numbers: the share of pixels of visibly another colour.
 const DIFFER: &str = "async (first, second) => { \
