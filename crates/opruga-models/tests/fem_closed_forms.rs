@@ -364,6 +364,54 @@ fn materials_differ_from_cell_to_cell() {
     }
 }
 
+/// Two cells side by side whose numbers the mesh gives push as the two do by themselves, moving too.
+#[test]
+fn every_number_of_the_material_may_differ_from_cell_to_cell() {
+    let mut both = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap();
+    for (name, numbers) in [("E", [1.0, 3.0]), ("nu", [0.1, 0.4]), ("tau", [0.0, 0.2])] {
+        both.cell_values.insert(name.into(), numbers.to_vec());
+    }
+    let values = || {
+        values!(
+            fem,
+            youngs_modulus_of_cells: "E",
+            poissons_ratio_of_cells: "nu",
+            damping_of_cells: "tau",
+            material: "neo_hookean"
+        )
+    };
+    let shape = |x: [f64; 2]| [1.1 * x[0] + 0.05 * x[0] * x[1], 0.95 * x[1] + 0.02 * x[0] * x[0]];
+    let pushed = |mesh: &Mesh<2>, values| {
+        let mut system = solid(mesh, values);
+        move_all(&mut system, |x| shape(*x));
+        forces(&mut system)
+    };
+    let all = pushed(&both, values());
+    let mut sum = vec![0.0; all.len()];
+    for (k, (modulus, ratio)) in [(1.0, 0.1), (3.0, 0.4)].into_iter().enumerate() {
+        let mesh = Mesh::<2>::grid([k as f64, 0.0], [1.0, 1.0], [1, 1]).unwrap();
+        let own = values!(fem, youngs_modulus: modulus, poissons_ratio: ratio, material: "neo_hookean");
+        let of_cell = pushed(&mesh, own);
+        for (node, x) in mesh.positions.iter().enumerate() {
+            let at = both.positions.iter().position(|y| y == x).unwrap();
+            (0..2).for_each(|d| sum[2 * at + d] += of_cell[2 * node + d]);
+        }
+    }
+    for (found, expected) in all.iter().zip(&sum) {
+        assert!((found - expected).abs() < 1e-14, "{all:?} {sum:?}");
+    }
+    // What is out of its range is refused with cell and range; what the mesh has not, with what it has.
+    both.cell_values.insert("nu".into(), vec![0.1, 0.5]);
+    let refused = refusal(&both, &Fem, values());
+    assert!(
+        refused.contains("`poissons_ratio_of_cells` of cell 1 is 0.5; allowed: a number > -1 and < 0.5"),
+        "{refused}"
+    );
+    both.cell_values.remove("tau");
+    let refused = refusal(&both, &Fem, values!(fem, youngs_modulus: 1.0, damping_of_cells: "tau"));
+    assert!(refused.contains("`damping_of_cells`") && refused.contains("known: `E`, `nu`"), "{refused}");
+}
+
 #[test]
 fn what_has_no_meaning_is_refused_with_what_is_allowed() {
     let boxes = Mesh::<2>::grid([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();

@@ -36,6 +36,7 @@ mod law;
 mod mass;
 pub mod material;
 pub mod materials;
+mod numbers;
 mod pass;
 mod plane_stress;
 mod section;
@@ -46,23 +47,21 @@ pub use spec::SPEC;
 
 use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Shape, Tetrahedron, Triangle};
 use law::Law;
+use numbers::Numbers;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
-use opruga_core::spec::{Spec, Values};
+use opruga_core::spec::Spec;
 use opruga_core::state::{Layout, View};
 use opruga_core::threads::each_part;
 use opruga_core::tile::Tile;
 use opruga_math::{ROW, Simd, WIDTH};
 use opruga_mesh::Mesh;
-use section::{Cell, FORCES, NUMBERS, Part, Plan, Section, rest_gradient};
+use section::{Cell, FORCES, Part, Plan, Section, rest_gradient};
 use std::sync::{Mutex, PoisonError};
 
 /// The kind `fem`.
 #[derive(Debug)]
 pub struct FemModel;
-
-/// Poisson's ratio above which linear triangles and tetrahedra are refused.
-const LOCKS_ABOVE: f64 = 0.45;
 
 /// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
 const NO_VOLUME: f64 = 1e-12;
@@ -98,10 +97,8 @@ struct Builder<'a, const D: usize> {
     ingredients: &'a Ingredients<'a, D>,
     /// Which cells are of this material.
     chosen: Vec<bool>,
-    /// Young's modulus of each cell, where the mesh gives it.
-    moduli: Option<&'a [f64]>,
+    numbers: Numbers<'a>,
     stress: bool,
-    damped: bool,
     /// The density [kg/m³, in the plane per area] where the mass matrix is consistent.
     density: Option<f64>,
 }
@@ -128,50 +125,12 @@ impl<'a, const D: usize> Builder<'a, D> {
                 return Err(refuse("model.no_cells", format!("the group of cells `{name}` is empty")));
             }
         }
-        let mut moduli = None;
-        for values in ingredients.values {
-            moduli = match (values.number("youngs_modulus"), values.text("youngs_modulus_of_cells")) {
-                (Some(_), None) => None,
-                (None, Some(name)) => match mesh.cell_values.get(name) {
-                    Some(numbers) => Some(numbers.as_slice()),
-                    None => {
-                        let names: Vec<_> = mesh.cell_values.keys().map(|n| format!("`{n}`")).collect();
-                        let names = if names.is_empty() { "there are none".into() } else { names.join(", ") };
-                        let message = format!("the cells of the mesh have no numbers `{name}`; known: {names}");
-                        return Err(refuse("model.no_values", message));
-                    }
-                },
-                _ => {
-                    let message = "exactly one of `youngs_modulus` and `youngs_modulus_of_cells` must be given";
-                    return Err(refuse("model.one_of", message));
-                }
-            };
-            let ratio = values.number("poissons_ratio").unwrap_or(0.0);
-            let share = values.number("mooney_share").unwrap_or(0.0);
-            let most = ratio / (1.0 - 2.0 * ratio);
-            if values.text("material") == Some("mooney_rivlin") && share > most {
-                return Err(refuse(
-                    "model.not_convex",
-                    format!(
-                        "`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"
-                    ),
-                ));
-            }
-        }
-        if let Some((cell, modulus)) = moduli
-            .iter()
-            .flat_map(|all| all.iter().enumerate())
-            .find(|(cell, modulus)| chosen[*cell] && !(**modulus > 0.0 && modulus.is_finite()))
-        {
-            let message = format!("Young's modulus of cell {cell} is {modulus} Pa; allowed: a number > 0");
-            return Err(refuse("model.modulus", message));
-        }
+        let numbers = Numbers::new(ingredients, &chosen)?;
         Ok(Builder {
             ingredients,
             chosen,
-            moduli,
+            numbers,
             stress: D == 2 && first.text("plane") == Some("stress"),
-            damped: ingredients.values.iter().any(|v| v.number("damping").unwrap_or(0.0) > 0.0),
             density: (first.text("mass") == Some("consistent")).then(|| density(ingredients)).transpose()?,
         })
     }
@@ -180,17 +139,6 @@ impl<'a, const D: usize> Builder<'a, D> {
         let name = self.ingredients.values[0].text("material").unwrap_or("");
         let found = materials::ALL.iter().find(|entry| entry.name == name);
         found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))
-    }
-
-    /// μ, λ, the material's own number and the retardation time of a cell of a body.
-    fn numbers(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
-        let values: &Values = self.ingredients.values[body.min(self.ingredients.values.len() - 1)];
-        let number = |name: &str| values.number(name).unwrap_or(0.0);
-        let modulus = self.moduli.map_or_else(|| number("youngs_modulus"), |all| all[cell as usize]);
-        let ratio = number("poissons_ratio");
-        let mu = modulus / (2.0 * (1.0 + ratio));
-        let lambda = modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio));
-        [mu, lambda, number("mooney_share"), number("damping")]
     }
 
     /// The section of one kind of cells, the first of which has the number `first` in the mesh.
@@ -219,19 +167,8 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
         }
         if E::SIMPLEX && !self.stress {
-            for values in self.ingredients.values {
-                let ratio = values.number("poissons_ratio").unwrap_or(0.0);
-                if ratio > LOCKS_ABOVE && values.text("locking") != Some("accept") {
-                    return Err(refuse(
-                        "model.locking",
-                        format!(
-                            "`poissons_ratio` is {ratio}; allowed for linear {}: at most {LOCKS_ABOVE}, since they lock near \
-                             incompressibility. Give the body `order = 2`, or say `locking = \"accept\"`",
-                            if D == 2 { "triangles" } else { "tetrahedra" }
-                        ),
-                    ));
-                }
-            }
+            let kind = if D == 2 { "triangles" } else { "tetrahedra" };
+            self.numbers.refuse_what_locks(&mut cells.iter().map(|cell| cell.number), kind)?;
         }
         let plan = Plan {
             layout: self.ingredients.layout,
@@ -240,9 +177,9 @@ impl<'a, const D: usize> Builder<'a, D> {
             positions,
             thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
             plane_stress: self.stress,
-            damped: self.damped,
+            damped: self.numbers.damped,
         };
-        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers(cell, body))));
+        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers.of(cell, body))));
         Ok(())
     }
 
@@ -288,7 +225,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, damped: self.damped })
+        Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, damped: self.numbers.damped })
     }
 }
 

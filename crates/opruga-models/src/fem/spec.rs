@@ -43,6 +43,14 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             "",
             Default::Number(0.3),
             "Poisson's ratio ν; rubber has nearly 0.5.",
+        )
+        .applies(&[Condition::NotGiven("poissons_ratio_of_cells")]),
+        Field::new(
+            "poissons_ratio_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are Poisson's ratio.",
         ),
         Field::new(
             "damping",
@@ -50,6 +58,14 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             "s",
             Default::Number(0.0),
             "Retardation time τ of the Kelvin–Voigt solid; a mode of angular frequency ω loses its energy at the rate τω².",
+        )
+        .applies(&[Condition::NotGiven("damping_of_cells")]),
+        Field::new(
+            "damping_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are the retardation time [s].",
         ),
         Field::new(
             "mass",

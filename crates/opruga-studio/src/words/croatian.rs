@@ -192,6 +192,16 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
     ),
     ("model.fem.poissons_ratio", "Poissonov omjer", "Poissonov omjer ν; guma ima gotovo 0,5."),
     (
+        "model.fem.poissons_ratio_of_cells",
+        "Poissonov omjer ćelija",
+        "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su Poissonov omjer.",
+    ),
+    (
+        "model.fem.damping_of_cells",
+        "prigušenje ćelija",
+        "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su vrijeme zaostajanja [s].",
+    ),
+    (
         "model.fem.damping",
         "prigušenje",
         "Vrijeme retardacije τ Kelvin–Voigtova tijela; titranje kutne frekvencije ω gubi energiju brzinom τω².",

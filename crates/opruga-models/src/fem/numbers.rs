@@ -1,0 +1,132 @@
+//! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
+
+use super::refuse;
+use super::section::NUMBERS;
+use opruga_core::error::BuildError;
+use opruga_core::potential::Ingredients;
+use opruga_core::spec::{Field, Values};
+
+/// Poisson's ratio above which linear triangles and tetrahedra are refused.
+const LOCKS_ABOVE: f64 = 0.45;
+
+/// What the mesh may say of its cells: the field of the scene that holds for all cells, and the one that names numbers of the
+/// mesh.
+const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
+const POISSONS_RATIO: [&str; 2] = ["poissons_ratio", "poissons_ratio_of_cells"];
+const DAMPING: [&str; 2] = ["damping", "damping_of_cells"];
+
+/// The numbers of the material of all cells.
+pub(super) struct Numbers<'a> {
+    /// The fields of every body of a block.
+    values: &'a [&'a Values],
+    moduli: Option<&'a [f64]>,
+    ratios: Option<&'a [f64]>,
+    times: Option<&'a [f64]>,
+    /// Whether any cell takes energy out.
+    pub(super) damped: bool,
+}
+
+impl<'a> Numbers<'a> {
+    /// The numbers of the chosen cells, within their ranges.
+    pub(super) fn new<const D: usize>(
+        ingredients: &'a Ingredients<'a, D>,
+        chosen: &[bool],
+    ) -> Result<Numbers<'a>, BuildError> {
+        // What the mesh says of its cells is the same for all bodies of a block.
+        let first = ingredients.values[0];
+        let of = |field| of_cells(ingredients, field, chosen);
+        let mut numbers = Numbers {
+            values: ingredients.values,
+            moduli: of(YOUNGS_MODULUS)?,
+            ratios: of(POISSONS_RATIO)?,
+            times: of(DAMPING)?,
+            damped: false,
+        };
+        if first.number(YOUNGS_MODULUS[0]).is_some() == numbers.moduli.is_some() {
+            let message = "exactly one of `youngs_modulus` and `youngs_modulus_of_cells` must be given";
+            return Err(refuse("model.one_of", message));
+        }
+        let cells = || (0..chosen.len()).filter(|cell| chosen[*cell]).map(|cell| cell as u32);
+        for (body, values) in ingredients.values.iter().enumerate() {
+            numbers.damped |= cells().any(|cell| numbers.time(cell, body) > 0.0);
+            if values.text("material") == Some("mooney_rivlin") {
+                let share = values.number("mooney_share").unwrap_or(0.0);
+                let most = |ratio: f64| ratio / (1.0 - 2.0 * ratio);
+                if let Some(ratio) = cells().map(|cell| numbers.ratio(cell, body)).find(|ratio| share > most(*ratio)) {
+                    let most = most(ratio);
+                    return Err(refuse(
+                        "model.not_convex",
+                        format!(
+                            "`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"
+                        ),
+                    ));
+                }
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// μ, λ, the material's own number and the retardation time of a cell of a body.
+    pub(super) fn of(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
+        let modulus = self.number(YOUNGS_MODULUS[0], self.moduli, cell, body);
+        let ratio = self.ratio(cell, body);
+        let mu = modulus / (2.0 * (1.0 + ratio));
+        let lambda = modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio));
+        [mu, lambda, self.number("mooney_share", None, cell, body), self.time(cell, body)]
+    }
+
+    /// Refuses linear cells near incompressibility.
+    pub(super) fn refuse_what_locks(
+        &self,
+        cells: &mut dyn Iterator<Item = u32>,
+        kind: &'static str,
+    ) -> Result<(), BuildError> {
+        let refusing = |body: &usize| self.values[*body].text("locking") != Some("accept");
+        let bodies: Vec<usize> = (0..self.values.len()).filter(refusing).collect();
+        let mut ratios = cells.flat_map(|cell| bodies.iter().map(move |body| self.ratio(cell, *body)));
+        let Some(ratio) = ratios.find(|ratio| *ratio > LOCKS_ABOVE) else { return Ok(()) };
+        Err(refuse(
+            "model.locking",
+            format!(
+                "`poissons_ratio` is {ratio}; allowed for linear {kind}: at most {LOCKS_ABOVE}, since they lock near \
+                 incompressibility. Give the body `order = 2`, or say `locking = \"accept\"`"
+            ),
+        ))
+    }
+
+    fn ratio(&self, cell: u32, body: usize) -> f64 {
+        self.number(POISSONS_RATIO[0], self.ratios, cell, body)
+    }
+    fn time(&self, cell: u32, body: usize) -> f64 {
+        self.number(DAMPING[0], self.times, cell, body)
+    }
+    fn number(&self, field: &str, of_cells: Option<&[f64]>, cell: u32, body: usize) -> f64 {
+        let of_body = || self.values[body.min(self.values.len() - 1)].number(field).unwrap_or(0.0);
+        of_cells.map_or_else(of_body, |all| all[cell as usize])
+    }
+}
+
+/// The numbers of the mesh that a field names, which for the chosen cells must lie in the range of the field they stand for.
+fn of_cells<'a, const D: usize>(
+    ingredients: &'a Ingredients<'a, D>,
+    [field, of_cells]: [&'static str; 2],
+    chosen: &[bool],
+) -> Result<Option<&'a [f64]>, BuildError> {
+    let Some(name) = ingredients.values[0].text(of_cells) else { return Ok(None) };
+    let all = &ingredients.mesh.cell_values;
+    let Some(numbers) = all.get(name) else {
+        let names: Vec<_> = all.keys().map(|n| format!("`{n}`")).collect();
+        let names = if names.is_empty() { "there are none".into() } else { names.join(", ") };
+        let message = format!("`{of_cells}`: the cells of the mesh have no numbers `{name}`; known: {names}");
+        return Err(refuse("model.no_values", message));
+    };
+    let range = super::SPEC.fields.iter().find(|known: &&Field| known.name == field).map(|known| known.range);
+    for (cell, number) in numbers.iter().enumerate().filter(|(cell, _)| chosen[*cell]) {
+        let value = opruga_core::spec::Value::Number(*number);
+        if let Some(Err((value, allowed))) = range.map(|range| range.accept(value, D)) {
+            let message = format!("`{of_cells}` of cell {cell} is {value}; allowed: {allowed}");
+            return Err(refuse("model.cell_value", message));
+        }
+    }
+    Ok(Some(numbers.as_slice()))
+}
