@@ -297,6 +297,8 @@ pub struct Ingredients<'a, const D: usize> {
     pub values: &'a [&'a Values],
     /// Mass of every node [kg], laid out like the columns.
     pub mass: &'a crate::state::Parameter,
+    /// Density of every cell [kg/m³], where they differ.
+    pub densities: Option<&'a [f64]>,
     /// Thickness out of the plane in 2D, of a sheet in 3D [m].
     pub thickness: f64,
     /// Acceleration of gravity [m/s²].

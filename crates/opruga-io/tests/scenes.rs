@@ -22,7 +22,7 @@ fn the_full_scene_has_all_its_parts() {
     assert_eq!(scene.integrator.integer("iterations"), Some(12));
     assert_eq!(scene.bodies.len(), 1 + 6 + 1);
     let ball = &scene.bodies[0];
-    assert_eq!((ball.mass, ball.mesh.nodes(), ball.angular_velocity.as_slice()), (Mass::Total(1.0), 36, &[0.5][..]));
+    assert_eq!((&ball.mass, ball.mesh.nodes(), ball.angular_velocity.as_slice()), (&Mass::Total(1.0), 36, &[0.5][..]));
     assert_eq!(ball.models[1].rows("temperature"), [[0.0, 1.0], [2.0, 1.5]]);
     assert_eq!(ball.pins[0].motion[1], [1.0, 0.5, 0.0]);
     assert_eq!(scene.bodies[7].pins[0].select, Selector::All);
@@ -147,7 +147,7 @@ fn overrides_reach_every_parameter() {
     };
     assert_eq!((scene.seed, scene.time.substeps, scene.surroundings.gravity), (3, 4, [0.0, -1.0]));
     assert_eq!(scene.integrator.integer("iterations"), Some(5));
-    assert_eq!((scene.bodies[0].mass, scene.bodies[1].mass), (Mass::Total(2.5), Mass::Density(7.0)));
+    assert_eq!((&scene.bodies[0].mass, &scene.bodies[1].mass), (&Mass::Total(2.5), &Mass::Density(7.0)));
     assert_eq!(scene.bodies[0].models[0].number("stiffness"), Some(10.0));
     assert_eq!(scene.bodies[0].models[0].text("edges"), Some("boundary"));
     assert_eq!(scene.colliders[0].values.number("friction"), Some(0.9));

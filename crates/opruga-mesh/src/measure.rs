@@ -60,23 +60,44 @@ impl<const D: usize> Mesh<D> {
                 let each = self.measure()?.value() / shares.len() as f64;
                 shares.fill(each);
             }
-            Share::Proportional => {
-                self.visit_measures(|element, nodes, measure| {
-                    let mut give = |own: &[f64]| {
-                        nodes.iter().zip(own).for_each(|(&node, share)| shares[node as usize] += share * measure);
-                    };
-                    match element {
-                        Element::QuadraticTriangle => give(&TRIANGLE_SHARES),
-                        Element::QuadraticTetrahedron => give(&TETRAHEDRON_SHARES),
-                        _ => {
-                            let part = measure / nodes.len() as f64;
-                            nodes.iter().for_each(|&node| shares[node as usize] += part);
-                        }
-                    }
-                })?;
-            }
+            Share::Proportional => self.share_out(&mut shares, |_| 1.0)?,
         }
         Ok(shares)
+    }
+
+    /// The lumped mass of each node [kg], from the density of every cell [kg/m³, in the plane per area].
+    ///
+    /// # Errors
+    /// Those of [`Mesh::measure`]; [`MeshError::CellValues`] where there are not as many densities as cells.
+    pub fn lumped_masses(&self, densities: &[f64]) -> Result<Vec<f64>, MeshError> {
+        let cells = self.cells.len();
+        if densities.len() != cells {
+            return Err(MeshError::CellValues { name: "density".into(), values: densities.len(), cells });
+        }
+        let mut masses = vec![0.0; self.nodes()];
+        self.share_out(&mut masses, |cell| densities[cell])?;
+        Ok(masses)
+    }
+
+    /// Adds to every node its share of the measure of the elements that carry matter, each times a weight by its number.
+    fn share_out(&self, shares: &mut [f64], weight: impl Fn(usize) -> f64) -> Result<(), MeshError> {
+        let mut number = 0;
+        self.visit_measures(|element, nodes, measure| {
+            let measure = weight(number) * measure;
+            number += 1;
+            let mut give = |own: &[f64]| {
+                nodes.iter().zip(own).for_each(|(&node, share)| shares[node as usize] += share * measure);
+            };
+            match element {
+                Element::QuadraticTriangle => give(&TRIANGLE_SHARES),
+                Element::QuadraticTetrahedron => give(&TETRAHEDRON_SHARES),
+                _ => {
+                    let part = measure / nodes.len() as f64;
+                    nodes.iter().for_each(|&node| shares[node as usize] += part);
+                }
+            }
+        })?;
+        Ok(())
     }
 
     /// Calls `visit(kind, nodes, measure)` for each element that carries matter; returns which measure it is.

@@ -25,8 +25,15 @@ where
     Fem: Model<D>,
 {
     let mass = Parameter::uniform(1.0);
-    let ingredients =
-        Ingredients { mesh, layout: Layout::Single, values: &[values], mass: &mass, thickness: 1.0, gravity: [0.0; D] };
+    let ingredients = Ingredients {
+        mesh,
+        layout: Layout::Single,
+        values: &[values],
+        mass: &mass,
+        densities: None,
+        thickness: 1.0,
+        gravity: [0.0; D],
+    };
     let solid: Box<dyn Potential<D>> = Fem.build(&ingredients).unwrap();
     let (c, s) = if turned { (0.6, 0.8) } else { (1.0, 0.0) };
     let places = Layout::Single.places(mesh.nodes());

@@ -108,7 +108,7 @@ pub struct BodyBlueprint<const D: usize> {
     pub angular_velocity: Vec<f64>,
     /// How much it weighs.
     pub mass: Mass,
-    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for [`Mass::Density`] alone [m].
+    /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for the mass by density alone [m].
     pub thickness: f64,
     /// Its own integrator and the parameters of that; none: that of the scene.
     pub integrator: Option<Values>,
@@ -119,12 +119,14 @@ pub struct BodyBlueprint<const D: usize> {
 }
 
 /// How much a body weighs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Mass {
     /// Mass of the whole body [kg].
     Total(f64),
     /// Mass per volume [kg/m³].
     Density(f64),
+    /// Mass per volume of every cell of the mesh [kg/m³].
+    DensityOfCells(Arc<[f64]>),
     /// Mass of every node [kg].
     Node(f64),
 }

@@ -80,14 +80,14 @@ pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
     let first = shares.first().copied().unwrap_or(0.0);
     // Shares that agree to rounding are equal: a regular ring has equal masses to the bit.
     let alike = shares.iter().all(|s| (s - first).abs() <= 1e-9 * first.abs());
-    match body.mass {
-        Mass::Node(mass) => vec![mass; nodes],
-        Mass::Total(mass) if alike => vec![mass / nodes as f64; nodes],
-        Mass::Total(mass) => {
+    match &body.mass {
+        &Mass::Node(mass) => vec![mass; nodes],
+        &Mass::Total(mass) if alike => vec![mass / nodes as f64; nodes],
+        &Mass::Total(mass) => {
             let total: f64 = shares.iter().sum();
             shares.iter().map(|s| mass * s / total).collect()
         }
-        Mass::Density(density) => {
+        &Mass::Density(density) => {
             // What the elements lack in dimensions is thickness: a sheet's, twice a wire's.
             let depth = match body.mesh.measure() {
                 Ok(Measure::Length(_)) => density * body.thickness * body.thickness,
@@ -96,6 +96,20 @@ pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
             };
             shares.iter().map(|s| if alike { first * depth } else { s * depth }).collect()
         }
+        // A mesh without as many cells has been refused.
+        Mass::DensityOfCells(densities) => match body.mesh.lumped_masses(densities) {
+            Ok(masses) if D == 2 => masses.iter().map(|mass| mass * body.thickness).collect(),
+            Ok(masses) => masses,
+            Err(_) => vec![0.0; nodes],
+        },
+    }
+}
+
+/// The density of every cell of a body [kg/m³], where they differ.
+fn densities<const D: usize>(body: &BodyBlueprint<D>) -> Option<&[f64]> {
+    match &body.mass {
+        Mass::DensityOfCells(densities) => Some(densities),
+        _ => None,
     }
 }
 
@@ -138,6 +152,7 @@ fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
         && a.integrator == b.integrator
         && a.thickness == b.thickness
         && core::mem::discriminant(&a.mass) == core::mem::discriminant(&b.mass)
+        && densities(a) == densities(b)
         && a.models.len() == b.models.len()
         && a.models.iter().zip(&b.models).all(|(a, b)| alike_values(a, b))
 }
@@ -242,6 +257,7 @@ impl<const D: usize> Builder<'_, D> {
                     layout,
                     values: &all,
                     mass: &mass,
+                    densities: densities(first),
                     thickness: first.thickness,
                     gravity: self.blueprint.surroundings.gravity,
                 })
@@ -378,6 +394,7 @@ impl<const D: usize> Builder<'_, D> {
             layout,
             values: &all,
             mass,
+            densities: densities(body),
             thickness: body.thickness,
             gravity: self.blueprint.surroundings.gravity,
         };

@@ -202,11 +202,18 @@ pub const BODY: Section = Section {
     spec: &section(
         "body",
         "A deformable body",
-        "Exactly one of `mass`, `density` and `node_mass` says how much it weighs. Its shape is scaled, then rotated about the origin of the shape's own coordinates, then moved to `position`.",
+        "Exactly one of `mass`, `density`, `density_of_cells` and `node_mass` says how much it weighs. Its shape is scaled, then rotated about the origin of the shape's own coordinates, then moved to `position`.",
         &[
             Field::new("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
             Field::new("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
             Field::new("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
+            Field::new(
+                "density_of_cells",
+                Allowed::Text,
+                "",
+                Default::Absent,
+                "The name of numbers of the mesh file, one per cell, that are mass per volume [kg/m³].",
+            ),
             Field::new("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
             Field::new(
                 "fixed",

@@ -136,3 +136,45 @@ fn triangles_and_tetrahedra_of_finite_elements_are_quadratic_by_default() {
         "shape = { kind = \"svg\", file = \"shapes/heart.svg\", spacing = 0.2, size = 1.0, filling = \"triangles\" }";
     assert!(nodes(heart, fem) > 3 * nodes(&format!("{heart}\norder = 1"), loose));
 }
+
+/// Two squares of one metre side by side, of 1000 and 3000 kg/m³ and half a metre deep, as a mesh file says.
+#[test]
+fn a_mesh_file_gives_every_cell_its_density() {
+    let mesh = |second: &str| {
+        let nodes = "6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n";
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n2\n1 3 2 0 1 1 2 5 4\n2 3 2 0 1 2 3 6 5\n\
+             $EndElements\n$ElementData\n1\n\"rho\"\n1\n0.0\n3\n0\n1\n2\n1 1000\n2 {second}\n$EndElementData\n"
+        )
+    };
+    let read = |motion: &str, name: &str, second: &str| {
+        let text = format!(
+            "{}[[body]]\nname = \"two\"\nshape = {{ kind = \"mesh\", file = \"two.msh\" }}\nthickness = 0.5\n\
+             density_of_cells = \"{name}\"\n{motion}\n\
+             models = [{{ kind = \"fem\", youngs_modulus = 1e6, mass = \"consistent\" }}]\n",
+            head(0.01, 1, 0.0, "implicit_midpoint")
+        );
+        let held = [("two.msh".to_string(), std::sync::Arc::from(mesh(second).as_bytes()))];
+        let options = opruga::io::scene::Options {
+            files: opruga::io::Files::held(held),
+            ..opruga::io::scene::Options::default()
+        };
+        opruga::io::scene::read(text.as_bytes(), "test.toml", &opruga::catalogue(), &options).map(|read| read.0)
+    };
+    let plane = |motion: &str| match read(motion, "rho", "3000") {
+        Ok(opruga::blueprint::AnyBlueprint::Plane(blueprint)) => built(blueprint),
+        other => panic!("{other:?}"),
+    };
+    let thrown = plane("velocity = [2.0, 0.0]");
+    assert!((thrown.momentum().linear.0[0] - 4000.0).abs() < 1e-9, "{:?}", thrown.momentum());
+    // About the centre of mass at x = 1.25 m: Σ m (a² + b²)/12 + m d².
+    let turned = plane("angular_velocity = 3.0");
+    let inertia = 500.0 * (1.0 / 6.0 + 0.75 * 0.75) + 1500.0 * (1.0 / 6.0 + 0.25 * 0.25);
+    assert!((turned.momentum().angular[2] / (3.0 * inertia) - 1.0).abs() < 1e-12, "{:?}", turned.momentum());
+    assert!((turned.energy().kinetic / (4.5 * inertia) - 1.0).abs() < 1e-12, "{:?}", turned.energy());
+    for (name, second, said) in [("sigma", "3000", "`rho`"), ("rho", "0", "a number > 0")] {
+        let errors = read("", name, second).expect_err("an error");
+        assert!(errors.len() == 1 && errors[0].to_string().contains(said), "{errors:?}");
+        assert_eq!(errors[0].path, "body.0.density_of_cells");
+    }
+}

@@ -68,6 +68,7 @@ pub(crate) fn bench(call: &BenchElements) -> Result<u8, Failure> {
                 layout: Layout::Single,
                 values: &[&values],
                 mass: &Parameter::uniform(1.0),
+                densities: None,
                 thickness: 1.0,
                 gravity: [0.0; 3],
             });

@@ -201,6 +201,7 @@ impl<const D: usize> Suite<'_, D> {
             layout,
             values: &values,
             mass: &mass,
+            densities: None,
             thickness: self.options.thickness,
             gravity: [0.0; D],
         };

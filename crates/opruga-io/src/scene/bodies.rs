@@ -240,11 +240,30 @@ pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name:
     );
 }
 
-/// Exactly one of mass, density and node_mass.
+/// The densities of the cells of a mesh by their name in its file.
+fn densities<const D: usize>(mesh: &Mesh<D>, name: &str) -> Result<Arc<[f64]>, SceneError> {
+    let Some(numbers) = mesh.cell_values.get(name) else {
+        let known: Vec<String> = mesh.cell_values.keys().map(|known| format!("`{}`", visible(known))).collect();
+        let known = if known.is_empty() { "there are none".into() } else { known.join(", ") };
+        let message = format!("the cells of the mesh have no numbers `{}`", visible(name));
+        return Err(SceneError::new("scene.no_values", message).value(visible(name)).allowed(known));
+    };
+    match numbers.iter().position(|density| !(*density > 0.0 && density.is_finite())) {
+        Some(cell) => {
+            let message = format!("the density of cell {cell} is {} kg/m³", numbers[cell]);
+            Err(SceneError::new("scene.range", message).value(numbers[cell].to_string()).allowed("a number > 0"))
+        }
+        None => Ok(Arc::from(numbers.as_slice())),
+    }
+}
+
+/// Exactly one of mass, density, density_of_cells and node_mass.
 fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Option<Mass> {
-    const WORDS: [&str; 3] = ["mass", "density", "node_mass"];
+    const WORDS: [&str; 4] = ["mass", "density", "density_of_cells", "node_mass"];
     let given: Vec<&str> = WORDS.into_iter().filter(|w| node.get(w).is_some()).collect();
     match given.as_slice() {
+        // The numbers come with the mesh.
+        ["density_of_cells"] => Some(Mass::DensityOfCells(Arc::from([]))),
         [word] => {
             let x = values.number(word)?;
             Some(match *word {
@@ -257,14 +276,17 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
         [] => {
             let error = SceneError::new("scene.missing", "the body has no mass")
                 .path(join(path, "mass"))
-                .allowed("exactly one of mass, density, node_mass");
+                .allowed("exactly one of mass, density, density_of_cells, node_mass");
             reader.report(node.place, error.hint("a body that never moves is `fixed = true`"));
             None
         }
         several => {
             let words = several.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(" and ");
             let error = SceneError::new("scene.conflict", format!("the body has {words}")).path(join(path, several[1]));
-            reader.report(place_of(node, several[1]), error.allowed("exactly one of mass, density, node_mass"));
+            reader.report(
+                place_of(node, several[1]),
+                error.allowed("exactly one of mass, density, density_of_cells, node_mass"),
+            );
             None
         }
     }
@@ -392,21 +414,32 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         Ok(Measure::Area(_)) if D == 3 => Some("of a sheet needs its"),
         _ => None,
     };
-    if let (Some(Mass::Density(_)), Some(of), None) = (draft.mass, thin, draft.node.get("thickness")) {
+    if let (Some(Mass::Density(_)), Some(of), None) = (&draft.mass, thin, draft.node.get("thickness")) {
         let error = SceneError::new("scene.missing", format!("`density` {of} `thickness`"))
             .path(join(&draft.path, "thickness"))
             .allowed("a number > 0");
         reader.report(place_of(draft.node, "density"), error.hint("or give the `mass` of the whole body"));
         return None;
     }
+    let mass = match (&draft.mass, draft.values.text("density_of_cells")) {
+        (Some(Mass::DensityOfCells(_)), Some(name)) => match densities(&mesh, name) {
+            Ok(densities) => Mass::DensityOfCells(densities),
+            Err(error) => {
+                let error = error.path(join(&draft.path, "density_of_cells"));
+                reader.report(place_of(draft.node, "density_of_cells"), error);
+                return None;
+            }
+        },
+        // A body without a mass has an error, and weighs something only to be looked at further.
+        (mass, _) => mass.clone().unwrap_or(Mass::Node(1.0)),
+    };
     let body = BodyBlueprint {
         name: draft.name.clone(),
         mesh: Arc::new(mesh),
         translation: draft.values.vector("position"),
         velocity: draft.values.vector("velocity"),
         angular_velocity: draft.angular_velocity.clone(),
-        // A body without a mass has an error, and weighs something only to be looked at further.
-        mass: draft.mass.unwrap_or(Mass::Node(1.0)),
+        mass,
         thickness: draft.values.number("thickness").unwrap_or(1.0),
         integrator: draft.integrator.clone(),
         models: draft.models.clone(),

@@ -99,8 +99,8 @@ struct Builder<'a, const D: usize> {
     chosen: Vec<bool>,
     numbers: Numbers<'a>,
     stress: bool,
-    /// The density [kg/m³, in the plane per area] where the mass matrix is consistent.
-    density: Option<f64>,
+    /// The density [kg/m³, in the plane per area] of every cell where the mass matrix is consistent.
+    density: Option<Vec<f64>>,
 }
 
 impl<'a, const D: usize> Builder<'a, D> {
@@ -131,7 +131,7 @@ impl<'a, const D: usize> Builder<'a, D> {
             chosen,
             numbers,
             stress: D == 2 && first.text("plane") == Some("stress"),
-            density: (first.text("mass") == Some("consistent")).then(|| density(ingredients)).transpose()?,
+            density: (first.text("mass") == Some("consistent")).then(|| densities(ingredients)).transpose()?,
         })
     }
 
@@ -160,10 +160,10 @@ impl<'a, const D: usize> Builder<'a, D> {
         for cell in &cells {
             self.check::<E, N>(cell, positions)?;
         }
-        if let Some(density) = self.density {
+        if let Some(density) = &self.density {
             for cell in &cells {
                 let rest = cell.nodes.map(|n| positions[n as usize]);
-                mass::entries::<E, D, N>(&cell.nodes, &rest, density, &mut built.inertia);
+                mass::entries::<E, D, N>(&cell.nodes, &rest, density[cell.number as usize], &mut built.inertia);
             }
         }
         if E::SIMPLEX && !self.stress {
@@ -229,11 +229,18 @@ impl<'a, const D: usize> Builder<'a, D> {
     }
 }
 
-/// The density of a body [kg/m³, in the plane per area], from the masses of its nodes.
-fn density<const D: usize>(ingredients: &Ingredients<D>) -> Result<f64, BuildError> {
+/// The density of every cell [kg/m³, in the plane per area], where they do not differ from the masses of the nodes.
+fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, BuildError> {
+    if let Some(densities) = ingredients.densities {
+        let depth = if D == 2 { ingredients.thickness } else { 1.0 };
+        return Ok(densities.iter().map(|density| depth * density).collect());
+    }
     let measure = ingredients.mesh.measure().map_err(|e| refuse("model.mass", e.to_string()))?.value();
     let nodes = 0..ingredients.mesh.nodes();
-    Ok(nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure)
+    Ok(vec![
+        nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure;
+        ingredients.mesh.cells.len()
+    ])
 }
 
 /// The names of the groups of cells of a mesh.

@@ -70,6 +70,7 @@ pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]
             layout: Layout::Single,
             values: &[values],
             mass: &mass,
+            densities: None,
             thickness: 1.0,
             gravity: [0.0; D],
         };
@@ -87,6 +88,7 @@ pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, valu
         layout: Layout::Single,
         values: &[&values],
         mass: &mass,
+        densities: None,
         thickness: 1.0,
         gravity: [0.0; D],
     };
