@@ -81,6 +81,52 @@ pub(crate) enum Bench {
     Scene(BenchScene),
     /// Forces and Hessians of finite elements, nanoseconds per element
     Elements(BenchElements),
+    /// What `--record` adds to the frames of a scene: runs with and without it, in turns
+    Record(BenchRecord),
+    /// How long it takes to read a surface of many triangles, beside reading the bytes of its file
+    Load(BenchLoad),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BenchRecord {
+    /// A scene file, or the name of a scene that comes with the program
+    pub(crate) scene: String,
+    /// Override a parameter, such as time.substeps=64; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// How many frames each run has
+    #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) frames: u32,
+    /// How many pairs of runs
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub(crate) rounds: u32,
+    /// Keep one state in so many frames, as `run --record-every` [default: as `run --record` does]
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) every: Option<u32>,
+    /// The folder for the recording, which is removed again [default: that of the system for temporary files]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) folder: Option<PathBuf>,
+    /// Shapes may be read from files outside of the folder of the scene
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BenchLoad {
+    /// A surface in STL, OBJ, PLY or glTF [default: a torus of --triangles in binary STL]
+    pub(crate) file: Option<PathBuf>,
+    /// About how many triangles the torus has
+    #[arg(long, default_value_t = 1_000_000, conflicts_with = "file", value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
+    pub(crate) triangles: u32,
+    /// How often it is read
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub(crate) rounds: u32,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -191,6 +237,9 @@ pub(crate) struct Check {
     /// Unknown fields are warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
+    /// A step above the stable limit is a warning, as with `opruga run --allow-unstable`
+    #[arg(long)]
+    pub(crate) allow_unstable: bool,
     /// Shapes may be read from files outside of the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
@@ -318,13 +367,14 @@ pub(crate) struct Run {
     pub(crate) checkpoint_every: f64,
     /// Record the run to this file, for `opruga replay`
     ///
-    /// The file holds the scene and needs no other. A run that is killed leaves all frames up to the last state that was
-    /// kept a twentieth of a second before. --force replaces a file that is there.
+    /// The file holds the scene and needs no other, and a hash of every frame. A run that is killed loses at most the frames
+    /// that it has finished within a twentieth of a second and behind the last state that was kept, and no such state.
+    /// --force replaces a file that is there.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
     /// Keep one state in so many frames of the recording; 1: all
     ///
-    /// Those between are computed again when they are asked for. Without this option so many that recording takes less
+    /// Those between are computed again when they are asked for, and compared by their hashes. Without this option so many that recording takes less
     /// than a tenth of the run, at most 32.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
@@ -417,7 +467,7 @@ pub(crate) struct Modes {
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
-    /// Compute every frame again and compare it bit by bit; exit code 1 where one differs
+    /// Compute every frame again and compare its hash, and its whole state where that is kept; exit code 1 where one differs
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
@@ -536,6 +586,8 @@ impl Command {
             Command::Bench { what: Bench::Vertices(bench) } => bench.json,
             Command::Bench { what: Bench::Scene(bench) } => bench.json,
             Command::Bench { what: Bench::Elements(bench) } => bench.json,
+            Command::Bench { what: Bench::Record(bench) } => bench.json,
+            Command::Bench { what: Bench::Load(bench) } => bench.json,
             Command::New { json, .. } => *json,
             Command::Reference { .. } | Command::Studio { .. } | Command::View { .. } => false,
         }

@@ -19,6 +19,9 @@ pub(crate) const NAME: &str = "checkpoint";
 /// The file of the one before it.
 pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 
+/// The table of a run.
+const TABLE: &str = "diagnostics.csv";
+
 /// The form of the payload; another one belongs to another version of the program.
 const FORM: &str = "run 3";
 
@@ -201,6 +204,16 @@ impl<'a> Keeper<'a> {
         Keeper { folder, source, calling, every, next, older, failed: None }
     }
 
+    /// Writes the head of the table and its first row: whoever looks into the folder of a run that has begun, or was killed
+    /// before its first checkpoint, finds what its columns will be. The table of an earlier run stays as long as its
+    /// checkpoint does.
+    pub(crate) fn begin(&self, table: &NumberTable) -> Result<(), WriteError> {
+        match self.folder.path(TABLE).exists() {
+            true => Ok(()),
+            false => self.folder.write(TABLE, false, |out| table.write(out)).map(|_| ()),
+        }
+    }
+
     /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
     /// run: the next one may succeed.
     pub(crate) fn on_the_way<const D: usize>(&mut self, world: &mut World<D>, table: &NumberTable) -> Option<String> {
@@ -221,7 +234,7 @@ impl<'a> Keeper<'a> {
         world: &mut World<D>,
         table: &NumberTable,
     ) -> Result<(), WriteError> {
-        self.folder.write("diagnostics.csv", true, |out| table.write(out))?;
+        self.folder.write(TABLE, true, |out| table.write(out))?;
         let saved = SavedRun {
             name: self.source.name.clone(),
             calling: self.calling.clone(),

@@ -15,7 +15,7 @@ pub(crate) enum Failure {
     Write(WriteError),
     /// A picture cannot be drawn or encoded.
     Draw(String),
-    /// stdout, or a folder for the output, cannot be written.
+    /// stdout cannot be written.
     Output(String),
     /// The call makes no sense.
     Call { message: String, hint: Option<String> },
@@ -28,6 +28,17 @@ pub(crate) enum Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         Failure::Write(error)
+    }
+}
+
+impl From<opruga::recordings::TapeError> for Failure {
+    fn from(error: opruga::recordings::TapeError) -> Self {
+        use opruga::recordings::TapeError;
+        match error {
+            TapeError::Write(error) => Failure::Write(error),
+            TapeError::Read(error) => Failure::Run(Box::new(SceneError::from(&error))),
+            TapeError::World(error) => Failure::Run(Box::new(SceneError::from(&error))),
+        }
     }
 }
 

@@ -84,7 +84,7 @@ fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) 
     let mut files = Vec::new();
     let folder = match &call.out {
         Some(path) => path.clone(),
-        None => default_folder(&format!("{}-modes", source.name))?,
+        None => default_folder(&format!("{}-modes", source.name)),
     };
     let folder = OutputFolder::open(&folder, if call.force { Existing::Replace } else { Existing::Refuse })?;
     folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes).as_bytes()))?;

@@ -28,10 +28,11 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
         files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let Whole { blueprint, notices, .. } = source.read(&reading, &Options::default())?;
+    let world = Options { allow_unstable: call.allow_unstable, ..Options::default() };
+    let Whole { blueprint, notices, .. } = source.read(&reading, &world)?;
     let found = match blueprint {
-        AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),
-        AnyBlueprint::Space(blueprint) => Found::of(&source.build(blueprint, &reading, &Options::default())?),
+        AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &world)?),
+        AnyBlueprint::Space(blueprint) => Found::of(&source.build(blueprint, &reading, &world)?),
     };
     if call.json {
         print_data(&format!("{}\n", found.to_json(&source.file, &notices)))?;
@@ -221,6 +222,8 @@ pub(crate) fn bench(what: &Bench) -> Result<u8, Failure> {
         Bench::Vertices(call) => bench_vertices(call),
         Bench::Scene(call) => crate::bench::scene::bench(call),
         Bench::Elements(call) => crate::bench::elements::bench(call),
+        Bench::Record(call) => crate::bench::record::bench(call),
+        Bench::Load(call) => crate::bench::load::bench(call),
     }
 }
 

@@ -87,28 +87,23 @@ const TALK_EVERY: f64 = 10.0;
 
 /// As [`default_folder`], or the first of `name-2`, `name-3`, … that holds nothing yet: for a call that has said nothing
 /// about its output.
-pub(crate) fn fresh_folder(name: &str) -> Result<PathBuf, Failure> {
-    let first = default_folder(name)?;
+pub(crate) fn fresh_folder(name: &str) -> PathBuf {
+    let first = default_folder(name);
     let used = |path: &PathBuf| path.exists() && !std::fs::read_dir(path).is_ok_and(|mut files| files.next().is_none());
     let next = (2..).map(|number| first.with_file_name(format!("{name}-{number}")));
-    Ok(std::iter::once(first.clone()).chain(next).find(|path| !used(path)).unwrap_or(first))
+    std::iter::once(first.clone()).chain(next).find(|path| !used(path)).unwrap_or(first)
 }
 
-/// The folder for what nobody has chosen a folder for; `out` around it is made.
-pub(crate) fn default_folder(name: &str) -> Result<PathBuf, Failure> {
-    let parent = PathBuf::from("out");
-    if !parent.exists() {
-        let failed = |e: std::io::Error| Failure::Output(format!("the folder `out` cannot be made: {e}"));
-        std::fs::create_dir(&parent).map_err(failed)?;
-    }
-    Ok(parent.join(name))
+/// The folder for what nobody has chosen a folder for.
+pub(crate) fn default_folder(name: &str) -> PathBuf {
+    PathBuf::from("out").join(name)
 }
 
 /// The folder for the output; it is locked, and known to be writable.
 fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
     let folder = match &call.out {
         Some(path) => path.clone(),
-        None => default_folder(&source.name)?,
+        None => default_folder(&source.name),
     };
     // A resumed run writes its own part only: it must not replace the part before it unasked.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
@@ -177,6 +172,7 @@ impl Job<'_> {
         let (mut failure, mut told_at, mut looked_at) = (None, 0.0, false);
         // Looking at the world is not counted as the time of its steps.
         let mut looking = recorder.record(&mut world);
+        keeper.begin(&recorder.table)?;
         while failure.is_none() && world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
                 failure = Some(Failure::Interrupted);

@@ -9,15 +9,11 @@ use crate::interrupt;
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::{Source, argument};
 use findings::Found;
-use opruga::io::overrides;
-use opruga::io::problem::visible;
+use opruga::io::SceneError;
 use opruga::io::safe_write::{Existing, OutputFolder, WriteError};
-use opruga::io::{Files, SceneError};
 use opruga::math::words::counted;
-use opruga::sweep::{Axis, Design, Metric, Row, Sweep, head, line, plots, read_rows};
+use opruga::sweep::{Metric, Question, Row, Status, Sweep, head, line, plots, read_rows};
 use opruga::{Simd, sweep::Point};
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -28,53 +24,23 @@ use std::time::Instant;
 const QUESTION: &str = "question.json";
 const TABLE: &str = "results.csv";
 
-/// What was asked: all that decides about the numbers of the table. It lies in the folder, so that a sweep can go on.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-struct Question {
-    schema: u32,
-    name: String,
-    /// Where the scene came from; the same text from elsewhere is the same question.
-    file: String,
-    set: Vec<String>,
-    metrics: Vec<String>,
-    each: bool,
-    sample: Option<usize>,
-    independent: bool,
-    seed: u64,
-    allow_unstable: bool,
-    lenient: bool,
-    scene: String,
-    /// The files that the scene names, their bytes written as pairs of hexadecimal digits.
-    #[serde(default)]
-    files: BTreeMap<String, String>,
-}
-
-fn to_digits(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn from_digits(text: &str) -> Option<Vec<u8>> {
-    let byte = |pair: &[u8]| u8::from_str_radix(core::str::from_utf8(pair).ok()?, 16).ok();
-    text.len().is_multiple_of(2).then(|| text.as_bytes().chunks(2).map(byte).collect()).flatten()
-}
-
 /// Runs a sweep, or the rest of one.
 pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
     let simd = simd_from_environment()?;
     let (question, path) = match &call.resume {
-        Some(path) => (Question::open(path)?.ok_or_else(|| no_sweep(path))?, path.clone()),
+        Some(path) => (asked(path)?.ok_or_else(|| no_sweep(path))?, path.clone()),
         None => {
-            let question = Question::of(call)?;
+            let question = question_of(call)?;
             let path = match &call.out {
                 Some(path) => path.clone(),
-                None => default_folder(&format!("{}-sweep", question.name))?,
+                None => default_folder(&format!("{}-sweep", question.name)),
             };
             (question, path)
         }
     };
     let sweep = question.sweep()?;
     let points = sweep.points()?;
-    let folder = question.folder(&path, call.force)?;
+    let folder = folder_of(&question, &path, call.force)?;
     let known = known_rows(&folder, &sweep, &points)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores.min(256), usize::from);
@@ -111,7 +77,17 @@ pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
         }
         eprintln!("written to {}", folder.path("").display());
     }
-    Ok(0)
+    Ok(exit_code(&rows))
+}
+
+/// That of the point that went worst, as a run of its own would have ended; all others are done by then.
+fn exit_code(rows: &[Row]) -> u8 {
+    let code = |row: &Row| match &row.status {
+        Status::Done => 0,
+        Status::Failed(code) if code.starts_with("run.") => 3,
+        Status::Failed(_) => 2,
+    };
+    rows.iter().map(code).max().unwrap_or(0)
 }
 
 /// What the scene calls its unit of length.
@@ -136,149 +112,81 @@ fn no_sweep(path: &Path) -> Failure {
     Failure::Scene(vec![SceneError { file: shown, ..error }])
 }
 
-impl Question {
-    fn of(call: &Call) -> Result<Question, Failure> {
-        if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
-            return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
-        }
-        let source = Source::find(call.scene.as_deref().unwrap_or_default())?;
-        let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {
-            // The reader says where.
-            let nothing = opruga::io::scene::Options::default();
-            let refused = opruga::io::scene::read(&source.bytes, &source.file, &opruga::catalogue(), &nothing);
-            Failure::Scene(refused.err().unwrap_or_default())
-        })?;
-        // They belong to the question: a sweep goes on with the files that it began with.
-        let options = opruga::io::scene::Options {
-            lenient: true,
-            files: source.files.clone().allow_outside(call.allow_outside),
-            ..opruga::io::scene::Options::default()
-        };
-        let reading = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
-        if !reading.unread.is_empty() {
-            return Err(Failure::Scene(reading.errors));
-        }
-        let named = reading.files;
-        let mut set = call.set.clone();
-        set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
-        Ok(Question {
-            schema: 1,
-            name: source.name,
-            file: source.file,
-            set,
-            metrics: call.metrics.clone(),
-            each: call.each,
-            sample: call.sample,
-            independent: call.independent,
-            seed: call.seed,
-            allow_unstable: call.allow_unstable,
-            lenient: call.lenient,
-            scene,
-            files: named.into_iter().map(|(name, bytes)| (name, to_digits(&bytes))).collect(),
-        })
+/// The question of a call, with all that the scene names.
+fn question_of(call: &Call) -> Result<Question, Failure> {
+    if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
+        return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
     }
+    let source = Source::find(call.scene.as_deref().unwrap_or_default())?;
+    let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {
+        // The reader says where.
+        let nothing = opruga::io::scene::Options::default();
+        let refused = opruga::io::scene::read(&source.bytes, &source.file, &opruga::catalogue(), &nothing);
+        Failure::Scene(refused.err().unwrap_or_default())
+    })?;
+    // They belong to the question: a sweep goes on with the files that it began with.
+    let options = opruga::io::scene::Options {
+        lenient: true,
+        files: source.files.clone().allow_outside(call.allow_outside),
+        ..opruga::io::scene::Options::default()
+    };
+    let reading = opruga::io::scene::survey(&source.bytes, &source.file, &opruga::catalogue(), &options);
+    if !reading.unread.is_empty() {
+        return Err(Failure::Scene(reading.errors));
+    }
+    let named = reading.files;
+    let mut set = call.set.clone();
+    set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
+    Ok(Question {
+        schema: Question::SCHEMA,
+        name: source.name,
+        file: source.file,
+        set,
+        metrics: call.metrics.clone(),
+        each: call.each,
+        sample: call.sample,
+        independent: call.independent,
+        seed: call.seed,
+        allow_unstable: call.allow_unstable,
+        lenient: call.lenient,
+        scene,
+        files: named.into_iter().map(|(name, bytes)| (name, Question::to_digits(&bytes))).collect(),
+    })
+}
 
-    /// The question of the sweep in a folder; none where there is no sweep.
-    fn open(folder: &Path) -> Result<Option<Question>, Failure> {
-        let path = folder.join(QUESTION);
-        if !path.exists() {
-            return Ok(None);
-        }
-        let refuse = |error: SceneError| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
-        let bytes = opruga::io::scene::bytes_of(&path, &opruga::io::scene::Limits::default()).map_err(refuse)?;
-        serde_json::from_slice(&bytes).map(Some).map_err(|e| {
-            refuse(
-                SceneError::new("sweep.damaged", format!("the question of the sweep cannot be read: {e}"))
-                    .hint("--force begins the sweep anew"),
-            )
-        })
+/// The question of the sweep in a folder; none where there is no sweep.
+fn asked(folder: &Path) -> Result<Option<Question>, Failure> {
+    let path = folder.join(QUESTION);
+    if !path.exists() {
+        return Ok(None);
     }
+    let refuse = |error: SceneError| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
+    let bytes = opruga::io::scene::bytes_of(&path, &opruga::io::scene::Limits::default()).map_err(refuse)?;
+    Question::read(&bytes).map(Some).map_err(refuse)
+}
 
-    fn sweep(&self) -> Result<Sweep, Failure> {
-        let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
-        for set in &self.set {
-            match Axis::parse(set) {
-                Ok(Some(axis)) => axes.push(axis),
-                Ok(None) => fixed.extend(overrides::split(set).map_err(|e| errors.push(e))),
-                Err(error) => errors.push(error),
-            }
-        }
-        let metrics = self.metrics.iter().filter_map(|m| Metric::parse(m).map_err(|e| errors.push(e)).ok()).collect();
-        let mut files = BTreeMap::new();
-        for (name, digits) in &self.files {
-            match from_digits(digits) {
-                Some(bytes) => _ = files.insert(name.clone(), bytes.into()),
-                None => errors.push(
-                    SceneError::new("sweep.damaged", format!("the file `{name}` of the sweep cannot be read"))
-                        .hint("--force begins the sweep anew"),
-                ),
-            }
-        }
-        if !errors.is_empty() {
-            return Err(Failure::Scene(errors));
-        }
-        Ok(Sweep {
-            name: self.name.clone(),
-            file: self.file.clone(),
-            text: self.scene.clone(),
-            files: Files::held(files),
-            fixed,
-            axes,
-            design: match self.sample {
-                Some(count) => Design::Sample { count, seed: self.seed, independent: self.independent },
-                None if self.each => Design::Each,
-                None => Design::Grid,
-            },
-            metrics,
-            allow_unstable: self.allow_unstable,
-            lenient: self.lenient,
-        })
+/// The folder of this question, locked: a new one, or one that holds a part of the answer.
+fn folder_of(question: &Question, path: &Path, force: bool) -> Result<OutputFolder, Failure> {
+    let before = if force { None } else { asked(path)? };
+    let existing = if force || before.is_some() { Existing::Replace } else { Existing::Refuse };
+    if let Some(before) = before.as_ref().filter(|before| !question.same(before)) {
+        return Err(Failure::Write(WriteError {
+            code: "write.exists",
+            message: format!("the folder holds a sweep with another question: {}", question.difference(before)),
+            path: path.to_path_buf(),
+            bytes: 0,
+            hint: Some("--force begins anew, --out takes another folder".into()),
+        }));
     }
-
-    /// The folder of this question, locked: a new one, or one that holds a part of the answer.
-    fn folder(&self, path: &Path, force: bool) -> Result<OutputFolder, Failure> {
-        let before = if force { None } else { Question::open(path)? };
-        let existing = if force || before.is_some() { Existing::Replace } else { Existing::Refuse };
-        if let Some(before) = before.as_ref().filter(|before| !self.same(before)) {
-            return Err(Failure::Write(WriteError {
-                code: "write.exists",
-                message: format!("the folder holds a sweep with another question: {}", self.difference(before)),
-                path: path.to_path_buf(),
-                bytes: 0,
-                hint: Some("--force begins anew, --out takes another folder".into()),
-            }));
+    let folder = OutputFolder::open(path, existing)?;
+    if before.is_none() {
+        // The old answer goes before the new question comes.
+        for name in [TABLE, "summary.json"] {
+            folder.remove(name)?;
         }
-        let folder = OutputFolder::open(path, existing)?;
-        if before.is_none() {
-            // The old answer goes before the new question comes.
-            for name in [TABLE, "summary.json"] {
-                folder.remove(name)?;
-            }
-            let text = serde_json::to_string_pretty(self).unwrap_or_default();
-            folder.write(QUESTION, true, |out| writeln!(out, "{text}"))?;
-        }
-        Ok(folder)
+        folder.write(QUESTION, true, |out| writeln!(out, "{}", question.to_text()))?;
     }
-
-    fn same(&self, other: &Question) -> bool {
-        *self == Question { file: self.file.clone(), ..other.clone() }
-    }
-
-    fn difference(&self, before: &Question) -> String {
-        let lists = |new: &[String], old: &[String]| format!("{} instead of {}", old.join(" "), new.join(" "));
-        let said = if self.scene != before.scene {
-            "the text of the scene was another".to_string()
-        } else if self.files != before.files {
-            "a file that the scene names was another".to_string()
-        } else if self.set != before.set {
-            format!("--set {}", lists(&self.set, &before.set))
-        } else if self.metrics != before.metrics {
-            format!("--metric {}", lists(&self.metrics, &before.metrics))
-        } else {
-            "other points were asked for".to_string()
-        };
-        visible(&said)
-    }
+    Ok(folder)
 }
 
 /// The rows that the folder already has.

@@ -1,4 +1,5 @@
-//! Two hundred kills at random moments of recordings, checkpoints and sweeps: what is left can be read, and is right.
+//! Two hundred kills at random moments of recordings, and as many of checkpoints and sweeps: what is left can be read, and is
+//! right. What a kill may cost a recording is measured in `opruga/tests/killed_recordings.rs`.
 //! Rows 79 and 80 of a list of torments.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
@@ -15,14 +16,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-const RECORDINGS: u64 = 90;
-const CHECKPOINTS: u64 = 70;
-const SWEEPS: u64 = 40;
-/// The longest time that a run is left alone then [µs].
-const LONGEST: u64 = 100_000;
+const RECORDINGS: u64 = 200;
+const CHECKPOINTS: u64 = 120;
+const SWEEPS: u64 = 80;
 
-/// The states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
-struct Undisturbed(Mutex<(World<2>, Vec<Vec<u8>>)>);
+/// The hashes and states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
+struct Undisturbed(Mutex<(World<2>, Vec<(u64, Vec<u8>)>)>);
 
 impl Undisturbed {
     fn new() -> Undisturbed {
@@ -30,30 +29,32 @@ impl Undisturbed {
         let read = scene::read(text.as_bytes(), "pressures", &catalogue(), &scene::Options::default());
         let Ok((AnyBlueprint::Plane(blueprint), _)) = read else { panic!("a scene of the plane") };
         let world = World::new(blueprint, Options::default()).expect("a world");
-        let first = world.snapshot();
+        let first = (world.frame_hash(), world.snapshot());
         Undisturbed(Mutex::new((world, vec![first])))
     }
 
-    /// Whether this is the state of a frame.
-    fn is(&self, frame: u64, state: &[u8]) -> bool {
+    /// Goes as far as a frame; says whether it has this hash and, where there is one, this state.
+    fn is(&self, frame: u64, hash: u64, state: Option<&[u8]>) -> bool {
         let mut guard = self.0.lock().expect("nobody has failed");
         let (world, states) = &mut *guard;
         while states.len() as u64 <= frame {
             world.frame().expect("a frame");
-            states.push(world.snapshot());
+            states.push((world.frame_hash(), world.snapshot()));
         }
-        states[frame as usize] == state
+        let (recorded, all) = &states[frame as usize];
+        *recorded == hash && state.is_none_or(|state| state == all)
     }
 
     /// The frame whose state stands at the end of some bytes.
     fn at_the_end(&self, bytes: &[u8]) -> Option<usize> {
         let guard = self.0.lock().expect("nobody has failed");
-        guard.1.iter().position(|state| bytes.ends_with(state))
+        guard.1.iter().position(|(_, state)| bytes.ends_with(state))
     }
 }
 
-/// Waits until a file is there (every fourth time it does not), then a time that follows from a number alone, and kills.
-fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64) {
+/// Waits until a file is there (every fourth time it does not), then a time that follows from a number alone, up to the
+/// longest [µs], and kills.
+fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64, longest: u64) {
     let mut child = program(folder, arguments).spawn().expect("the program runs");
     if !round.is_multiple_of(4) {
         until(file, || folder.join(file).exists() || child.try_wait().is_ok_and(|ended| ended.is_some()));
@@ -61,7 +62,7 @@ fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64) {
     // SplitMix64.
     let mut z = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    std::thread::sleep(Duration::from_micros((z ^ (z >> 27)) % LONGEST));
+    std::thread::sleep(Duration::from_micros((z ^ (z >> 27)) % longest));
     child.kill().expect("it is killed");
     child.wait().expect("it ends");
 }
@@ -91,18 +92,18 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
     let (begun, most) = (AtomicU64::new(0), AtomicU64::new(0));
     rounds(RECORDINGS, |round| {
         let (out, file) = (format!("o{round}"), format!("r{round}"));
-        let every = ["--record-every=1", "--record-every=3"][round as usize % 2];
+        let every = ["--record-every=1", "--record-every=3", "--record-every=1000"][round as usize % 3];
         let call = ["run", "pressures", "--seconds=1e5", "--no-pictures", "--out", &out, "--record", &file, every];
-        killed(folder, &call, &file, round);
+        killed(folder, &call, &file, round, 60_000);
         // It gets its name with its head.
         let Ok(file) = std::fs::File::open(folder.join(&file)) else { return };
         let mut recording = Recording::open(file).unwrap_or_else(|error| panic!("round {round}: {error}"));
         assert!(matches!(recording.ending(), Ending::Open { .. }), "round {round}: {:?}", recording.ending());
         for frame in recording.frames() {
-            if recording.kept(frame) == Ok(frame) {
-                let state = recording.read(frame).expect("a whole frame").to_vec();
-                assert!(undisturbed.is(frame, &state), "round {round}, frame {frame}");
-            }
+            let hash = recording.hash(frame).expect("a whole frame");
+            let kept = recording.kept(frame) == Ok(frame);
+            let state = kept.then(|| recording.read(frame).expect("a whole state"));
+            assert!(undisturbed.is(frame, hash, state), "round {round}, frame {frame}");
         }
         begun.fetch_add(1, Ordering::Relaxed);
         most.fetch_max(recording.frames().end, Ordering::Relaxed);
@@ -115,7 +116,7 @@ fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
 fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
     let folder = tempfile::tempdir().expect("a folder");
     let (folder, undisturbed) = (folder.path(), Undisturbed::new());
-    undisturbed.is(4_000, &[]);
+    undisturbed.is(4_000, 0, None);
     let found = AtomicU64::new(0);
     rounds(CHECKPOINTS, |round| {
         let out = format!("o{round}");
@@ -129,7 +130,7 @@ fn a_run_that_is_killed_at_any_moment_leaves_a_checkpoint_to_go_on_from() {
             "--out",
             &out,
         ];
-        killed(folder, &call, &format!("{out}/checkpoint"), round);
+        killed(folder, &call, &format!("{out}/checkpoint"), round, 100_000);
         for name in ["checkpoint", "checkpoint.previous"] {
             let Ok(bytes) = std::fs::read(folder.join(&out).join(name)) else { continue };
             let checkpoint = Checkpoint::read(&bytes).unwrap_or_else(|error| panic!("round {round}, {name}: {error}"));
@@ -156,7 +157,7 @@ fn a_sweep_that_is_killed_again_and_again_comes_to_its_end() {
         ["sweep", "ball", "--set=body.ball.mass=0.5..2:60", "--metric=bounce_height", "--seconds=2", "--threads=2", out]
     };
     for round in 0..SWEEPS {
-        killed(folder, &call("--out=killed"), "killed/results.csv", round);
+        killed(folder, &call("--out=killed"), "killed/results.csv", round, 50_000);
     }
     for out in ["--out=killed", "--out=whole"] {
         let output = opruga(folder, &call(out));

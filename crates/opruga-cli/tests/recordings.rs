@@ -78,6 +78,48 @@ fn a_replay_gives_the_files_of_its_run_again() {
     assert!(!exported.is_empty() && exported == reached);
 }
 
+/// The recording `r` with one thing changed: the hash of a frame, or a byte of a state.
+fn tampered(folder: &Path, name: &str, wrong_hash: Option<u64>, wrong_state: Option<u64>) {
+    use opruga::io::recording::{Recording, RecordingFile};
+    let mut recording = Recording::open(std::fs::File::open(folder.join("r")).expect("a file")).expect("a recording");
+    let mut file = RecordingFile::create(&folder.join(name), false, recording.header()).expect("a file");
+    for frame in recording.frames() {
+        let hash = recording.hash(frame).expect("a hash") ^ u64::from(wrong_hash == Some(frame));
+        if recording.kept(frame) == Ok(frame) {
+            let mut state = recording.read(frame).expect("a state").to_vec();
+            let last = state.len() - 1;
+            state[last] ^= u8::from(wrong_state == Some(frame));
+            file.keep(frame, hash, |out| out.extend(state)).expect("written");
+        } else {
+            file.push(frame, hash).expect("written");
+        }
+    }
+    file.finish().expect("an end");
+}
+
+/// A frame whose state is not kept is compared too: a recording that differs in one of them alone is found out, at that frame.
+#[test]
+fn a_frame_between_two_states_that_differs_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    summary(folder, &["run", "pressures", "--seconds=1", "--out=o", "--record=r", "--record-every=20"]);
+    let row = verified(folder, &[]);
+    assert_eq!((row["compared"].as_u64(), row["states"].as_u64()), (Some(61), Some(4)), "{row}");
+    for (name, hash, state, frame) in
+        [("same", None, None, 0), ("hash", Some(33), None, 33), ("state", None, Some(40), 40)]
+    {
+        tampered(folder, name, hash, state);
+        let output = opruga(folder, &["replay", name, "--verify", "--json"]);
+        let row = json(&output);
+        assert_eq!((code(&output), row["pass"] == true), if frame == 0 { (0, true) } else { (1, false) }, "{row}");
+        if frame > 0 {
+            assert_eq!(row["differs_at"]["frame"], frame, "{row}");
+            let text = said(&opruga(folder, &["replay", name, "--verify"]));
+            assert!(text.contains(&format!("frame {frame},")) && text.contains("is the first that differs"), "{text}");
+        }
+    }
+}
+
 /// Bodies that come and go, pulls and parameters that are set: all of it is in the states. A run that goes on from a
 /// checkpoint records the rest.
 #[test]

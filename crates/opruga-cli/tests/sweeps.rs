@@ -138,13 +138,33 @@ fn a_failed_point_is_counted_and_the_others_are_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let set = "--set=body.ball.models.mass_spring.stiffness=100,1e9";
     let call = ["sweep", "ball", set, "--metric=energy_drift", "--seconds=0.1", "--json", "--out=o"];
+    // As a run of that point would end: an unstable step is a bad call.
     let output = opruga(folder.path(), &call);
-    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert_eq!(
+        code(&opruga(folder.path(), &["sweep", "--resume=o"])),
+        2,
+        "nothing is left to do, and a point has failed"
+    );
     let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
     assert_eq!((&summary["points"], &summary["done"]), (&2.into(), &1.into()));
     assert_eq!(summary["failed"][0]["code"], "step.unstable");
     assert_eq!(summary["metrics"][0]["lowest"]["at"]["body.ball.models.mass_spring.stiffness"], "100");
     assert!(table(&folder.path().join("o")).lines().nth(2).is_some_and(|row| row.starts_with("1,1e9,step.unstable,,")));
+}
+
+/// A run that diverges is exit code 3, whatever else was refused; every other point has its row.
+#[test]
+fn a_point_that_diverges_is_told_by_the_exit_code() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let set = "--set=body.ball.models.mass_spring.stiffness=100,-1,1e9";
+    let call = ["sweep", "ball", set, "--metric=energy_drift", "--seconds=0.5", "--allow-unstable", "--out=o"];
+    let output = opruga(folder.path(), &call);
+    assert_eq!(code(&output), 3, "{}", said(&output));
+    let table = table(&folder.path().join("o"));
+    for (row, word) in [(1, "0,100,done,"), (2, "1,-1,scene.range,"), (3, "2,1e9,run.diverged,")] {
+        assert!(table.lines().nth(row).is_some_and(|line| line.starts_with(word)), "{table}");
+    }
 }
 
 #[test]
@@ -157,15 +177,14 @@ fn the_sweep_of_the_thesis_runs_as_its_scene_says() {
     std::fs::write(folder.path().join("thesis-4-3.toml"), &text).expect("a file");
     let mut words: Vec<&str> = call.split_whitespace().skip(1).collect();
     words[1] = "thesis-4-3.toml";
-    let out = words.iter().position(|word| *word == "--out").expect("a folder");
-    words.drain(out..out + 2);
-    // The points are those of the scene, the time is not.
-    let words: Vec<&str> = words.into_iter().chain(["--seconds=0.02", "--json", "--out=o"]).collect();
+    // The points and the folder, which is made with the one around it, are those of the scene; the time is not.
+    let words: Vec<&str> = words.into_iter().chain(["--seconds=0.02", "--json"]).collect();
     let output = opruga(folder.path(), &words);
     assert_eq!(code(&output), 0, "{}", said(&output));
     let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
     assert_eq!(summary["parameters"].as_array().map(Vec::len), Some(4));
     assert_eq!(summary["done"], summary["points"], "{summary}");
+    assert!(folder.path().join("out/thesis-4-3/results.csv").exists());
 }
 
 /// A scene in a folder of its own, whose drawing lies above: the sweep carries the file, and goes on without it.

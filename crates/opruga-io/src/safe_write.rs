@@ -109,6 +109,12 @@ pub trait Target: Write {
     fn sync(&self) -> io::Result<()>;
 }
 
+impl<T: Target + ?Sized> Target for Box<T> {
+    fn sync(&self) -> io::Result<()> {
+        (**self).sync()
+    }
+}
+
 impl Target for File {
     fn sync(&self) -> io::Result<()> {
         self.sync_all()
@@ -211,6 +217,16 @@ fn is_aside(name: &str) -> bool {
     stem.is_some_and(|(_, process)| !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit()))
 }
 
+/// Makes a folder, and those around it that are missing; where the last cannot be made, none is left behind.
+pub(crate) fn make_folders(path: &Path) -> io::Result<()> {
+    let missing: Vec<&Path> =
+        path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
+    fs::create_dir_all(path).inspect_err(|_| {
+        // Only those that are empty go.
+        missing.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+    })
+}
+
 /// Makes a renaming last; only where folders can be opened.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
@@ -308,7 +324,7 @@ pub struct OutputFolder {
 const LOCK: &str = ".opruga-lock";
 
 impl OutputFolder {
-    /// Makes the folder if its parent is there, locks it, and tries whether it can be written: before the run, not after.
+    /// Makes the folder and those around it, locks it, and tries whether it can be written: before the run, not after.
     ///
     /// # Errors
     /// `write.folder` where it cannot be made or written, `write.locked` where another process writes into it,
@@ -321,14 +337,7 @@ impl OutputFolder {
             return Err(WriteError::new("write.folder", path, "this is a file, no folder"));
         }
         if !path.exists() {
-            fs::create_dir(path).map_err(|e| {
-                let error = cannot("made", &e);
-                if e.kind() == io::ErrorKind::NotFound {
-                    WriteError { hint: Some("the folder around it is missing".into()), ..error }
-                } else {
-                    error
-                }
-            })?;
+            make_folders(path).map_err(|e| cannot("made", &e))?;
         }
         let locked_before = path.join(LOCK).exists();
         let open = || OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK));

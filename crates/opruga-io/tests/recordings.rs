@@ -60,6 +60,16 @@ fn state(frame: u64) -> Vec<u8> {
     out
 }
 
+/// The hash that a program gives a frame.
+fn hash(frame: u64) -> u64 {
+    (frame + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// Adds a frame with its state, or without.
+fn add(writer: &mut Writer<impl Target>, frame: u64, kept: bool) -> std::io::Result<()> {
+    if kept { writer.keep(frame, hash(frame), &mut state(frame)) } else { writer.push(frame, hash(frame)) }
+}
+
 /// What a program did before a frame: nothing, mostly.
 fn inputs(frame: u64) -> Vec<Vec<u8>> {
     match frame {
@@ -77,7 +87,7 @@ fn recorded(frames: core::ops::Range<u64>, closed: bool) -> Vec<u8> {
         for input in inputs(frame) {
             writer.input(frame, &input).expect("before its frame");
         }
-        writer.push(frame, &state(frame)).expect("frames in order");
+        add(&mut writer, frame, true).expect("frames in order");
     }
     writer.flush().expect("memory does not fail");
     if closed {
@@ -107,6 +117,7 @@ fn every_frame_comes_back_in_any_order() {
             let scattered = frames.clone().map(|k| frames.start + (k * 61 + 17) % (frames.end - frames.start));
             for frame in frames.clone().chain(scattered) {
                 assert_eq!(recording.read(frame), Ok(&state(frame)[..]), "frame {frame}");
+                assert_eq!(recording.hash(frame), Ok(hash(frame)), "frame {frame}");
             }
             let wanted: Vec<(u64, Vec<u8>)> =
                 frames.clone().flat_map(|frame| inputs(frame).into_iter().map(move |input| (frame, input))).collect();
@@ -125,17 +136,20 @@ fn every_frame_comes_back_in_any_order() {
 fn frames_out_of_order_are_refused_and_left_out() {
     let mut memory = Memory::default();
     let mut writer = Writer::new(&mut memory, &header()).expect("memory does not fail");
-    writer.push(3, &state(3)).expect("the first may have any number");
+    assert!(writer.push(3, hash(3)).is_err() && writer.input(3, b"early").is_err(), "the first has its state");
+    add(&mut writer, 3, true).expect("the first may have any number");
     for wrong in [0, 3, 5] {
-        assert!(writer.push(wrong, &state(wrong)).is_err(), "frame {wrong}");
+        assert!(add(&mut writer, wrong, true).is_err(), "frame {wrong}");
         assert!(writer.input(wrong, b"late").is_err(), "before frame {wrong}");
     }
-    writer.push(4, &state(4)).expect("the next one");
+    assert!(add(&mut writer, 4, false).is_err(), "its state is due");
+    add(&mut writer, 4, true).expect("the next one");
     writer.finish().expect("memory does not fail");
     assert_eq!(open(&memory.0).expect("a recording").frames(), 3..5);
 }
 
-/// One state in five, and the last: what lies between is told from what is not there; inputs keep their frames.
+/// One state in five, and the last; every frame has its hash. What lies between is told from what is not there; inputs keep
+/// their frames.
 #[test]
 fn states_are_kept_as_far_apart_as_the_header_says() {
     let written = |frames: core::ops::Range<u64>, closed: bool| {
@@ -144,11 +158,15 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
         let mut writer = Writer::new(&mut memory, &header).expect("memory does not fail");
         for frame in frames.clone() {
             inputs(frame).iter().for_each(|input| writer.input(frame, input).expect("before its frame"));
-            if (frame - frames.start).is_multiple_of(5) || frame + 1 == frames.end {
-                writer.push(frame, &state(frame)).expect("in order");
+            let kept = (frame - frames.start).is_multiple_of(5);
+            add(&mut writer, frame, kept).expect("in order");
+            // The run ends: the state of its last frame comes behind that.
+            if frame + 1 == frames.end && !kept {
+                add(&mut writer, frame, true).expect("the last state");
+                assert!(writer.push(frames.end, 0).is_err(), "it was the last");
             }
         }
-        assert!(writer.push(frames.end + 5, &state(0)).is_err(), "it lies too far behind");
+        assert!(add(&mut writer, frames.end + 5, true).is_err(), "it lies too far behind");
         writer.flush().expect("memory does not fail");
         if closed {
             writer.finish().expect("memory does not fail");
@@ -162,7 +180,7 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
         assert!(!matches!(recording.ending(), Ending::Damaged(_)), "{:?}", recording.ending());
         for frame in frames.clone().rev().chain(frames.clone()) {
             let wanted = if frame + 1 == frames.end { frame } else { frame - (frame - frames.start) % 5 };
-            assert_eq!(recording.kept(frame), Ok(wanted));
+            assert_eq!((recording.kept(frame), recording.hash(frame)), (Ok(wanted), Ok(hash(frame))));
             match recording.read(frame) {
                 Ok(read) => assert!(wanted == frame && read == state(frame), "{frame}"),
                 Err(error) => assert_eq!((wanted == frame, error.code()), (false, "recording.not_kept")),
@@ -175,15 +193,20 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
             assert!(inputs(frame).contains(&recording.input(number).expect("an input")));
         }
     }
-    // Cut off anywhere it ends with a state that is kept; nothing follows the last one.
+    // Cut off anywhere it ends with a frame whose hash is there, though its state may not be: it follows from the one before.
     let whole = written(60..93, false);
+    let (mut reached, mut without) = (0, 0);
     for length in 400..whole.len() {
         let Ok(mut recording) = open(&whole[..length]) else { continue };
         assert!(matches!(recording.ending(), Ending::Open { .. }), "{length}");
         if let Some(last) = recording.frames().last() {
-            assert_eq!(recording.read(last), Ok(&state(last)[..]), "{length}");
+            let kept = recording.kept(last).expect("a state before");
+            assert_eq!(recording.hash(last), Ok(hash(last)), "{length}");
+            assert_eq!(recording.read(kept), Ok(&state(kept)[..]), "{length}");
+            (reached, without) = (last, without + u32::from(kept < last));
         }
     }
+    assert!(reached == 92 && without > 100, "{reached}, {without}");
 }
 
 /// Row 79: cut off at any byte, as by a kill, a recording loses the chunk that was cut and nothing else.
@@ -208,6 +231,7 @@ fn a_recording_that_is_cut_anywhere_keeps_all_frames_before() {
                     kept = frames.end.saturating_sub(60);
                     for frame in frames {
                         assert_eq!(recording.read(frame), Ok(&state(frame)[..]), "frame {frame} of {length} bytes");
+                        assert_eq!(recording.hash(frame), Ok(hash(frame)), "frame {frame} of {length} bytes");
                     }
                 }
             }
@@ -235,6 +259,9 @@ fn a_flipped_bit_anywhere_is_found() {
             let mut errors = u32::from(matches!(recording.ending(), Ending::Damaged(_)));
             assert!(!matches!(recording.ending(), Ending::Open { .. }), "byte {place} is taken for a kill");
             for frame in recording.frames() {
+                if let Ok(read) = recording.hash(frame) {
+                    assert_eq!(read, hash(frame), "byte {place}, frame {frame}");
+                }
                 match recording.read(frame) {
                     Ok(read) => assert_eq!(read, state(frame), "byte {place}, frame {frame}"),
                     Err(error) => {
@@ -265,7 +292,7 @@ fn chunks_of_another_recording_are_refused() {
     let mut memory = Memory::default();
     let foreign = Header { name: "cubes".into(), ..header() };
     let mut writer = Writer::new(&mut memory, &foreign).expect("memory does not fail");
-    (0..8).for_each(|frame| writer.push(frame, &state(frame)).expect("in order"));
+    (0..8).for_each(|frame| add(&mut writer, frame, true).expect("in order"));
     writer.flush().expect("memory does not fail");
     // Names of the same length: the chunks lie at the same places.
     let joined = [&mine[..], &memory.0[mine.len()..]].concat();
@@ -279,11 +306,14 @@ fn other_files_and_other_versions_are_refused() {
     for bytes in [&b""[..], b"PK\x03\x04 this is an archive", b"OPRUGA\x1a\n and so on", &[0; 300]] {
         assert_eq!(open(bytes).err(), Some(RecordingError::NotOne));
     }
-    let mut newer = recorded(0..2, true);
-    newer[8] = 99;
-    let sum = crc32fast::hash(&newer[..20]);
-    newer[20..24].copy_from_slice(&sum.to_le_bytes());
-    assert_eq!(open(&newer).err(), Some(RecordingError::Version { found: 99 }));
+    // Older ones lack the hashes of frames.
+    for version in [1, 2, 3, 99] {
+        let mut other = recorded(0..2, true);
+        other[8] = version;
+        let sum = crc32fast::hash(&other[..20]);
+        other[20..24].copy_from_slice(&sum.to_le_bytes());
+        assert_eq!(open(&other).err(), Some(RecordingError::Version { found: version.into() }));
+    }
 }
 
 /// Row 83: the disk fails at any byte, or only when the bytes shall last: an error with the number of bytes, and a file
@@ -298,8 +328,8 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
         let outcome = RecordingFile::create_through(&path, false, &header(), |file| Failing::after(k, file)).and_then(
             |mut file| {
                 for frame in 68..72 {
-                    inputs(frame).iter().for_each(|input| file.input(frame, input));
-                    file.push(frame, |out| out.extend(state(frame)))?;
+                    inputs(frame).iter().try_for_each(|input| file.input(frame, input))?;
+                    file.keep(frame, hash(frame), |out| out.extend(state(frame)))?;
                 }
                 file.finish()
             },
@@ -348,10 +378,13 @@ fn an_earlier_file_stays_until_the_new_one_has_begun() {
     assert_eq!((error.code, error.hint.is_some()), ("write.locked", true));
     drop(first);
     create(&path, true).and_then(RecordingFile::finish).expect("it is free again");
-    for (path, text) in [(folder.as_path(), "a folder"), (folder.join("no/r").as_path(), "cannot be made")] {
+    for (path, text) in [(folder.as_path(), "a folder"), (path.join("no/r").as_path(), "error[write.failed]")] {
         let error = create(path, true).expect_err("no place for a file");
-        assert!(error.code == "write.failed" && error.message.contains(text), "{error}");
+        assert!(error.code == "write.failed" && error.to_string().contains(text), "{error}");
     }
+    let nested = folder.join("some/where/r");
+    create(&nested, false).and_then(RecordingFile::finish).expect("the folders around it are made");
+    std::fs::remove_dir_all(folder.join("some")).expect("they are there");
     #[cfg(target_os = "linux")]
     {
         let full = std::path::Path::new("/dev/full");
@@ -400,31 +433,31 @@ fn places_and_frames_beyond_32_bits_are_found() {
     let mut plain = Memory::default();
     let mut writer = Writer::new(&mut plain, &header()).expect("memory does not fail");
     let start = writer.bytes();
-    writer.push(first, &state(80)).expect("the first");
+    writer.keep(first, 7, &mut state(80)).expect("the first");
     writer.flush().expect("memory does not fail");
     let second = writer.bytes();
     drop(writer);
     // The head of the first chunk, made to say that its payload is longer by the hole.
     let identity = crc32fast::hash(&plain.0[24..start as usize - 4]);
     let head = &mut plain.0[start as usize..];
-    let payload = second - start - 40 + GAP;
+    let payload = second - start - 48 + GAP;
     head[24..32].copy_from_slice(&payload.to_le_bytes());
-    let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], &head[..36]].concat());
-    head[36..40].copy_from_slice(&sum.to_le_bytes());
+    let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], &head[..44]].concat());
+    head[44..48].copy_from_slice(&sum.to_le_bytes());
 
     let file = OpenOptions::new().read(true).write(true).create_new(true).open(&path).expect("a file");
     let mut sparse = Sparse { file, at: 0, hole: second };
     let mut writer = Writer::new(&mut sparse, &header()).expect("a file");
-    writer.push(first, &state(80)).expect("the first");
+    writer.keep(first, 7, &mut state(80)).expect("the first");
     writer.flush().expect("a file");
     for k in 1..130 {
-        writer.push(first + k, &state(60 + k)).expect("in order");
+        writer.keep(first + k, hash(k), &mut state(60 + k)).expect("in order");
     }
     writer.flush().expect("a file");
     drop(writer);
     let mut file = sparse.file;
     file.seek(SeekFrom::Start(start)).expect("a place");
-    file.write_all(&plain.0[start as usize..start as usize + 40]).expect("a head");
+    file.write_all(&plain.0[start as usize..start as usize + 48]).expect("a head");
     assert!(file.metadata().expect("a file").len() > GAP);
 
     let mut recording = Recording::open(&file).expect("a recording");
@@ -438,21 +471,21 @@ fn places_and_frames_beyond_32_bits_are_found() {
     let end = file.seek(SeekFrom::End(0)).expect("a place");
     let mut place = start;
     while place < end {
-        let mut head = [0; 40];
+        let mut head = [0; 48];
         file.seek(SeekFrom::Start(place)).and_then(|_| file.read_exact(&mut head)).expect("a head");
         if head[4] == 0 {
             pairs.extend([&head[8..16], &place.to_le_bytes()].concat());
         }
-        place += 40 + u64::from_le_bytes(head[24..32].try_into().expect("eight bytes"));
+        place += 48 + u64::from_le_bytes(head[24..32].try_into().expect("eight bytes"));
     }
     let sealed = |bytes: &[u8]| {
         let sum = crc32fast::hash(&[&identity.to_le_bytes()[..], bytes].concat());
         [bytes, &sum.to_le_bytes()].concat()
     };
-    let pairs = [&(pairs.len() as u64 / 16).to_le_bytes()[..], &pairs].concat();
+    let pairs = [&(first + 129).to_le_bytes()[..], &(pairs.len() as u64 / 16).to_le_bytes(), &pairs].concat();
     let length = (pairs.len() as u64).to_le_bytes();
     let head = [b"INDX\x02\0\0\0", &(first + 130).to_le_bytes()[..], &length, &length];
-    let head = [&head.concat()[..], &crc32fast::hash(&pairs).to_le_bytes()].concat();
+    let head = [&head.concat()[..], &[0; 8], &crc32fast::hash(&pairs).to_le_bytes()].concat();
     let tail = [&sealed(&head)[..], &pairs, &sealed(&end.to_le_bytes()), b"OPREND\x1a\n"].concat();
     file.seek(SeekFrom::End(0)).and_then(|_| file.write_all(&tail)).expect("the end");
     let mut recording = Recording::open(&file).expect("a recording");
@@ -491,6 +524,9 @@ proptest! {
             for frame in recording.frames() {
                 if let Ok(read) = recording.read(frame) {
                     prop_assert_eq!(read, &state(frame)[..]);
+                }
+                if let Ok(read) = recording.hash(frame) {
+                    prop_assert_eq!(read, hash(frame));
                 }
             }
             for (number, frame) in recording.inputs().collect::<Vec<_>>().into_iter().enumerate() {

@@ -31,7 +31,8 @@ pub struct Energy {
     pub work_correction: f64,
     /// What the other channels do not explain: the error of the integrator, and what an implicit one damps by itself.
     pub loss_integrator: f64,
-    /// |loss_integrator| relative to the largest energy that was in motion.
+    /// |loss_integrator| relative to the largest energy that was in motion, or to what rounding alone may make of a body at
+    /// rest where that is more.
     pub closure: f64,
 }
 
@@ -70,6 +71,7 @@ pub(crate) struct Stock {
 /// One look at all nodes of an island: motion, bounds, and whether every number is finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Survey<const D: usize> {
+    pub(crate) mass: f64,
     pub(crate) kinetic: f64,
     pub(crate) gravity: f64,
     pub(crate) momentum: Momentum<D>,
@@ -135,6 +137,7 @@ pub(crate) fn survey<const D: usize>(system: &System<D>) -> Survey<D> {
     let most = |lanes: &[[f64; WIDTH]; D]| lanes.map(|l| l.into_iter().fold(f64::NEG_INFINITY, Lane::larger));
     let coupled = coupled_motion(system, &mut momentum);
     Survey {
+        mass: total_of(system, &sums.mass),
         kinetic: total_of(system, &sums.kinetic) + coupled,
         gravity,
         momentum,
@@ -165,6 +168,7 @@ fn coupled_motion<const D: usize>(system: &System<D>, momentum: &mut Momentum<D>
 
 /// What [`survey`] finds, eight partial results each.
 struct Looked<const D: usize> {
+    mass: [f64; WIDTH],
     kinetic: [f64; WIDTH],
     weight: [[f64; WIDTH]; D],
     linear: [[f64; WIDTH]; D],
@@ -187,7 +191,7 @@ impl<const D: usize> Work for Look<'_, D> {
         let x = Strip::<D>::new(&system.state.x.slices(), 0, packed);
         let v = Strip::<D>::new(&system.state.v.slices(), 0, packed);
         let masses = system.mass.strip(0, packed);
-        let (mut kinetic, mut finite) = (P::zero(), P::zero());
+        let (mut all, mut kinetic, mut finite) = (P::zero(), P::zero(), P::zero());
         let (mut weight, mut linear, mut angular) = ([P::zero(); D], [P::zero(); D], [P::zero(); 3]);
         let (mut low, mut high) = ([P::splat(f64::INFINITY); D], [P::splat(f64::NEG_INFINITY); D]);
         let (mut slow, mut fast) = (low, high);
@@ -217,6 +221,7 @@ impl<const D: usize> Work for Look<'_, D> {
                 // Zero times a number is zero, times anything else it is not.
                 finite += (position[d] + velocity[d]) * P::zero();
             }
+            all += mass;
             kinetic += square;
             angular[2] += mass * (position[0] * velocity[1] - position[1] * velocity[0]);
             if D == 3 {
@@ -226,6 +231,7 @@ impl<const D: usize> Work for Look<'_, D> {
             }
         }
         let mut out = Looked {
+            mass: all.to_array(),
             kinetic: (kinetic * P::splat(0.5)).to_array(),
             weight: [[0.0; WIDTH]; D],
             linear: [[0.0; WIDTH]; D],
@@ -248,6 +254,20 @@ impl<const D: usize> Work for Look<'_, D> {
 
 /// The unexplained part of the energy in motion above which a frame is counted and warned of.
 pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
+
+/// What rounding does to a number, many times over, relative to it.
+const ROUNDING: f64 = 1e-13;
+
+impl<const D: usize> Survey<D> {
+    /// The energy of motions that are all rounding [J]: every node errs by a rounding of the largest coordinate in a step of
+    /// h [s].
+    fn of_rounding(&self, h: f64) -> f64 {
+        let ends = self.position.iter().flatten();
+        let farthest = ends.fold(0.0, |most: f64, x| most.larger(x.abs()));
+        let speed = ROUNDING * farthest / h;
+        if speed.is_finite() { self.mass * speed * speed } else { 0.0 }
+    }
+}
 
 /// What entered and left, added up over all frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -285,9 +305,10 @@ impl Flows {
         self.limited_velocities += work.limited_velocities;
         self.solver.add(&work.solver);
     }
-    /// The ledger for the present stock.
+    /// The ledger for the present stock, after steps of h [s].
     pub(crate) fn ledger<'a, const D: usize>(
         &mut self,
+        h: f64,
         islands: impl Iterator<Item = (&'a Stock, &'a Survey<D>)>,
     ) -> (Energy, Momentum<D>) {
         let mut energy = Energy {
@@ -300,7 +321,9 @@ impl Flows {
             ..Energy::default()
         };
         let mut momentum = Momentum::default();
+        let mut rounding = 0.0;
         for (stock, survey) in islands {
+            rounding += survey.of_rounding(h);
             energy.kinetic += survey.kinetic;
             energy.elastic += stock.elastic;
             energy.gas += stock.gas;
@@ -317,7 +340,10 @@ impl Flows {
         energy.loss_integrator = given - taken - energy.total();
         let moved = energy.kinetic + energy.elastic.abs() + (energy.gas + energy.gravity - self.start).abs();
         self.largest = self.largest.larger(moved);
-        energy.closure = if self.largest > 0.0 { energy.loss_integrator.abs() / self.largest } else { 0.0 };
+        // Where nothing moves, what is left is rounding, and no part of anything.
+        rounding += ROUNDING * (energy.gas.abs() + energy.gravity.abs() + self.start.abs());
+        let most = self.largest.larger(rounding);
+        energy.closure = if most > 0.0 { energy.loss_integrator.abs() / most } else { 0.0 };
         (energy, momentum)
     }
 }

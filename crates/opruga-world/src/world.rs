@@ -178,7 +178,8 @@ impl<const D: usize> World<D> {
     }
 
     pub(crate) fn refresh_ledger(&mut self) {
-        (self.energy, self.momentum) = self.flows.ledger(self.islands.iter().map(|i| (&i.stock, &i.survey)));
+        let islands = self.islands.iter().map(|i| (&i.stock, &i.survey));
+        (self.energy, self.momentum) = self.flows.ledger(self.h(), islands);
     }
 
     pub(crate) fn frame_here(&mut self) -> Result<(), WorldError> {

@@ -94,8 +94,10 @@ pub struct Tape {
     path: PathBuf,
     /// From one frame whose state is kept to the next.
     every: u64,
-    /// The first frame, and the last that was kept.
-    kept: [u64; 2],
+    /// The first frame.
+    first: u64,
+    /// The last frame whose state was kept.
+    kept: u64,
 }
 
 /// Why a recording was not written, or not played.
@@ -128,7 +130,7 @@ impl Tape {
         world.keep_inputs();
         drop(world.take_inputs());
         let first = world.frames();
-        let mut tape = Tape { file, path: path.to_path_buf(), every: header.every, kept: [first; 2] };
+        let mut tape = Tape { file, path: path.to_path_buf(), every: header.every, first, kept: first };
         tape.keep(world)?;
         Ok(tape)
     }
@@ -142,23 +144,23 @@ impl Tape {
         Ok(self.push(world)?)
     }
 
-    /// Adds the present frame of the world, and before it what the program has done since the last one. Its state is kept
-    /// where its turn has come.
+    /// Adds the present frame of the world, which is the one behind the last, and before it what the program has done since
+    /// then. Its state is kept where its turn has come, its hash in any case.
     ///
     /// # Errors
     /// [`WriteError`] where the file cannot be written, or for what cannot be recorded: bodies and forces that the program
-    /// has made itself (`recording.input`). The frames before are whole.
+    /// has made itself (`recording.input`), and for a frame that is not the next one. The frames before are whole.
     pub fn push<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), WriteError> {
         self.inputs(world, world.frames())?;
-        match (world.frames() - self.kept[0]).is_multiple_of(self.every) {
+        match world.frames().saturating_sub(self.first).is_multiple_of(self.every) {
             true => self.keep(world),
-            false => Ok(()),
+            false => self.file.push(world.frames(), world.frame_hash()),
         }
     }
 
     fn keep<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {
-        self.kept[1] = world.frames();
-        self.file.push(world.frames(), |out| world.snapshot_into(out))
+        self.kept = world.frames();
+        self.file.keep(world.frames(), world.frame_hash(), |out| world.snapshot_into(out))
     }
 
     /// Adds what the program has done before a frame.
@@ -171,7 +173,7 @@ impl Tape {
                 bytes: 0,
                 hint: Some("commands, `set`, `place_node` and `remove_body` can be recorded".into()),
             })?;
-            self.file.input(frame, &bytes);
+            self.file.input(frame, &bytes)?;
         }
         Ok(())
     }
@@ -181,7 +183,7 @@ impl Tape {
     /// # Errors
     /// As [`Tape::push`].
     pub fn finish<const D: usize>(mut self, world: &mut World<D>) -> Result<u64, WriteError> {
-        if world.frames() > self.kept[1] {
+        if world.frames() > self.kept {
             self.keep(world)?;
         }
         self.inputs(world, world.frames() + 1)?;
@@ -224,6 +226,14 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
     /// [`RecordingError`] where there is no such state, or it is damaged.
     pub fn state(&mut self, frame: u64) -> Result<&[u8], RecordingError> {
         self.recording.read(frame)
+    }
+
+    /// The hash of a frame, as [`World::frame_hash`] gives it: every frame has one.
+    ///
+    /// # Errors
+    /// [`RecordingError`] where there is no such frame, or it is damaged.
+    pub fn hash(&mut self, frame: u64) -> Result<u64, RecordingError> {
+        self.recording.hash(frame)
     }
 
     /// Brings a world to a frame: without a step where its state is kept, else by steps from the last one that is.

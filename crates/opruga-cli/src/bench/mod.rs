@@ -1,6 +1,8 @@
 //! `opruga bench`: speed by the processor time of one thread, with what the machine can do in the same run.
 
 pub(crate) mod elements;
+pub(crate) mod load;
+pub(crate) mod record;
 pub(crate) mod scene;
 mod timed;
 pub(crate) mod vertices;

@@ -1,55 +1,44 @@
-//! The file of a recording, written beside the run: the run hands frames over, a thread codes and writes them.
+//! The file of a recording, written by the run itself: what has been given to the system outlives the process.
 
 use super::format::Header;
 use super::writer::Writer;
-use crate::safe_write::{Target, WriteError, aside_name, sync_folder};
+use crate::safe_write::{Target, WriteError, aside_name, make_folders, sync_folder};
 use std::fs::{self, File, OpenOptions};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Frames are handed over when so many bytes have come together …
-const BATCH: usize = 1 << 18;
-/// … or when so much time has passed: what a kill may cost.
-const HANDED_OVER: Duration = Duration::from_millis(50);
-/// Batches that may wait for the disk before the run waits too.
-const WAITING: usize = 4;
+/// Frames without a state wait so long at most for the next write: what a kill may cost.
+const WAITING: Duration = Duration::from_millis(50);
 /// What a loss of power may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// States of frames and inputs, one behind the other.
-#[derive(Debug, Default)]
-struct Batch {
-    bytes: Vec<u8>,
-    parts: Vec<Part>,
-}
-
-/// A part of a batch.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    /// Whether it is what a program did, and no state.
-    input: bool,
-    /// The frame; of an input, the one that comes after it.
-    frame: u64,
-    /// Where it ends.
-    end: usize,
-}
-
-/// A recording that is being written. A process that is killed leaves all frames but those of its last twentieth of a
-/// second, a loss of power those of the last five seconds.
-#[derive(Debug)]
+/// A recording that is being written. Every state that is kept goes to the system at once, with all that came before it;
+/// frames between two states do so where the last write is a twentieth of a second ago. So a process that is killed leaves
+/// every state, and every frame but those that were finished within the last twentieth of a second and behind the last
+/// state. A loss of power costs the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
-    batch: Batch,
-    handed_over: Instant,
-    full: Option<SyncSender<Batch>>,
-    empty: Receiver<Batch>,
-    thread: Option<JoinHandle<Result<u64, WriteError>>>,
+    writer: Writer<Box<dyn Target + Send>>,
+    /// Room for the bytes of a state.
+    state: Vec<u8>,
+    written: Instant,
+    syncing: Option<Syncing>,
+    /// Whether there is no more to be written: all is, or nothing can be.
+    ended: bool,
+}
+
+impl core::fmt::Debug for RecordingFile {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("RecordingFile").field("path", &self.path).finish_non_exhaustive()
+    }
 }
 
 impl RecordingFile {
-    /// Makes the file with its header. With `force` an earlier file is replaced as soon as the header is written.
+    /// Makes the file with its header, and the folders around it. With `force` an earlier file is replaced as soon as the
+    /// header is written.
     ///
     /// # Errors
     /// `write.exists` where the file is there and `force` is not given, `write.locked` where another process writes it,
@@ -68,75 +57,77 @@ impl RecordingFile {
         header: &Header,
         wrap: impl FnOnce(File) -> W,
     ) -> Result<RecordingFile, WriteError> {
-        let failed = |e: std::io::Error| WriteError::failed(path, 0, &e);
+        let failed = |e: io::Error| WriteError::failed(path, 0, &e);
         // Held until the new file has the name.
         let _earlier = earlier(path, force)?;
         let name =
             path.file_name().ok_or_else(|| WriteError::new("write.failed", path, "this is no name of a file"))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        make_folders(folder).map_err(|e| {
+            let message = format!("the folder around it cannot be made: {}", crate::scene::reason(&e));
+            WriteError::new("write.failed", path, message)
+        })?;
         let aside = folder.join(aside_name(name));
         let _ = fs::remove_file(&aside);
         let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| {
             let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
-            let hint = (e.kind() == std::io::ErrorKind::NotFound).then(|| "the folder around it is missing".into());
-            WriteError { hint, ..WriteError::new("write.failed", path, message) }
+            WriteError::new("write.failed", path, message)
         })?;
-        let begun = file
-            .try_clone()
-            .and_then(|held| lock(&held).map(|()| held))
-            .and_then(|held| Ok((held, Writer::new(wrap(file), header)?)))
-            .and_then(|begun| fs::rename(&aside, path).map(|()| begun))
-            .and_then(|begun| sync_folder(folder).map(|()| begun));
-        let (held, writer) = begun.map_err(|e| {
+        let begin = || -> io::Result<(File, Writer<Box<dyn Target + Send>>)> {
+            let held = file.try_clone()?;
+            lock(&held)?;
+            let target: Box<dyn Target + Send> = Box::new(wrap(file));
+            let writer = Writer::new(target, header)?;
+            fs::rename(&aside, path)?;
+            sync_folder(folder)?;
+            Ok((held, writer))
+        };
+        let begun = begin().and_then(|(held, writer)| Ok((Syncing::begin(held)?, writer)));
+        let (syncing, writer) = begun.map_err(|e| {
             let _ = fs::remove_file(&aside);
             failed(e)
         })?;
-        let (full, batches) = sync_channel(WAITING);
-        let (used, empty) = channel();
-        let of = path.to_path_buf();
-        let run = move || {
-            let _held = held;
-            write_all(writer, &batches, &used, &of)
-        };
-        let thread = std::thread::Builder::new().name("recording".into()).spawn(run).map_err(failed)?;
         Ok(RecordingFile {
             path: path.to_path_buf(),
-            batch: Batch::default(),
-            handed_over: Instant::now(),
-            full: Some(full),
-            empty,
-            thread: Some(thread),
+            writer,
+            state: Vec::new(),
+            written: Instant::now(),
+            syncing: Some(syncing),
+            ended: false,
         })
     }
 
-    /// Adds a frame: `state` appends its bytes.
+    /// Adds the next frame, whose state is not kept, with its hash.
     ///
     /// # Errors
     /// [`WriteError`] once the file could not be written, or if a frame is out of its order; the frames before are whole.
-    pub fn push(&mut self, frame: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
-        state(&mut self.batch.bytes);
-        self.batch.parts.push(Part { input: false, frame, end: self.batch.bytes.len() });
-        if self.batch.bytes.len() < BATCH && self.handed_over.elapsed() < HANDED_OVER {
-            return Ok(());
-        }
-        self.hand_over()
+    pub fn push(&mut self, frame: u64, hash: u64) -> Result<(), WriteError> {
+        self.write(|file| {
+            file.writer.push(frame, hash)?;
+            if file.written.elapsed() < WAITING { Ok(()) } else { file.give() }
+        })
     }
 
-    /// Adds something that a program did before the step that leads to a frame; it is written with that.
-    pub fn input(&mut self, frame: u64, bytes: &[u8]) {
-        self.batch.bytes.extend_from_slice(bytes);
-        self.batch.parts.push(Part { input: true, frame, end: self.batch.bytes.len() });
+    /// Adds the next frame with its hash and its state, whose bytes `state` appends; or the state of the last frame, which
+    /// ends the recording.
+    ///
+    /// # Errors
+    /// As [`RecordingFile::push`].
+    pub fn keep(&mut self, frame: u64, hash: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
+        self.write(|file| {
+            file.state.clear();
+            state(&mut file.state);
+            file.writer.keep(frame, hash, &mut file.state)?;
+            file.give()
+        })
     }
 
-    /// Gives what has come together to the thread.
-    fn hand_over(&mut self) -> Result<(), WriteError> {
-        self.handed_over = Instant::now();
-        let batch = std::mem::replace(&mut self.batch, self.empty.try_recv().unwrap_or_default());
-        match self.full.as_ref().map(|full| full.send(batch)) {
-            Some(Ok(())) => Ok(()),
-            // It ends early only by an error.
-            _ => self.end().map(|_| ()),
-        }
+    /// Adds something that a program did before the step that leads to the next frame; it is written with that.
+    ///
+    /// # Errors
+    /// As [`RecordingFile::push`].
+    pub fn input(&mut self, frame: u64, bytes: &[u8]) -> Result<(), WriteError> {
+        self.write(|file| file.writer.input(frame, bytes))
     }
 
     /// Writes what is left, the index and the end; returns the bytes of the file.
@@ -144,70 +135,75 @@ impl RecordingFile {
     /// # Errors
     /// [`WriteError`] where the file could not be written; the frames before that are whole.
     pub fn finish(mut self) -> Result<u64, WriteError> {
-        if !self.batch.parts.is_empty() {
-            self.hand_over()?;
-        }
         self.end()
     }
 
-    fn end(&mut self) -> Result<u64, WriteError> {
-        drop(self.full.take());
-        let broken = || WriteError::new("write.failed", &self.path, "the recording has ended before");
-        match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(outcome)) => outcome,
-            Some(Err(_)) | None => Err(broken()),
+    /// Gives all frames so far to the system.
+    fn give(&mut self) -> io::Result<()> {
+        self.written = Instant::now();
+        self.writer.flush()
+    }
+
+    /// Does a piece of work unless one before has failed: what stands behind a gap would be damage.
+    fn write(&mut self, work: impl FnOnce(&mut RecordingFile) -> io::Result<()>) -> Result<(), WriteError> {
+        if self.ended {
+            return Err(WriteError::new("write.failed", &self.path, "the recording has ended before"));
         }
+        let lost = match &mut self.syncing {
+            Some(syncing) if syncing.has_ended() => self.syncing.take().map_or(Ok(()), Syncing::end),
+            _ => Ok(()),
+        };
+        let outcome = lost.and_then(|()| work(self));
+        self.ended = outcome.is_err();
+        outcome.map_err(|e| WriteError::failed(&self.path, self.writer.bytes(), &e))
+    }
+
+    fn end(&mut self) -> Result<u64, WriteError> {
+        let synced = |file: &mut RecordingFile| file.syncing.take().map_or(Ok(()), Syncing::end);
+        let outcome = self.write(|file| synced(file).and_then(|()| file.writer.finish()));
+        self.ended = true;
+        outcome.map(|()| self.writer.bytes())
     }
 }
 
 impl Drop for RecordingFile {
     fn drop(&mut self) {
         // Whoever leaves early has said why; the file is closed with what it has.
-        if self.thread.is_some() {
-            let _ = self.hand_over();
+        if !self.ended {
             let _ = self.end();
         }
     }
 }
 
-/// The work of the thread: codes and writes batches until there are no more.
-fn write_all<W: Target>(
-    mut writer: Writer<W>,
-    batches: &Receiver<Batch>,
-    used: &Sender<Batch>,
-    path: &Path,
-) -> Result<u64, WriteError> {
-    let mut synced = Instant::now();
-    let mut work = || {
-        for mut batch in batches {
-            let mut from = 0;
-            if let [Part { input: false, frame, .. }] = batch.parts[..] {
-                writer.take(frame, &mut batch.bytes)?;
-            } else {
-                for part in &batch.parts {
-                    let bytes = &batch.bytes[from..part.end];
-                    if part.input {
-                        writer.input(part.frame, bytes)?
-                    } else {
-                        writer.push(part.frame, bytes)?
-                    };
-                    from = part.end;
-                }
+/// Makes a file last every five seconds, beside the run: disks may take long for it.
+struct Syncing {
+    stop: Sender<()>,
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl Syncing {
+    /// The file is held, with its lock, until the end.
+    fn begin(file: File) -> io::Result<Syncing> {
+        let (stop, stopped) = channel::<()>();
+        let run = move || {
+            while let Err(RecvTimeoutError::Timeout) = stopped.recv_timeout(SYNCED) {
+                file.sync_data()?;
             }
-            writer.flush()?;
-            batch.bytes.clear();
-            batch.parts.clear();
-            // Nobody may be left to use it again.
-            let _ = used.send(batch);
-            if synced.elapsed() >= SYNCED {
-                writer.sync()?;
-                synced = Instant::now();
-            }
-        }
-        writer.finish()
-    };
-    let outcome = work();
-    outcome.map(|()| writer.bytes()).map_err(|e| WriteError::failed(path, writer.bytes(), &e))
+            Ok(())
+        };
+        let thread = std::thread::Builder::new().name("recording".into()).spawn(run)?;
+        Ok(Syncing { stop, thread })
+    }
+
+    /// Whether it has ended by itself: the file cannot be made to last.
+    fn has_ended(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    fn end(self) -> io::Result<()> {
+        drop(self.stop);
+        self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the file could not be made to last")))
+    }
 }
 
 /// Looks at what has the name now, and locks it.

@@ -3,14 +3,14 @@
 use super::error::RecordingError;
 
 /// The version that is written.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// What every recording begins with.
 pub const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
 /// Bytes before the header.
 pub(super) const HEAD: usize = 24;
 /// Bytes of the head of a chunk.
-pub(super) const CHUNK: usize = 40;
+pub(super) const CHUNK: usize = 48;
 /// Bytes of the end.
 pub(super) const TRAILER: usize = 20;
 
@@ -180,9 +180,11 @@ pub(super) enum Kind {
     Whole,
     /// The difference of a state from the one kept before.
     Difference,
+    /// A frame whose state is not kept: its hash alone.
+    Passed,
     /// What the program did before the step that led to a frame.
     Input,
-    /// How many chunks are whole, their frames and places, then those of the inputs.
+    /// The last frame whose state is kept, how many chunks are whole, their frames and places, then those of the inputs.
     Index,
 }
 
@@ -195,6 +197,8 @@ pub(super) struct ChunkHead {
     /// Bytes of what the payload stands for.
     pub(super) state: u64,
     pub(super) payload: u64,
+    /// The hash of the frame; of others than frames 0.
+    pub(super) hash: u64,
     pub(super) payload_sum: u32,
 }
 
@@ -206,15 +210,17 @@ impl ChunkHead {
             Kind::Difference => (b"FRAM", 1),
             Kind::Index => (b"INDX", 2),
             Kind::Input => (b"INPT", 3),
+            Kind::Passed => (b"FRAM", 4),
         };
         out[..4].copy_from_slice(word);
         out[4..8].copy_from_slice(&kind.to_le_bytes());
         out[8..16].copy_from_slice(&self.frame.to_le_bytes());
         out[16..24].copy_from_slice(&self.state.to_le_bytes());
         out[24..32].copy_from_slice(&self.payload.to_le_bytes());
-        out[32..36].copy_from_slice(&self.payload_sum.to_le_bytes());
-        let sum = sum_of(identity, &out[..36]);
-        out[36..].copy_from_slice(&sum.to_le_bytes());
+        out[32..40].copy_from_slice(&self.hash.to_le_bytes());
+        out[40..44].copy_from_slice(&self.payload_sum.to_le_bytes());
+        let sum = sum_of(identity, &out[..44]);
+        out[44..].copy_from_slice(&sum.to_le_bytes());
         out
     }
 
@@ -225,14 +231,16 @@ impl ChunkHead {
             (b"FRAM", 1) => Kind::Difference,
             (b"INDX", 2) => Kind::Index,
             (b"INPT", 3) => Kind::Input,
+            (b"FRAM", 4) => Kind::Passed,
             _ => return None,
         };
-        (sum_of(identity, &bytes[..36]) == u32_at(bytes, 36)).then(|| ChunkHead {
+        (sum_of(identity, &bytes[..44]) == u32_at(bytes, 44)).then(|| ChunkHead {
             kind,
             frame: u64_at(bytes, 8),
             state: u64_at(bytes, 16),
             payload: u64_at(bytes, 24),
-            payload_sum: u32_at(bytes, 32),
+            hash: u64_at(bytes, 32),
+            payload_sum: u32_at(bytes, 40),
         })
     }
 }

@@ -3,6 +3,7 @@
 use super::codec;
 use super::error::RecordingError;
 use super::format::{self, CHUNK, ChunkHead, HEAD, Header, Kind, TRAILER, u64_at};
+use super::order::Order;
 use core::ops::Range;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -30,11 +31,13 @@ pub struct Recording<R> {
     index: Vec<[u64; 2]>,
     /// Frame and place of what a program did.
     inputs: Vec<[u64; 2]>,
-    frames: Range<u64>,
+    order: Order,
     ending: Ending,
     /// Where the chunks of frames end.
     end: u64,
-    /// The last frame that was read, and the place of the chunk behind it.
+    /// The last frame whose hash was read, and the place of the chunk behind it.
+    hashed: Option<(u64, u64)>,
+    /// The last frame whose state was read, and the place of the chunk behind it.
     read: Option<(u64, u64)>,
     state: Vec<u8>,
 }
@@ -55,13 +58,14 @@ impl<R: Read + Seek> Recording<R> {
         let (header, identity) = format::header(&bytes)?;
         let mut recording = Recording {
             source,
+            order: Order::new(header.every),
             header,
             identity,
             index: Vec::new(),
             inputs: Vec::new(),
-            frames: 0..0,
             ending: Ending::Closed,
             end: length,
+            hashed: None,
             read: None,
             state: Vec::new(),
         };
@@ -79,7 +83,7 @@ impl<R: Read + Seek> Recording<R> {
 
     /// The first frame, and one past the last.
     pub fn frames(&self) -> Range<u64> {
-        self.frames.clone()
+        self.order.frames()
     }
 
     /// The last frame up to a given one whose state is kept: those behind it are to be computed from that.
@@ -87,15 +91,27 @@ impl<R: Read + Seek> Recording<R> {
     /// # Errors
     /// [`RecordingError::NoFrame`].
     pub fn kept(&self, frame: u64) -> Result<u64, RecordingError> {
-        if !self.frames.contains(&frame) {
-            return Err(RecordingError::NoFrame { frame, frames: self.frames() });
+        self.order.kept(frame).ok_or_else(|| RecordingError::NoFrame { frame, frames: self.frames() })
+    }
+
+    /// The hash of a frame, as the program that computed it has given it: every frame has one. Frames one after the other
+    /// are read once each.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if there is no such frame, or if a chunk on the way to it is damaged.
+    pub fn hash(&mut self, frame: u64) -> Result<u64, RecordingError> {
+        self.kept(frame)?;
+        let [whole, at] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
+        let mut place = self.hashed.filter(|(read, _)| (whole..frame).contains(read)).map_or(at, |(_, behind)| behind);
+        loop {
+            let (head, behind) = self.frame_chunk(place, frame)?;
+            // The state of the last frame may stand behind its hash.
+            if head.kind != Kind::Input && head.frame == frame {
+                self.hashed = Some((frame, behind));
+                return Ok(head.hash);
+            }
+            place = behind;
         }
-        let first = self.frames.start;
-        Ok(if frame + 1 == self.frames.end {
-            frame
-        } else {
-            first + (frame - first) / self.header.every * self.header.every
-        })
     }
 
     /// How its file ends.
@@ -146,7 +162,7 @@ impl<R: Read + Seek> Recording<R> {
         let [whole, place] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
         let (mut next, mut place) = match self.read {
             Some((read, _)) if read == frame => return Ok(&self.state),
-            Some((read, behind)) if (whole..frame).contains(&read) => (self.behind(read), behind),
+            Some((read, behind)) if (whole..frame).contains(&read) => (self.order.next_kept(read), behind),
             _ => (whole, place),
         };
         self.read = None;
@@ -156,35 +172,34 @@ impl<R: Read + Seek> Recording<R> {
                 self.read = Some((frame, place));
                 return Ok(&self.state);
             }
-            next = self.behind(next);
+            next = self.order.next_kept(next);
         }
     }
 
-    /// The frame of the next state behind one.
-    fn behind(&self, frame: u64) -> u64 {
-        let last = self.frames.end - 1;
-        if last - frame < self.header.every { last } else { frame + self.header.every }
+    /// The head of the chunk of a frame or input at a place, up to a given frame; and the place behind it.
+    fn frame_chunk(&mut self, place: u64, until: u64) -> Result<(ChunkHead, u64), RecordingError> {
+        let damaged = RecordingError::Damaged { from: place, to: place + CHUNK as u64 };
+        let head = self.chunk_head(place)?.ok_or_else(|| damaged.clone())?;
+        let behind = (place + CHUNK as u64).saturating_add(head.payload);
+        if head.kind == Kind::Index || head.frame > until || behind > self.end {
+            return Err(damaged);
+        }
+        Ok((head, behind))
     }
 
-    /// Goes from a frame to the next by the chunk at a place; returns the place behind it.
+    /// Goes to the state of a frame by the first chunk of a state from a place on; returns the place behind it.
     fn apply(&mut self, frame: u64, mut place: u64, whole: bool) -> Result<u64, RecordingError> {
         let (head, behind) = loop {
-            let damaged = RecordingError::Damaged { from: place, to: place + CHUNK as u64 };
-            let head = self.chunk_head(place)?.ok_or_else(|| damaged.clone())?;
-            let behind = (place + CHUNK as u64).saturating_add(head.payload);
-            if head.kind != Kind::Input {
-                break (head, behind);
-            }
+            let (head, behind) = self.frame_chunk(place, frame)?;
             // What came before the frame is read by those who do it again.
-            let between = frame.saturating_sub(self.header.every)..=frame;
-            if !between.contains(&head.frame) || behind > self.end {
-                return Err(damaged);
+            if !matches!(head.kind, Kind::Input | Kind::Passed) {
+                break (head, behind);
             }
             place = behind;
         };
         let damaged = |to: u64| RecordingError::Damaged { from: place, to };
         let kind = if whole { Kind::Whole } else { Kind::Difference };
-        if head.kind != kind || head.frame != frame || behind > self.end {
+        if head.kind != kind || head.frame != frame {
             return Err(damaged(place + CHUNK as u64));
         }
         if whole {
@@ -222,23 +237,24 @@ impl<R: Read + Seek> Recording<R> {
             return Ok(false);
         }
         let Some(payload) = self.payload(&head)? else { return Ok(false) };
-        let Some((whole, pairs)) = payload.split_first_chunk::<8>() else { return Ok(false) };
+        let Some((counts, pairs)) = payload.split_first_chunk::<16>() else { return Ok(false) };
+        let (kept, whole) = (u64_at(counts, 0), u64_at(counts, 8));
         let (pairs, rest) = pairs.as_chunks::<16>();
         let mut index: Vec<[u64; 2]> = pairs.iter().map(|pair| [u64_at(pair, 0), u64_at(pair, 8)]).collect();
-        let Some(whole) = usize::try_from(u64::from_le_bytes(*whole)).ok().filter(|n| *n <= index.len()) else {
-            return Ok(false);
-        };
+        let Some(whole) = usize::try_from(whole).ok().filter(|n| *n <= index.len()) else { return Ok(false) };
         let inputs = index.split_off(whole);
         // An input may come after the last frame: the run has ended before its step.
         let ordered = index.is_sorted_by(|a, b| a[0] < b[0] && a[1] < b[1])
             && inputs.is_sorted_by(|a, b| a[0] <= b[0] && a[1] < b[1])
-            && index.iter().all(|[frame, at]| *frame < head.frame && (first..place).contains(at))
+            && index.iter().all(|[frame, at]| *frame <= kept && (first..place).contains(at))
             && inputs.iter().all(|[_, at]| (first..place).contains(at));
-        if !rest.is_empty() || !ordered {
-            return Ok(false);
-        }
-        self.frames = index.first().map_or(0, |[frame, _]| *frame)..head.frame;
-        (self.index, self.inputs, self.end) = (index, inputs, place);
+        let every = self.header.every;
+        let order = match index.first() {
+            Some([begin, _]) => head.frame.checked_sub(1).and_then(|last| Order::ended(every, *begin, last, kept)),
+            None => Some(Order::new(every)).filter(|_| inputs.is_empty()),
+        };
+        let Some(order) = order.filter(|_| rest.is_empty() && ordered) else { return Ok(false) };
+        (self.index, self.inputs, self.order, self.end) = (index, inputs, order, place);
         Ok(true)
     }
 
@@ -256,34 +272,23 @@ impl<R: Read + Seek> Recording<R> {
                 break Ending::Open { lost: left };
             }
             let behind = place + CHUNK as u64 + head.payload;
-            // One past the last state, and the next one at most.
-            let next = self.frames.end..self.frames.end.saturating_add(self.header.every);
-            // A state nearer to the one before than others are is the last.
-            let ended =
-                !self.index.is_empty() && !(self.frames.end - 1 - self.frames.start).is_multiple_of(self.header.every);
-            let begins = self.index.is_empty() && head.kind == Kind::Whole;
-            let follows = next.contains(&head.frame) && !ended || begins;
-            match head.kind {
+            let fits = match head.kind {
                 // Its end is missing, or is not one, else there would have been no need to come here.
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
                 Kind::Index => break damaged(length),
-                Kind::Input if next.contains(&head.frame) || self.index.is_empty() => {
-                    self.inputs.push([head.frame, place]);
-                    place = behind;
-                    continue;
-                }
-                Kind::Input => break damaged(place + CHUNK as u64),
-                _ if !follows || head.frame == u64::MAX => break damaged(place + CHUNK as u64),
-                Kind::Difference if self.index.is_empty() => break damaged(place + CHUNK as u64),
-                Kind::Difference => {}
-                Kind::Whole => {
-                    if self.index.is_empty() {
-                        self.frames.start = head.frame;
-                    }
-                    self.index.push([head.frame, place]);
-                }
+                Kind::Input => self.order.follows(head.frame),
+                Kind::Passed => self.order.pass(head.frame),
+                Kind::Difference if self.index.is_empty() => false,
+                Kind::Whole | Kind::Difference => self.order.keep(head.frame),
+            };
+            if !fits {
+                break damaged(place + CHUNK as u64);
             }
-            self.frames.end = head.frame + 1;
+            match head.kind {
+                Kind::Input => self.inputs.push([head.frame, place]),
+                Kind::Whole => self.index.push([head.frame, place]),
+                _ => {}
+            }
             place = behind;
         };
         self.end = place;

@@ -2,6 +2,7 @@
 
 use super::codec;
 use super::format::{self, ChunkHead, Header, Kind};
+use super::order::Order;
 use crate::safe_write::{Counted, Target};
 use std::io::{self, Write as _};
 
@@ -17,13 +18,11 @@ pub struct Writer<W> {
     pending: Vec<u8>,
     /// The bytes of the file, with those not given to it yet.
     place: u64,
+    /// The last state that was kept.
     previous: Vec<u8>,
-    /// From one frame whose state is kept to the next.
-    every: u64,
-    /// The last frame whose state was kept; none before the first.
-    last: Option<u64>,
-    /// The frame of the last input.
-    input: u64,
+    order: Order,
+    /// States from the last that stands for itself on.
+    group: u64,
     /// Frame and place of the chunks that stand for themselves.
     index: Vec<[u64; 2]>,
     /// Frame and place of the inputs.
@@ -37,84 +36,73 @@ impl<W: Target> Writer<W> {
     /// Those of the target.
     pub fn new(target: W, header: &Header) -> io::Result<Writer<W>> {
         let (pending, identity) = format::beginning(header);
-        let place = pending.len() as u64;
-        let out = Counted { inner: target, bytes: 0 };
-        let (previous, index, inputs) = (Vec::new(), Vec::new(), Vec::new());
-        let every = header.every;
-        let mut writer = Writer { out, identity, pending, place, previous, every, last: None, input: 0, index, inputs };
+        let mut writer = Writer {
+            out: Counted { inner: target, bytes: 0 },
+            identity,
+            place: pending.len() as u64,
+            pending,
+            previous: Vec::new(),
+            order: Order::new(header.every),
+            group: 0,
+            index: Vec::new(),
+            inputs: Vec::new(),
+        };
         writer.flush()?;
         writer.sync()?;
         Ok(writer)
     }
 
-    /// Adds the state of a frame: the first, which may have any number, or one so far behind the last as the header says;
-    /// nearer ones end the recording.
+    /// Adds a frame whose state is not kept: the next one, of which no state is due by the header.
     ///
     /// # Errors
     /// A frame out of its order; it is left out. The file is not written to before [`Writer::flush`].
-    pub fn push(&mut self, frame: u64, state: &[u8]) -> io::Result<()> {
-        self.code(frame, state)?;
-        self.previous.clear();
-        self.previous.extend_from_slice(state);
-        Ok(())
-    }
-
-    /// [`Writer::push`] of a state that nobody needs any more: it is exchanged for other bytes instead of copied.
-    ///
-    /// # Errors
-    /// As [`Writer::push`]; the state stays with its owner then.
-    pub fn take(&mut self, frame: u64, state: &mut Vec<u8>) -> io::Result<()> {
-        self.code(frame, state)?;
-        std::mem::swap(&mut self.previous, state);
-        Ok(())
-    }
-
-    /// Adds something that a program did before the step to a frame, which lies behind the last state.
-    ///
-    /// # Errors
-    /// A frame out of its order; it is left out.
-    pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
-        self.check_order(frame)?;
-        if frame < self.input {
+    pub fn push(&mut self, frame: u64, hash: u64) -> io::Result<()> {
+        if !self.order.pass(frame) {
             return Err(out_of_order(frame));
         }
-        self.input = frame;
-        self.inputs.push([frame, self.place]);
         let from = self.begin();
-        self.pending.extend_from_slice(bytes);
-        self.end(from, Kind::Input, frame, bytes.len() as u64);
+        self.end(from, Kind::Passed, frame, 0, hash);
         Ok(())
     }
 
-    /// Adds the chunk of a state.
-    fn code(&mut self, frame: u64, state: &[u8]) -> io::Result<()> {
-        self.check_order(frame)?;
-        if frame < self.input {
+    /// Adds a frame with its state: the first, which may have any number, or the next one. That of a frame to which none is
+    /// due ends the recording, as does that of the frame that was pushed last. The state is exchanged for other bytes
+    /// instead of copied.
+    ///
+    /// # Errors
+    /// A frame out of its order; it is left out, and the state stays with its owner.
+    pub fn keep(&mut self, frame: u64, hash: u64, state: &mut Vec<u8>) -> io::Result<()> {
+        if !self.order.keep(frame) {
             return Err(out_of_order(frame));
         }
-        // A state nearer to the one before than others are is the last.
-        let whole_steps =
-            |[first, _]: &[u64; 2]| self.last.is_some_and(|last| (last - first).is_multiple_of(self.every));
-        if !self.index.first().is_none_or(whole_steps) {
-            return Err(out_of_order(frame));
-        }
-        let begun = self.index.last().is_some_and(|[first, _]| (frame - first) / self.every < GROUP);
+        let begun = self.group > 0 && self.group < GROUP;
         let kind = if begun && self.previous.len() == state.len() { Kind::Difference } else { Kind::Whole };
         if kind == Kind::Whole {
             self.index.push([frame, self.place]);
             self.previous.clear();
+            self.group = 0;
         }
+        self.group += 1;
         let from = self.begin();
         codec::encode(state, &self.previous, &mut self.pending);
-        self.end(from, kind, frame, state.len() as u64);
-        self.last = Some(frame);
+        self.end(from, kind, frame, state.len() as u64, hash);
+        std::mem::swap(&mut self.previous, state);
         Ok(())
     }
 
-    /// Refuses a frame that does not lie among those behind the last state, up to the next one.
-    fn check_order(&self, frame: u64) -> io::Result<()> {
-        let follows = self.last.is_none_or(|last| frame > last && frame - last <= self.every);
-        if follows && frame < u64::MAX { Ok(()) } else { Err(out_of_order(frame)) }
+    /// Adds something that a program did before the step to the next frame.
+    ///
+    /// # Errors
+    /// A frame out of its order; it is left out.
+    pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
+        if !self.order.follows(frame) {
+            return Err(out_of_order(frame));
+        }
+        self.inputs.push([frame, self.place]);
+        let from = self.begin();
+        self.pending.extend_from_slice(bytes);
+        self.end(from, Kind::Input, frame, bytes.len() as u64, 0);
+        Ok(())
     }
 
     /// Leaves room for the head of a chunk, whose payload follows; returns where it begins.
@@ -125,10 +113,10 @@ impl<W: Target> Writer<W> {
     }
 
     /// Writes the head of a chunk, once its payload is there.
-    fn end(&mut self, from: usize, kind: Kind, frame: u64, state: u64) {
+    fn end(&mut self, from: usize, kind: Kind, frame: u64, state: u64, hash: u64) {
         let (head, payload) = self.pending[from..].split_at_mut(format::CHUNK);
         let payload_sum = crc32fast::hash(payload);
-        let chunk = ChunkHead { kind, frame, state, payload: payload.len() as u64, payload_sum };
+        let chunk = ChunkHead { kind, frame, state, payload: payload.len() as u64, hash, payload_sum };
         head.copy_from_slice(&chunk.to_bytes(self.identity));
         self.place += (self.pending.len() - from) as u64;
     }
@@ -163,11 +151,12 @@ impl<W: Target> Writer<W> {
     pub fn finish(&mut self) -> io::Result<()> {
         let place = self.place;
         let from = self.begin();
-        let numbers = self.index.iter().chain(&self.inputs).flatten();
+        self.pending.extend(self.order.last_kept().unwrap_or(u64::MAX).to_le_bytes());
         self.pending.extend((self.index.len() as u64).to_le_bytes());
+        let numbers = self.index.iter().chain(&self.inputs).flatten();
         self.pending.extend(numbers.flat_map(|n| n.to_le_bytes()));
         let bytes = self.pending.len() - from - format::CHUNK;
-        self.end(from, Kind::Index, self.last.map_or(0, |last| last + 1), bytes as u64);
+        self.end(from, Kind::Index, self.order.frames().end, bytes as u64, 0);
         self.pending.extend(format::trailer(place, self.identity));
         self.flush()?;
         self.sync()

@@ -1,6 +1,7 @@
 //! A catalogue and a full scene for the tests of the reader.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub(crate) mod cube;
 pub(crate) mod shapes;
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};

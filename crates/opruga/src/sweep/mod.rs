@@ -32,11 +32,13 @@
 mod grid;
 mod metrics;
 mod plots;
+mod question;
 mod table;
 
 pub use grid::{Axis, Design, MOST_POINTS, Point, Range, Values, number};
 pub use metrics::{Metric, WORDS};
 pub use plots::plots;
+pub use question::Question;
 pub use table::{Row, Status, head, line, read_rows};
 
 use crate::{Options, Simd, World, WorldError};

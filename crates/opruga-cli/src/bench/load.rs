@@ -1,0 +1,93 @@
+//! `opruga bench load`: how long it takes to make a body of a file with many triangles, beside reading its bytes.
+
+use super::{Machine, median, processor_time};
+use crate::arguments::BenchLoad;
+use crate::failure::{Failure, print_data};
+use opruga::Simd;
+use opruga::blueprint::AnyBlueprint;
+use opruga::io::{Files, SceneError, scene};
+use opruga::mesh::Mesh;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Reads a surface several times, each as a scene does it, and prints how long that takes.
+pub(crate) fn bench(call: &BenchLoad) -> Result<u8, Failure> {
+    match &call.file {
+        Some(file) => of_file(call, file),
+        None => {
+            let path = std::env::temp_dir().join(format!("opruga-bench-{}.stl", std::process::id()));
+            let written = opruga::io::safe_write::safe_write(&path, true, |out| out.write_all(&torus(call.triangles)));
+            let outcome = written.map_err(Failure::Write).and_then(|_| of_file(call, &path));
+            let _ = std::fs::remove_file(&path);
+            outcome
+        }
+    }
+}
+
+/// A torus of about so many triangles in binary STL: every corner three numbers of its own, as scanners write them.
+fn torus(triangles: u32) -> Vec<u8> {
+    let around = (f64::from(triangles) / 4.0).sqrt().ceil().max(4.0) as u32;
+    let mut bytes = vec![0; 80];
+    let Ok(torus) = Mesh::torus(1.0, 0.4, [2 * around, around]) else { unreachable!("it has enough vertices") };
+    bytes.extend((torus.facets.len() as u32).to_le_bytes());
+    for facet in &torus.facets {
+        bytes.extend([0; 12]);
+        let corners = facet.iter().flat_map(|node| torus.positions[*node as usize]);
+        corners.for_each(|x| bytes.extend((x as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+fn of_file(call: &BenchLoad, path: &Path) -> Result<u8, Failure> {
+    let shown = path.display().to_string();
+    let unreadable = |e: std::io::Error| {
+        let error = SceneError::new("read.failed", format!("the file cannot be read: {e}"));
+        Failure::Scene(vec![SceneError { file: shown.clone(), ..error }])
+    };
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let text = format!(
+        "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n\
+         [[body]]\nname = \"it\"\nmass = 1\nshape = {{ kind = \"surface\", file = {} }}\n",
+        serde_json::Value::from(name.as_str()),
+    );
+    let scene: PathBuf = path.with_file_name("bench.toml");
+    let options = scene::Options { files: Files::beside(&scene), ..scene::Options::default() };
+    let machine = Machine::measure(Simd::best());
+    let (mut plain, mut wall, mut processor, mut found) = (Vec::new(), Vec::new(), Vec::new(), [0; 3]);
+    for _ in 0..call.rounds {
+        let start = Instant::now();
+        let bytes = std::fs::read(path).map_err(unreadable)?;
+        plain.push(start.elapsed().as_secs_f64());
+        found[0] = bytes.len();
+        drop(bytes);
+        let (start, before) = (Instant::now(), processor_time());
+        let (blueprint, _) = scene::read(text.as_bytes(), &shown, &opruga::catalogue(), &options)?;
+        wall.push(start.elapsed().as_secs_f64());
+        processor.push(processor_time() - before);
+        if let AnyBlueprint::Space(blueprint) = &blueprint
+            && let [body] = &blueprint.bodies[..]
+        {
+            (found[1], found[2]) = (body.mesh.facets.len(), body.mesh.nodes());
+        }
+    }
+    let [bytes, triangles, nodes] = found;
+    let [plain, wall, processor] = [&plain, &wall, &processor].map(|times| median(times));
+    let row = json!({
+        "bytes": bytes, "triangles": triangles, "nodes": nodes, "rounds": call.rounds, "plain_read_seconds": plain,
+        "wall_seconds": wall, "processor_seconds": processor, "calibration": machine,
+    });
+    if call.json {
+        print_data(&format!("{}\n", json!({ "rows": [row] })))?;
+        return Ok(0);
+    }
+    print_data(&format!(
+        "{name}: {:.1} MB, {triangles} triangles, {nodes} nodes\n  \
+         {plain:.3} s to read its bytes, {wall:.3} s to make a checked body of them ({processor:.3} s of this thread; medians of {})\n  {}\n",
+        bytes as f64 * 1e-6,
+        call.rounds,
+        machine.sentence(),
+    ))?;
+    Ok(0)
+}

@@ -1,0 +1,142 @@
+//! What was asked of a sweep, as it lies in the sweep's folder, so that it can go on.
+
+use super::{Axis, Design, Metric, Sweep};
+use opruga_io::problem::visible;
+use opruga_io::{Files, SceneError, overrides};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// All that decides about the numbers of a sweep's table.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Question {
+    /// The version of this form: 1.
+    pub schema: u32,
+    /// The name of the scene.
+    pub name: String,
+    /// Where the scene came from; the same text from elsewhere is the same question.
+    pub file: String,
+    /// What varies and what is changed for all points, as `PATH=VALUES`.
+    pub set: Vec<String>,
+    /// What is measured, each by its word.
+    pub metrics: Vec<String>,
+    /// Whether one parameter varies after the other.
+    pub each: bool,
+    /// How many random points are visited; none: a grid.
+    pub sample: Option<usize>,
+    /// Whether random points know nothing of each other.
+    pub independent: bool,
+    /// The seed of random points.
+    pub seed: u64,
+    /// Whether a step above the stable limit is run.
+    pub allow_unstable: bool,
+    /// Whether unknown fields of the scene are overlooked.
+    pub lenient: bool,
+    /// The text of the scene.
+    pub scene: String,
+    /// The files that the scene names, their bytes written as pairs of hexadecimal digits.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
+}
+
+impl Question {
+    /// The version of this form.
+    pub const SCHEMA: u32 = 1;
+
+    /// Bytes of a file as pairs of hexadecimal digits.
+    pub fn to_digits(bytes: &[u8]) -> String {
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// Reads the JSON of a question.
+    ///
+    /// # Errors
+    /// `sweep.damaged` where it is none, or one of another version.
+    pub fn read(bytes: &[u8]) -> Result<Question, SceneError> {
+        let damaged = |why: String| {
+            SceneError::new("sweep.damaged", format!("the question of the sweep cannot be read: {}", visible(&why)))
+                .hint("--force begins the sweep anew")
+        };
+        let question: Question = serde_json::from_slice(bytes).map_err(|e| damaged(e.to_string()))?;
+        match question.schema {
+            Question::SCHEMA => Ok(question),
+            other => Err(damaged(format!("it has version {other}; this program reads {}", Question::SCHEMA))),
+        }
+    }
+
+    /// The JSON of the question.
+    pub fn to_text(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// The sweep that is asked for.
+    ///
+    /// # Errors
+    /// All that is wrong with the parameters, the metrics and the files.
+    pub fn sweep(&self) -> Result<Sweep, Vec<SceneError>> {
+        let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
+        for set in &self.set {
+            match Axis::parse(set) {
+                Ok(Some(axis)) => axes.push(axis),
+                Ok(None) => fixed.extend(overrides::split(set).map_err(|e| errors.push(e))),
+                Err(error) => errors.push(error),
+            }
+        }
+        let metrics = self.metrics.iter().filter_map(|m| Metric::parse(m).map_err(|e| errors.push(e)).ok()).collect();
+        let mut files = BTreeMap::new();
+        for (name, digits) in &self.files {
+            match from_digits(digits) {
+                Some(bytes) => _ = files.insert(name.clone(), bytes.into()),
+                None => {
+                    let message = format!("the file `{}` of the sweep cannot be read", visible(name));
+                    errors.push(SceneError::new("sweep.damaged", message).hint("--force begins the sweep anew"));
+                }
+            }
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        Ok(Sweep {
+            name: self.name.clone(),
+            file: self.file.clone(),
+            text: self.scene.clone(),
+            files: Files::held(files),
+            fixed,
+            axes,
+            design: match self.sample {
+                Some(count) => Design::Sample { count, seed: self.seed, independent: self.independent },
+                None if self.each => Design::Each,
+                None => Design::Grid,
+            },
+            metrics,
+            allow_unstable: self.allow_unstable,
+            lenient: self.lenient,
+        })
+    }
+
+    /// Whether another question has the same answer.
+    pub fn same(&self, other: &Question) -> bool {
+        *self == Question { file: self.file.clone(), ..other.clone() }
+    }
+
+    /// In what an earlier question was another one, in words.
+    pub fn difference(&self, before: &Question) -> String {
+        let lists = |new: &[String], old: &[String]| format!("{} instead of {}", old.join(" "), new.join(" "));
+        let said = if self.scene != before.scene {
+            "the text of the scene was another".to_string()
+        } else if self.files != before.files {
+            "a file that the scene names was another".to_string()
+        } else if self.set != before.set {
+            format!("--set {}", lists(&self.set, &before.set))
+        } else if self.metrics != before.metrics {
+            format!("--metric {}", lists(&self.metrics, &before.metrics))
+        } else {
+            "other points were asked for".to_string()
+        };
+        visible(&said)
+    }
+}
+
+fn from_digits(text: &str) -> Option<Vec<u8>> {
+    let byte = |pair: &[u8]| u8::from_str_radix(core::str::from_utf8(pair).ok()?, 16).ok();
+    text.len().is_multiple_of(2).then(|| text.as_bytes().chunks(2).map(byte).collect()).flatten()
+}

@@ -1,0 +1,114 @@
+//! What a kill costs a recording, measured: a process that records tells through a pipe when each frame was finished, and is
+//! killed at any moment.
+#![cfg(unix)]
+#![allow(clippy::disallowed_methods)] // no physics here
+
+use opruga::blueprint::{AnyBlueprint, Blueprint};
+use opruga::io::recording::{Ending, Header, Recording};
+use opruga::io::scene;
+use opruga::recordings::{Playback, Tape};
+use opruga::{Options, World, catalogue, scenes};
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What a kill may cost, as the documentation says [ns].
+const LOST: u64 = 50_000_000;
+/// The word that makes this test record instead, with what it needs to know.
+const CHILD: &str = "OPRUGA_TEST_RECORDS";
+
+fn blueprint() -> Blueprint<2> {
+    let text = scenes::find("pressures").expect("a scene");
+    match scene::read(text.as_bytes(), "pressures", &catalogue(), &scene::Options::default()) {
+        Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint,
+        _ => panic!("a scene of the plane"),
+    }
+}
+
+/// Records until it is killed. Of each frame three numbers go through the pipe: its own, and the times before and after it
+/// was added [ns].
+fn record(path: &Path, every: u64, pause: Duration) -> ! {
+    let mut world = World::new(blueprint(), Options::default()).expect("a world");
+    let header = Header { name: "pressures".into(), frame: world.blueprint().time.frame, every, ..Header::default() };
+    let mut tape = Tape::begin(path, false, &header, &mut world).expect("a file");
+    let start = Instant::now();
+    let mut pipe = std::io::stderr();
+    loop {
+        world.frame().expect("a frame");
+        std::thread::sleep(pause);
+        let before = start.elapsed().as_nanos() as u64;
+        tape.push(&mut world).expect("written");
+        let after = start.elapsed().as_nanos() as u64;
+        let told: Vec<u8> = [world.frames(), before, after].into_iter().flat_map(u64::to_le_bytes).collect();
+        pipe.write_all(&told).expect("told");
+    }
+}
+
+/// The frames that were finished, as they were told.
+fn told(bytes: &[u8]) -> Vec<[u64; 3]> {
+    let number = |bytes: &[u8]| u64::from_le_bytes(bytes.try_into().expect("eight bytes"));
+    bytes.chunks_exact(24).map(|row| [number(&row[..8]), number(&row[8..16]), number(&row[16..])]).collect()
+}
+
+#[test]
+fn a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state() {
+    if let Ok(call) = std::env::var(CHILD) {
+        let mut words = call.split(' ');
+        let mut word = || words.next().expect("a word");
+        let (every, pause) = (word().parse().expect("a number"), word().parse().expect("a number"));
+        record(&PathBuf::from(word()), every, Duration::from_micros(pause));
+    }
+    let folder = std::env::temp_dir().join(format!("opruga-killed-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let (mut most, mut kept_back, mut held) = (0, 0, 0);
+    // States of every frame, far apart, and none but the first; quick frames and slow ones.
+    let ways = [(1, 0), (32, 0), (1_000_000, 0), (1_000_000, 7_000), (4, 20_000)];
+    for round in 0..20u64 {
+        let (every, pause) = ways[round as usize % ways.len()];
+        let path = folder.join(format!("{round}"));
+        let mut child = Command::new(std::env::current_exe().expect("this test"))
+            .args(["--exact", "a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state", "--nocapture", "--quiet"])
+            .env(CHILD, format!("{every} {pause} {}", path.display()))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("this test runs again");
+        let mut pipe = child.stderr.take().expect("a pipe");
+        // A pipe that is full would hold the run up.
+        let reader = std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            pipe.read_to_end(&mut bytes).map(|_| bytes)
+        });
+        let begun = Instant::now();
+        while !path.exists() && begun.elapsed() < Duration::from_secs(30) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        std::thread::sleep(Duration::from_micros(60_000 + round * 7_919_777 % 90_000));
+        child.kill().expect("it is killed");
+        child.wait().expect("it ends");
+        let told = told(&reader.join().expect("read").expect("read"));
+        let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
+        assert!(matches!(recording.ending(), Ending::Open { .. }), "{:?}", recording.ending());
+        let last = recording.frames().end - 1;
+        let Some([finished, before, _]) = told.last().copied() else { continue };
+        if last < finished {
+            // Of the last frame in the file: when it had been added. The first one was there at once.
+            let [_, _, safe] = told.iter().copied().find(|row| row[0] == last).unwrap_or_default();
+            assert!(before.saturating_sub(safe) <= LOST, "round {round}: {} ns are lost", before - safe);
+            assert!((finished - last) < every, "round {round}: a state of {every} frames is lost");
+            (held, kept_back) = (held.max(before - safe), kept_back.max(finished - last));
+        }
+        most = most.max(last);
+        // All that is there is right.
+        let mut world = World::new(blueprint(), Options::default()).expect("a world");
+        let mut playback = Playback::<_, 2>::of(recording, last).expect("whole");
+        for frame in 1..=last.min(60) {
+            playback.step(&mut world, frame).expect("a frame");
+            assert_eq!(playback.hash(frame), Ok(world.frame_hash()), "round {round}, frame {frame}");
+        }
+    }
+    println!("at most {kept_back} finished frames, of {:.1} ms, were lost, of up to {most}", held as f64 * 1e-6);
+    assert!(most > 30 && kept_back > 0, "kills found runs at work: {most}, {kept_back}");
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
