@@ -28,18 +28,32 @@ impl<const D: usize> System<D> {
         let now = self.time + time;
         self.make_room();
         self.prepare(evaluate, now)?;
+        if self.stages > 0 && evaluate == Stage::Current {
+            self.step_work = Default::default();
+        }
         if step.is_some() {
             self.take_held_motion(0..self.places());
         }
+        let mut held = 0;
         for tile in 0..self.plan.len() {
             self.add_forces(evaluate, now, weight, tile);
             for k in 0..self.plan.released_after(tile).len() {
                 let done = self.plan.released_after(tile)[k] as usize;
                 self.update_tile(done, update);
                 if let Some(h) = step {
-                    self.collide(done, h);
+                    held |= self.collide(done, h);
                 }
             }
+        }
+        if let Some(h) = step
+            && held != 0
+            && evaluate != Stage::Current
+        {
+            // Side by side, every lane is a body.
+            let lanes = if self.layout == Layout::Batch { held } else { u8::MAX };
+            let [damping, user] = self.step_work;
+            damping.count_by_start(h, lanes, &mut self.work.damping);
+            user.count_by_start(h, lanes, &mut self.work.user);
         }
         if !self.pins.is_empty() {
             self.hold_pins(update.writes(), self.time + update.time());
@@ -89,10 +103,14 @@ impl<const D: usize> System<D> {
             member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
             let views = member.potential.views();
             if views.damping || member.potential.account() == Account::User {
-                let account = match member.potential.account() {
-                    Account::User => &mut self.work.user,
-                    _ => &mut self.work.damping,
+                let [of_damping, of_user] = &mut self.step_work;
+                let (account, step_work) = match member.potential.account() {
+                    Account::User => (&mut self.work.user, of_user),
+                    _ => (&mut self.work.damping, of_damping),
                 };
+                if self.stages > 0 {
+                    step_work.note(&power, weight, stage == Stage::Current);
+                }
                 for l in 0..WIDTH {
                     account[l] += weight * power[l];
                     power[l] = 0.0;
@@ -122,18 +140,19 @@ impl<const D: usize> System<D> {
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }
 
-    /// Lets obstacles hold back the nodes of a tile.
+    /// Lets obstacles hold back the nodes of a tile; gives the lanes in which they did, a bit each.
     #[inline]
-    fn collide(&mut self, tile: usize, h: f64) {
+    fn collide(&mut self, tile: usize, h: f64) -> u8 {
         let range = self.plan.range(tile);
         self.limit_velocities_of(range.clone());
         if self.contacts.is_none() {
-            return;
+            return 0;
         }
         // What an obstacle takes of the motion of a held node its pin gives back.
         self.give_held_motion(range.clone());
-        self.resolve_contacts(tile, h);
+        let held = self.resolve_contacts(tile, h);
         self.take_held_motion(range);
+        held
     }
 
     /// Shortens the velocities that are above the limit, of all nodes.
@@ -150,8 +169,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    fn resolve_contacts(&mut self, tile: usize, h: f64) {
-        let Some(contacts) = &self.contacts else { return };
+    fn resolve_contacts(&mut self, tile: usize, h: f64) -> u8 {
+        let Some(contacts) = &self.contacts else { return 0 };
         let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
         contacts.resolve(
             self.simd,
@@ -171,7 +190,7 @@ impl<const D: usize> System<D> {
                 work_colliders: &mut self.work.user,
                 work_correction: &mut self.work.correction,
             },
-        );
+        )
     }
 }
 

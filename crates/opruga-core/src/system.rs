@@ -3,6 +3,7 @@
 use crate::contacts::Contacts;
 use crate::error::StepError;
 use crate::inertia::Inertia;
+use crate::ledger::StepWork;
 use crate::pins::Held;
 use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
@@ -117,6 +118,8 @@ pub struct System<const D: usize> {
     pub(crate) plan: TilePlan,
     /// What the pins hold.
     pub(crate) held: Held<D>,
+    /// Work of damping and of loads in the step that is made, where that has several stages.
+    pub(crate) step_work: [StepWork; 2],
     /// Pairs of columns that the integrator uses within a step.
     pub(crate) stages: usize,
     pub(crate) forces: [Column; D],
@@ -163,6 +166,7 @@ impl<const D: usize> System<D> {
             room: Room::default(),
             plan: TilePlan::new(places, std::iter::empty()),
             held: Held::default(),
+            step_work: Default::default(),
             stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
             before: core::array::from_fn(|_| Column::default()),
