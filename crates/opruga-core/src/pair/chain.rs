@@ -1,6 +1,7 @@
 //! Runs whose second nodes are the next ones: outlines, rows of grids. The inner loop of springs and of gas in the plane.
 
 use super::PairLaw;
+use super::lone::Lone;
 use crate::state::{Layout, Parameter, View};
 use crate::tile::{Tile, Weight};
 use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
@@ -16,6 +17,8 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
     /// Places of all pairs.
     pub(super) length: usize,
     pub(super) layout: Layout,
+    /// The pair by itself that comes next.
+    pub(super) closing: Option<Lone>,
 }
 
 /// One case of the loop.
@@ -33,6 +36,10 @@ impl<L: PairLaw<D>, const D: usize, const BATCH: bool, const FRESH: bool, const 
     fn run<P: Pack>(self) {
         let mut power = P::load(self.power);
         self.chain.walk::<P, BATCH, FRESH, SAME>(self.weight, self.tile, &mut power);
+        if let Some(closing) = self.chain.closing {
+            let layout = if BATCH { Layout::Batch } else { Layout::Single };
+            Lone { layout, ..closing }.add::<P, L, D>(self.chain.law, self.chain.view, self.tile, &mut power);
+        }
         power.store(self.power);
     }
 }
