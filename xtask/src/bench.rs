@@ -27,7 +27,9 @@ struct Programs {
 pub(crate) fn compare() -> Result<(), String> {
     let programs = Programs::build()?;
     println!("load of the machine before: {}\n", load());
-    println!("| rings x vertices | instructions | baseline ns | Opruga ns | ratio | target | |\n|---|---|---|---|---|---|---|");
+    println!(
+        "| rings x vertices | instructions | baseline ns | Opruga ns | ratio | target | |\n|---|---|---|---|---|---|---|"
+    );
     let mut sets = Vec::new();
     for simd in ["avx512", "avx2", "sse2"] {
         if programs.row((1, 36), simd, &[])?["simd"] == simd {
@@ -45,7 +47,9 @@ pub(crate) fn compare() -> Result<(), String> {
                 Some(target) => (format!("{target}"), verdict(ratio / target)),
                 None => ("–".into(), String::new()),
             };
-            println!("| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {ratio:.2} | {target} | {verdict} |");
+            println!(
+                "| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {ratio:.2} | {target} | {verdict} |"
+            );
         }
     }
     println!("\n| what | measured | target | |\n|---|---|---|---|");
@@ -139,7 +143,8 @@ fn output(command: &mut Command) -> Result<Vec<u8>, String> {
 impl Programs {
     fn build() -> Result<Programs, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
-        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
+        let target =
+            std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
         std::fs::create_dir_all(&target).map_err(|e| format!("{}: {e}", target.display()))?;
         let baseline = target.join("thesis-baseline");
         let compiled = Command::new("g++")
@@ -172,8 +177,7 @@ impl Programs {
         let mut call = Command::new(&self.opruga);
         call.args(["bench", "vertices", "--json", "--only", &only, "--seconds", &SECONDS.to_string()]);
         call.args(more).env("OPRUGA_SIMD", simd);
-        let report: Value =
-            serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
+        let report: Value = serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
         report["rows"].get(0).cloned().ok_or_else(|| format!("opruga bench: {report}"))
     }
 

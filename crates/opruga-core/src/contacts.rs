@@ -18,7 +18,7 @@ pub struct Moved<'a, const D: usize> {
     pub x: &'a mut Columns<D>,
     /// Velocities after it [m/s]; indexed by place.
     pub v: &'a mut Columns<D>,
-    /// Force on each node where the step was evaluated last: `force[d][p - range.start]` [N].
+    /// Mean force of the step on each node, m Δv/h: `force[d][p - range.start]` [N].
     pub force: [&'a [f64]; D],
     /// Mass of each node [kg].
     pub mass: &'a Parameter,

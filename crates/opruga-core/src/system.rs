@@ -74,6 +74,10 @@ pub struct Member<const D: usize> {
     pub memory: Vec<f64>,
     /// What `prepare` left behind.
     pub scratch: Column,
+    /// Where its power is entered, if it has any: asked once and not with every tile.
+    pub(crate) flows: Option<Account>,
+    /// Whether it begins the forces of tiles.
+    pub(crate) begins_tiles: bool,
 }
 
 /// Bodies that are stepped together: one, or up to eight alike ones side by side.
@@ -124,6 +128,7 @@ pub struct System<const D: usize> {
     pub(crate) stages: usize,
     pub(crate) forces: [Column; D],
     pub(crate) before: [Column; D],
+    pub(crate) velocity_before: [Column; D],
     pub(crate) slots: Column,
 }
 
@@ -170,6 +175,7 @@ impl<const D: usize> System<D> {
             stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
             before: core::array::from_fn(|_| Column::default()),
+            velocity_before: core::array::from_fn(|_| Column::default()),
             slots: Column::default(),
         }
     }
@@ -182,7 +188,10 @@ impl<const D: usize> System<D> {
         }
         let memory = potential.initial_memory();
         let scratch = Column::zeros(potential.scratch_len());
-        self.members.push(Member { potential, memory, scratch });
+        let account = potential.account();
+        let flows = (potential.views().damping || account == Account::User).then_some(account);
+        let begins_tiles = potential.begins_tiles();
+        self.members.push(Member { potential, memory, scratch, flows, begins_tiles });
     }
     /// Lays out tiles and buffers after the models, the pins or the integrator changed.
     pub fn plan(&mut self, work_columns: usize) {
