@@ -218,11 +218,9 @@ impl Programs {
             1.0 / ratio
         );
         say(&what, &format!("{time:.1}"), "≤ 15", 15.0 / time);
-        let volumes = [2, 3, 4, 5].map(|subdivisions| self.balance(&scene, subdivisions));
         let mut ratios = Vec::new();
-        // The rest volume of the inscribed polyhedron over that of the sphere.
-        for (volume, inscribed) in volumes.into_iter().zip([0.9662, 0.9914, 0.9978, 0.9995]) {
-            ratios.push(volume? / (inscribed * 4.0 / 3.0 * std::f64::consts::PI * 0.125));
+        for subdivisions in [2, 3, 4, 5] {
+            ratios.push(self.balance(&scene, subdivisions)?);
         }
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         let spread = 100.0 * (ratios.iter().copied().fold(0.0, f64::max) / least - 1.0);
@@ -232,7 +230,7 @@ impl Programs {
         Ok(())
     }
 
-    /// The volume of the sphere once drag has brought it to rest [m³].
+    /// The volume of the sphere once drag has brought it to rest, over that of its polyhedron at the start.
     fn balance(&self, scene: &Path, subdivisions: u32) -> Result<f64, String> {
         let folder = scratch("balance");
         let set = [
@@ -253,8 +251,9 @@ impl Programs {
         let _ = std::fs::remove_dir_all(&folder);
         let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
         let column = rows.first().and_then(|head| head.split(',').position(|name| name.ends_with("volume")));
-        let last = rows.last().and_then(|row| row.split(',').nth(column?)?.parse().ok());
-        last.ok_or_else(|| format!("{} has no volume", table.display()))
+        let volume = |row: Option<&&str>| row.and_then(|row| row.split(',').nth(column?)?.parse::<f64>().ok());
+        let ratio = volume(rows.last()).zip(volume(rows.get(1))).map(|(last, first)| last / first);
+        ratio.ok_or_else(|| format!("{} has no volume", table.display()))
     }
 
     /// How long the program takes until a body of 100,000 vertices could make its first step [s].

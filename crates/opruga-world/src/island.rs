@@ -57,10 +57,15 @@ impl<const D: usize> Saved<D> {
     }
 
     /// Takes another state into the same memory.
-    fn take(&mut self, system: &System<D>, time: f64) {
+    ///
+    /// The columns change hands, and the system goes on with a copy: what is kept stays as it is in memory, and is not
+    /// written there once more.
+    fn take(&mut self, system: &mut System<D>, time: f64) {
+        std::mem::swap(&mut self.x, &mut system.state.x);
+        std::mem::swap(&mut self.v, &mut system.state.v);
         for d in 0..D {
-            self.x.0[d].copy_from_slice(&system.state.x.0[d]);
-            self.v.0[d].copy_from_slice(&system.state.v.0[d]);
+            system.state.x.0[d].copy_from_slice(&self.x.0[d]);
+            system.state.v.0[d].copy_from_slice(&self.v.0[d]);
         }
         self.memory.resize(system.members.len(), Vec::new());
         for (kept, member) in self.memory.iter_mut().zip(&system.members) {
@@ -262,7 +267,7 @@ impl<const D: usize> Island<D> {
 
     fn save(&mut self, time: f64) {
         match &mut self.last {
-            Some(saved) => saved.take(&self.system, time),
+            Some(saved) => saved.take(&mut self.system, time),
             None => self.last = Some(Saved::of(&self.system, time)),
         }
     }
@@ -271,7 +276,7 @@ impl<const D: usize> Island<D> {
     fn keep_look(&mut self, number: usize) {
         let time = self.system.time;
         match self.looks.get_mut(number) {
-            Some(look) => look.take(&self.system, time),
+            Some(look) => look.take(&mut self.system, time),
             None => self.looks.push(Saved::of(&self.system, time)),
         }
     }
