@@ -1,89 +1,291 @@
-//! The thesis's algorithm as a student would write it in C++, and Opruga, in one run on one machine.
+//! The thesis's algorithm as a student would write it in C++, and Opruga, in one run on one machine: every figure that Opruga
+//! promises of its explicit rules, with its target.
+//!
+//! The two programs run by turns, some tenths of a second each, and the median of the ratios of neighbouring runs counts: what
+//! else the machine does meets both.
 
 use serde_json::Value;
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// Pairs of runs of which a ratio is the median.
+const ROUNDS: usize = 7;
+/// Processor time of one run [s].
+const SECONDS: f64 = 0.3;
+/// Rings and vertices of the rows that are compared with the baseline.
+const ROWS: [(usize, usize); 7] =
+    [(1, 36), (1, 1_024), (1, 16_384), (1, 100_000), (1, 1_048_576), (1_000, 36), (27_778, 36)];
+
+/// The two programs, and the folder of the workspace.
+struct Programs {
+    root: PathBuf,
+    baseline: PathBuf,
+    opruga: PathBuf,
+}
 
 /// Compiles and runs the baseline, runs `opruga bench vertices`, and prints the ratios.
 pub(crate) fn compare() -> Result<(), String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
-    std::fs::create_dir_all(&target).map_err(|e| format!("{}: {e}", target.display()))?;
-    let program = target.join("thesis-baseline");
-    let compiled = Command::new("g++")
-        .args(["-O3", "-march=native", "-fopenmp", "-o"])
-        .arg(&program)
-        .arg(root.join("benches/baseline/thesis.cpp"))
-        .status()
-        .map_err(|e| format!("g++ is needed for the baseline: {e}"))?;
-    if !compiled.success() {
-        return Err("the baseline does not compile".into());
-    }
-    let opruga = target.join("release/opruga");
-    let built = Command::new(env!("CARGO")).args(["build", "--release"]).current_dir(root).status();
-    if !built.is_ok_and(|s| s.success()) {
-        return Err("opruga does not build".into());
-    }
-    let baseline = Command::new(&program).env("CPUT", "1").output().map_err(|e| e.to_string())?;
-    let baseline = baseline_rows(&String::from_utf8_lossy(&baseline.stdout));
-    println!("| rings x vertices | instructions | baseline ns | Opruga ns | ratio |\n|---|---|---|---|---|");
+    let programs = Programs::build()?;
+    println!("load of the machine before: {}\n", load());
+    println!(
+        "| rings x vertices | instructions | baseline ns | Opruga ns | ratio | target | |\n|---|---|---|---|---|---|---|"
+    );
+    let mut sets = Vec::new();
     for simd in ["avx512", "avx2", "sse2"] {
-        let output = Command::new(&opruga)
-            .args(["bench", "vertices", "--json"])
-            .env("OPRUGA_SIMD", simd)
-            .output()
-            .map_err(|e| e.to_string())?;
-        let report: Value = serde_json::from_slice(&output.stdout).map_err(|e| format!("opruga bench: {e}"))?;
-        for row in report["rows"].as_array().into_iter().flatten() {
-            if row["simd"] != simd {
-                continue;
-            }
-            let (bodies, vertices) = (row["bodies"].as_u64().unwrap_or(0), row["vertices"].as_u64().unwrap_or(0));
-            let ours = row["nanoseconds_per_vertex_step"].as_f64().unwrap_or(f64::NAN);
-            let theirs = baseline.get(&if bodies == 1 { vertices } else { 0 }).copied().unwrap_or(f64::NAN);
-            println!("| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {:.2} |", theirs / ours);
+        if programs.row((1, 36), simd, &[])?["simd"] == simd {
+            sets.push(simd);
         }
     }
-    start_time(&opruga)
-}
-
-/// How long the program takes until a body of 100,000 vertices could make its first step.
-fn start_time(opruga: &Path) -> Result<(), String> {
-    let folder = std::env::temp_dir().join(format!("opruga-start-{}", std::process::id()));
-    let mut best = f64::INFINITY;
-    for _ in 0..5 {
-        let begin = std::time::Instant::now();
-        let run = Command::new(opruga)
-            .args(["run", "giant-ring", "--seconds", "0", "--no-pictures", "--force", "--out"])
-            .arg(&folder)
-            .output()
-            .map_err(|e| e.to_string())?;
-        best = best.min(begin.elapsed().as_secs_f64());
-        if !run.status.success() {
-            return Err(String::from_utf8_lossy(&run.stderr).into_owned());
+    for (bodies, vertices) in ROWS {
+        for &simd in &sets {
+            let [theirs, ours, ratio] = by_turns(
+                || programs.baseline(bodies.min(1_000), vertices),
+                || programs.nanoseconds((bodies, vertices), simd, &[]),
+            )?;
+            let target = target(bodies, vertices, simd, simd == sets[0]);
+            let (target, verdict) = match target {
+                Some(target) => (format!("{target}"), verdict(ratio / target)),
+                None => ("–".into(), String::new()),
+            };
+            println!(
+                "| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {ratio:.2} | {target} | {verdict} |"
+            );
         }
     }
-    let _ = std::fs::remove_dir_all(&folder);
-    println!("\nfrom the call to the initial state of 100,000 vertices, written: {best:.2} s");
+    println!("\n| what | measured | target | |\n|---|---|---|---|");
+    for vertices in [(1, 1_024), (1_000, 36)] {
+        let [fast, slow, ratio] = by_turns(
+            || programs.nanoseconds(vertices, sets[0], &["--integrator", "runge_kutta"]),
+            || programs.nanoseconds(vertices, sets[0], &[]),
+        )?;
+        let (bodies, vertices) = vertices;
+        let what = format!("Runge–Kutta over symplectic Euler, {bodies} x {vertices} ({fast:.2} and {slow:.2} ns)");
+        say(&what, &format!("{ratio:.2}"), "≤ 4.4", 4.4 / ratio);
+    }
+    programs.threads(sets[0])?;
+    programs.sphere(sets[0])?;
+    let bytes = number(&programs.row((1, 100_000), sets[0], &[])?, "heap_bytes_per_vertex")?;
+    say("heap of a ring of 100,000, bytes per vertex", &format!("{bytes:.0}"), "≤ 200", 200.0 / bytes);
+    let start = programs.start_time()?;
+    let what = "from the call to the initial state of 100,000 vertices, written, s (least of five)";
+    say(what, &format!("{start:.2}"), "< 0.5", 0.5 / start);
+    println!("\nNo frame asks for memory after the tenth: `cargo test --workspace --test allocation`.");
+    println!("load of the machine after: {}", load());
     Ok(())
 }
 
-/// Nanoseconds per vertex and step by vertices; 0 stands for 1,000 rings of 36.
-fn baseline_rows(text: &str) -> BTreeMap<u64, f64> {
-    let mut rows = BTreeMap::new();
-    for line in text.lines() {
-        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        if let (Some(n), Some(t)) = (cells.get(1), cells.get(3))
-            && let (Ok(n), Ok(t)) = (n.parse(), t.parse())
-        {
-            rows.insert(n, t);
-        }
-        if let Some(rest) = line.strip_prefix("1000x36, 1 thread(s), barrier each step: ")
-            && let Some(t) = rest.split(' ').next().and_then(|t| t.parse().ok())
-        {
-            rows.insert(0, t);
+/// How many times faster than the baseline rings are to be; `best`: with the best instructions of this machine.
+fn target(bodies: usize, vertices: usize, simd: &str, best: bool) -> Option<f64> {
+    match (bodies, vertices) {
+        (1, 1_024 | 16_384 | 100_000) => match simd {
+            "avx512" => Some(7.0),
+            "avx2" => Some(5.0),
+            _ => Some(2.8),
+        },
+        (1, 36) if best => Some(2.0),
+        (1, 1_048_576) if best => Some(4.3),
+        (1_000, 36) if best => Some(5.0),
+        _ => None,
+    }
+}
+
+/// What is said of a figure that reaches so much of its target.
+fn verdict(share: f64) -> String {
+    if share >= 1.0 { "met".into() } else { format!("{:.0} % short", 100.0 * (1.0 - share)) }
+}
+
+fn say(what: &str, measured: &str, target: &str, share: f64) {
+    println!("| {what} | {measured} | {target} | {} |", verdict(share));
+}
+
+/// Programs at work in the last minute, by processor, where the system says so.
+fn load() -> String {
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    match std::fs::read_to_string("/proc/loadavg") {
+        Ok(text) => format!("{} at work, {processors} processors", text.split(' ').next().unwrap_or("?")),
+        Err(_) => format!("unknown, {processors} processors"),
+    }
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Medians of two figures measured by turns, and of their ratios.
+fn by_turns(
+    mut first: impl FnMut() -> Result<f64, String>,
+    mut second: impl FnMut() -> Result<f64, String>,
+) -> Result<[f64; 3], String> {
+    let mut all = [const { Vec::new() }; 3];
+    for _ in 0..ROUNDS {
+        let (a, b) = (first()?, second()?);
+        for (list, figure) in all.iter_mut().zip([a, b, a / b]) {
+            list.push(figure);
         }
     }
-    rows
+    Ok(all.map(median))
+}
+
+fn number(row: &Value, name: &str) -> Result<f64, String> {
+    row[name].as_f64().ok_or_else(|| format!("`opruga` says nothing of {name}: {row}"))
+}
+
+/// What a program prints; what it says where it fails.
+fn output(command: &mut Command) -> Result<Vec<u8>, String> {
+    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("{command:?}: {}", String::from_utf8_lossy(&output.stderr)));
+    }
+    Ok(output.stdout)
+}
+
+impl Programs {
+    fn build() -> Result<Programs, String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
+        let target =
+            std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
+        std::fs::create_dir_all(&target).map_err(|e| format!("{}: {e}", target.display()))?;
+        let baseline = target.join("thesis-baseline");
+        let compiled = Command::new("g++")
+            .args(["-O3", "-march=native", "-fopenmp", "-o"])
+            .arg(&baseline)
+            .arg(root.join("benches/baseline/thesis.cpp"))
+            .status()
+            .map_err(|e| format!("g++ is needed for the baseline: {e}"))?;
+        if !compiled.success() {
+            return Err("the baseline does not compile".into());
+        }
+        let built = Command::new(env!("CARGO")).args(["build", "--release"]).current_dir(root).status();
+        if !built.is_ok_and(|s| s.success()) {
+            return Err("opruga does not build".into());
+        }
+        Ok(Programs { root: root.into(), baseline, opruga: target.join("release/opruga") })
+    }
+
+    /// Nanoseconds per vertex and step of the baseline.
+    fn baseline(&self, bodies: usize, vertices: usize) -> Result<f64, String> {
+        let mut call = Command::new(&self.baseline);
+        call.args([bodies.to_string(), vertices.to_string(), SECONDS.to_string()]).env("CPUT", "1");
+        let text = String::from_utf8_lossy(&output(&mut call)?).into_owned();
+        text.trim().parse().map_err(|_| format!("the baseline says `{text}`"))
+    }
+
+    /// One row of `opruga bench vertices`.
+    fn row(&self, (bodies, vertices): (usize, usize), simd: &str, more: &[&str]) -> Result<Value, String> {
+        let only = if bodies == 1 { vertices.to_string() } else { format!("{bodies}x{vertices}") };
+        let mut call = Command::new(&self.opruga);
+        call.args(["bench", "vertices", "--json", "--only", &only, "--seconds", &SECONDS.to_string()]);
+        call.args(more).env("OPRUGA_SIMD", simd);
+        let report: Value = serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
+        report["rows"].get(0).cloned().ok_or_else(|| format!("opruga bench: {report}"))
+    }
+
+    fn nanoseconds(&self, rings: (usize, usize), simd: &str, more: &[&str]) -> Result<f64, String> {
+        number(&self.row(rings, simd, more)?, "nanoseconds_per_vertex_step")
+    }
+
+    /// A million vertices on two threads: by the clock, so that whatever else runs counts too.
+    fn threads(&self, simd: &str) -> Result<(), String> {
+        let rings = (27_778, 36);
+        let [one, two, ratio] =
+            by_turns(|| self.nanoseconds(rings, simd, &[]), || self.nanoseconds(rings, simd, &["--threads", "2"]))?;
+        let what = format!("27778 x 36 on two threads over one ({two:.2} ns by the clock, {one:.2} ns)");
+        say(&what, &format!("{ratio:.2}"), "≥ 1.8", ratio / 1.8);
+        let frames = 1e9 / (two * 16.0 * (rings.0 * rings.1) as f64);
+        say("27778 x 36 on two threads, frames of 16 steps a second", &format!("{frames:.0}"), "≥ 60", frames / 60.0);
+        Ok(())
+    }
+
+    /// The pressurised sphere: its time, and whether its volume in balance depends on its triangles.
+    fn sphere(&self, simd: &str) -> Result<(), String> {
+        let scene = self.root.join("benches/scenes/icosphere.toml");
+        let (nodes, steps) = (10_242.0, 100.0);
+        let once = || -> Result<f64, String> {
+            let mut call = Command::new(&self.opruga);
+            call.args(["bench", "scene"]).arg(&scene).args(["--frames", "8", "--json"]).env("OPRUGA_SIMD", simd);
+            let report: Value =
+                serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
+            let row = &report["rows"][0];
+            if row["nodes"].as_f64() != Some(nodes) || row["substeps"].as_f64() != Some(steps) {
+                return Err(format!("{} is another scene: {row}", scene.display()));
+            }
+            Ok(number(row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
+        };
+        let [baseline, time, ratio] = by_turns(|| self.baseline(1, 16_384), once)?;
+        let what = format!(
+            "pressurised sphere, 1 x 10242, ns per vertex and step ({:.2} of the baseline's ring of 16384, {baseline:.2} ns)",
+            1.0 / ratio
+        );
+        say(&what, &format!("{time:.1}"), "≤ 15", 15.0 / time);
+        let mut ratios = Vec::new();
+        for subdivisions in [2, 3, 4, 5] {
+            ratios.push(self.balance(&scene, subdivisions)?);
+        }
+        let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        let spread = 100.0 * (ratios.iter().copied().fold(0.0, f64::max) / least - 1.0);
+        let list: Vec<String> = ratios.iter().map(|ratio| format!("{ratio:.4}")).collect();
+        let what = format!("V/V_rest in balance from 162 to 10242 vertices ({}), varies by %", list.join(", "));
+        say(&what, &format!("{spread:.2}"), "< 1.5", 1.5 / spread);
+        Ok(())
+    }
+
+    /// The volume of the sphere once drag has brought it to rest, over that of its polyhedron at the start.
+    fn balance(&self, scene: &Path, subdivisions: u32) -> Result<f64, String> {
+        let folder = scratch("balance");
+        let set = [
+            format!("body.balloon.shape.subdivisions={subdivisions}"),
+            "world.gravity=[0,0,0]".into(),
+            "world.drag=60".into(),
+            "time.frame=0.01".into(),
+            format!("time.substeps={}", 6 << subdivisions),
+        ];
+        let mut call = Command::new(&self.opruga);
+        call.arg("run").arg(scene).args(["--seconds", "1", "--no-pictures", "--force", "--out"]).arg(&folder);
+        for change in &set {
+            call.args(["--set", change]);
+        }
+        output(&mut call)?;
+        let table = folder.join("diagnostics.csv");
+        let text = std::fs::read_to_string(&table).map_err(|e| format!("{}: {e}", table.display()))?;
+        let _ = std::fs::remove_dir_all(&folder);
+        let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+        let column = rows.first().and_then(|head| head.split(',').position(|name| name.ends_with("volume")));
+        let volume = |row: Option<&&str>| row.and_then(|row| row.split(',').nth(column?)?.parse::<f64>().ok());
+        let ratio = volume(rows.last()).zip(volume(rows.get(1))).map(|(last, first)| last / first);
+        ratio.ok_or_else(|| format!("{} has no volume", table.display()))
+    }
+
+    /// How long the program takes until a body of 100,000 vertices could make its first step [s].
+    fn start_time(&self) -> Result<f64, String> {
+        let folder = scratch("start");
+        let mut best = f64::INFINITY;
+        for _ in 0..5 {
+            let begin = std::time::Instant::now();
+            let mut call = Command::new(&self.opruga);
+            call.args(["run", "giant-ring", "--seconds", "0", "--no-pictures", "--force", "--out"]).arg(&folder);
+            output(&mut call)?;
+            best = best.min(begin.elapsed().as_secs_f64());
+        }
+        let _ = std::fs::remove_dir_all(&folder);
+        Ok(best)
+    }
+}
+
+/// A folder for what a run writes.
+fn scratch(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("opruga-{name}-{}", std::process::id()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{target, verdict};
+
+    #[test]
+    fn verdicts_say_how_much_is_short() {
+        assert_eq!(verdict(1.0), "met");
+        assert_eq!(verdict(0.93), "7 % short");
+        assert_eq!(target(1, 16_384, "avx2", false), Some(5.0));
+        assert_eq!(target(1, 36, "sse2", false), None);
+    }
 }

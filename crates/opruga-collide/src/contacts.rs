@@ -114,15 +114,15 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
             }
         }
     }
-    fn resolve(&self, simd: Simd, moved: &mut Moved<D>) {
+    fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8 {
         let used = moved.places_used.min(moved.range.end).saturating_sub(moved.range.start);
         if used == 0 {
-            return;
+            return 0;
         }
         // The box around the nodes, by which colliders far away are passed over.
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
-        let mut held = Held([0; TILE / WIDTH]);
+        let (mut held, mut ever) = (Held([0; TILE / WIDTH]), false);
         // More than once, since one collider may push a node into another.
         for _ in 0..ROUNDS {
             let mut touched = false;
@@ -147,10 +147,12 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                     }
                 }
             }
+            ever |= touched;
             if simple || !touched {
                 break;
             }
         }
+        if ever { held.0.iter().fold(0, |all, bits| all | bits) } else { 0 }
     }
 }
 

@@ -25,7 +25,13 @@
 //! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction, J·v_c and −J·(v̄ − v_c) along the normal and
 //! the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) where no force acts. What is left of the potential energy,
 //! F·(h v̄ − x₁ + x₀), is work_correction: what putting the node back on the surface did. A node that lies still takes and gives
-//! nothing. v₀ is taken as v − hF/m with the force that was evaluated last: O(h) where the force changes within the step.
+//! nothing. F is the mean force of the step, m (v − v₀)/h with the velocity v before contact.
+//!
+//! **Walking.** On a slope whose angle of friction is only a little steeper, a soft body that vibrates goes down: where it presses less it
+//! lets go, and gravity feeds what damping takes. That is no error of the step: a block of 1 m × 0.5 m on a slope of tan θ = ½ with
+//! µ = 0.6, put down at once, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of 1/3840 s to 1/30720 s, at 0.0681 by
+//! velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with µ = 0.65 it comes to rest. Once at rest it stays, with
+//! any damping.
 //!
 //! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a
 //! step is stopped where it came in. Polylines and triangle meshes are thin and hold on both sides: the segment from

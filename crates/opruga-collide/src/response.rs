@@ -21,7 +21,7 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) before: [S; D],
     /// Position before it, where the node was [m].
     pub(crate) from: [S; D],
-    /// Force on it, where the step was evaluated last [N].
+    /// Mean force of the step on it [N].
     pub(crate) force: [S; D],
     /// Mass [kg].
     pub(crate) mass: S,

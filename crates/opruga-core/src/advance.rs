@@ -7,7 +7,7 @@ use crate::state::{Layout, Parameter};
 use crate::system::{Stage, State, System, Update, view};
 use crate::tile::{Tile, Weight};
 use core::ops::Range;
-use opruga_math::{Pack, WIDTH, Work};
+use opruga_math::{Pack, Strip, StripMut, WIDTH, Work};
 
 impl<const D: usize> System<D> {
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
@@ -28,24 +28,51 @@ impl<const D: usize> System<D> {
         let now = self.time + time;
         self.make_room();
         self.prepare(evaluate, now)?;
-        if step.is_some() {
+        if self.stages > 0 && evaluate == Stage::Current {
+            self.step_work = Default::default();
+        }
+        let pinned = !self.pins.is_empty();
+        if pinned && step.is_some() {
             self.take_held_motion(0..self.places());
         }
+        let hindered = self.contacts.is_some() || self.stabilisers.largest_velocity.is_some();
+        // Of several stages no single force is what has moved the nodes.
+        let several = step.is_some() && evaluate != Stage::Current && self.contacts.is_some();
+        let mut held = 0;
         for tile in 0..self.plan.len() {
             self.add_forces(evaluate, now, weight, tile);
             for k in 0..self.plan.released_after(tile).len() {
                 let done = self.plan.released_after(tile)[k] as usize;
+                if several {
+                    for d in 0..D {
+                        let range = self.plan.range(done);
+                        self.velocity_before[d][..range.len()].copy_from_slice(&self.state.v.0[d][range]);
+                    }
+                }
                 self.update_tile(done, update);
-                if let Some(h) = step {
-                    self.collide(done, h);
+                if let Some(h) = step.filter(|_| hindered) {
+                    if several {
+                        self.take_mean_force(done, h);
+                    }
+                    held |= self.collide(done, h);
                 }
             }
         }
-        if !self.pins.is_empty() {
-            self.hold_pins(update.writes(), self.time + update.time());
+        if let Some(h) = step
+            && held != 0
+            && several
+        {
+            // Side by side, every lane is a body.
+            let lanes = if self.layout == Layout::Batch { held } else { u8::MAX };
+            let [damping, user] = self.step_work;
+            damping.count_by_start(h, lanes, &mut self.work.damping);
+            user.count_by_start(h, lanes, &mut self.work.user);
         }
-        if step.is_some() {
-            self.give_held_motion(0..self.places());
+        if pinned {
+            self.hold_pins(update.writes(), self.time + update.time());
+            if step.is_some() {
+                self.give_held_motion(0..self.places());
+            }
         }
         Ok(())
     }
@@ -74,17 +101,20 @@ impl<const D: usize> System<D> {
             weight: Some(Weight { mass: &self.mass, gravity: self.gravity }),
             slots: &mut self.slots,
         };
-        if !self.members.first().is_some_and(|m| m.potential.begins_tiles()) {
+        if !self.members.first().is_some_and(|m| m.begins_tiles) {
             tile.settle(self.simd);
         }
         for member in &self.members {
             member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
-            let views = member.potential.views();
-            if views.damping || member.potential.account() == Account::User {
-                let account = match member.potential.account() {
-                    Account::User => &mut self.work.user,
-                    _ => &mut self.work.damping,
+            if let Some(account) = member.flows {
+                let [of_damping, of_user] = &mut self.step_work;
+                let (account, step_work) = match account {
+                    Account::User => (&mut self.work.user, of_user),
+                    _ => (&mut self.work.damping, of_damping),
                 };
+                if self.stages > 0 {
+                    step_work.note(tile.power, weight, stage == Stage::Current);
+                }
                 for l in 0..WIDTH {
                     account[l] += weight * tile.power[l];
                     tile.power[l] = 0.0;
@@ -114,18 +144,28 @@ impl<const D: usize> System<D> {
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }
 
-    /// Lets obstacles hold back the nodes of a tile.
+    /// Puts the mean force of the step of `h`, m Δv/h, in place of the last one: what obstacles reckon with.
+    fn take_mean_force(&mut self, tile: usize, h: f64) {
+        let range = self.plan.range(tile);
+        let buffer = self.plan.buffer(tile);
+        let force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
+        let before = self.velocity_before.each_ref().map(|column| &**column);
+        self.simd.run(MeanForce { range, force, before, mass: &self.mass, after: self.state.v.slices(), h });
+    }
+
+    /// Lets obstacles hold back the nodes of a tile; gives the lanes in which they did, a bit each.
     #[inline]
-    fn collide(&mut self, tile: usize, h: f64) {
+    fn collide(&mut self, tile: usize, h: f64) -> u8 {
         let range = self.plan.range(tile);
         self.limit_velocities_of(range.clone());
         if self.contacts.is_none() {
-            return;
+            return 0;
         }
         // What an obstacle takes of the motion of a held node its pin gives back.
         self.give_held_motion(range.clone());
-        self.resolve_contacts(tile, h);
+        let held = self.resolve_contacts(tile, h);
         self.take_held_motion(range);
+        held
     }
 
     /// Shortens the velocities that are above the limit, of all nodes.
@@ -142,8 +182,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    fn resolve_contacts(&mut self, tile: usize, h: f64) {
-        let Some(contacts) = &self.contacts else { return };
+    fn resolve_contacts(&mut self, tile: usize, h: f64) -> u8 {
+        let Some(contacts) = &self.contacts else { return 0 };
         let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
         contacts.resolve(
             self.simd,
@@ -163,7 +203,7 @@ impl<const D: usize> System<D> {
                 work_colliders: &mut self.work.user,
                 work_correction: &mut self.work.correction,
             },
-        );
+        )
     }
 }
 
@@ -180,6 +220,33 @@ impl<U: Update<D>, const D: usize> Work for Move<'_, U, D> {
     #[inline(always)]
     fn run<P: Pack>(self) {
         self.update.tile::<P>(self.range, &self.force, self.inverse_mass, self.state);
+    }
+}
+
+/// Works out the mean force of a step from the velocities before and after it.
+struct MeanForce<'a, const D: usize> {
+    range: Range<usize>,
+    force: [&'a mut [f64]; D],
+    before: [&'a [f64]; D],
+    after: [&'a [f64]; D],
+    mass: &'a Parameter,
+    h: f64,
+}
+impl<const D: usize> Work for MeanForce<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let (start, length) = (self.range.start, self.range.len());
+        let (before, after) = (Strip::<D>::new(&self.before, 0, length), Strip::<D>::new(&self.after, start, length));
+        let mass = self.mass.strip(start, length);
+        let mut force = StripMut::<D>::new(self.force, 0, length);
+        let rate = P::splat(1.0 / self.h);
+        for k in (0..length).step_by(WIDTH) {
+            let factor = mass.load::<P>(k) * rate;
+            for d in 0..D {
+                force.store(d, k, (after.load::<P>(d, k) - before.load::<P>(d, k)) * factor);
+            }
+        }
     }
 }
 

@@ -18,7 +18,7 @@ pub struct Moved<'a, const D: usize> {
     pub x: &'a mut Columns<D>,
     /// Velocities after it [m/s]; indexed by place.
     pub v: &'a mut Columns<D>,
-    /// Force on each node where the step was evaluated last: `force[d][p - range.start]` [N].
+    /// Mean force of the step on each node, m Δv/h: `force[d][p - range.start]` [N].
     pub force: [&'a [f64]; D],
     /// Mass of each node [kg].
     pub mass: &'a Parameter,
@@ -66,8 +66,9 @@ pub struct Touch<const D: usize> {
 
 /// The obstacles that a block of bodies may meet within a frame.
 pub trait Contacts<const D: usize>: Send + Sync + Debug {
-    /// Holds back the nodes of a tile: non-penetration, restitution, friction.
-    fn resolve(&self, simd: Simd, moved: &mut Moved<D>);
+    /// Holds back the nodes of a tile: non-penetration, restitution, friction. Gives the lanes in which it held any, a bit
+    /// each: lane l has the places with number l modulo eight.
+    fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8;
     /// Calls back with every surface that a node has come to that goes from `from` to `to` [m] in the step of `h` that
     /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], or that it has crossed.
     ///

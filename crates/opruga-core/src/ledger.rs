@@ -25,6 +25,39 @@ pub struct Work8 {
     pub solver: SolverWork,
 }
 
+/// Work of one account within a step of several stages [J], eight partial sums.
+///
+/// Damping and loads work by velocities, which an integrator asks at its stages. It does not know there what an obstacle will
+/// leave of them: a node that lies on a floor falls within every stage and stands at the end of every step. A step
+/// that ends in contact therefore counts by the velocities that it begins with, which contact has seen. Over many steps
+/// that is the trapezoidal rule but for its two ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StepWork {
+    /// By the velocities of all stages, as it was counted [J].
+    counted: [f64; WIDTH],
+    /// Power at the beginning of the step [W].
+    at_start: [f64; WIDTH],
+}
+
+impl StepWork {
+    /// Notes what a stage has counted: power [W] times its weight [s].
+    #[inline]
+    pub(crate) fn note(&mut self, power: &[f64; WIDTH], weight: f64, starts: bool) {
+        for l in 0..WIDTH {
+            self.counted[l] += weight * power[l];
+            if starts {
+                self.at_start[l] += power[l];
+            }
+        }
+    }
+    /// Lets the step of `h` [s] count by its beginning in some lanes, a bit each.
+    pub(crate) fn count_by_start(&self, h: f64, lanes: u8, account: &mut [f64; WIDTH]) {
+        for l in (0..WIDTH).filter(|l| lanes >> l & 1 == 1) {
+            account[l] += h * self.at_start[l] - self.counted[l];
+        }
+    }
+}
+
 /// What implicit integrators did since the ledger was last emptied.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolverWork {

@@ -271,6 +271,11 @@ impl<P: Pack> OrderedSum<P> {
             Layout::Batch => self.packs[(place / WIDTH) % WIDTH] += value,
         }
     }
+    /// Adds the values of a pack whose number modulo eight is `slot`, of bodies side by side.
+    #[inline(always)]
+    pub fn add_to(&mut self, slot: usize, value: P) {
+        self.packs[slot] += value;
+    }
     /// The sum: for one body the same number eight times, else the number of each of eight bodies.
     #[inline(always)]
     pub fn total(&self) -> P {

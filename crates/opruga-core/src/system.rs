@@ -3,6 +3,7 @@
 use crate::contacts::Contacts;
 use crate::error::StepError;
 use crate::inertia::Inertia;
+use crate::ledger::StepWork;
 use crate::pins::Held;
 use crate::potential::{Account, Potential};
 use crate::state::{Columns, Layout, Parameter, View};
@@ -73,6 +74,10 @@ pub struct Member<const D: usize> {
     pub memory: Vec<f64>,
     /// What `prepare` left behind.
     pub scratch: Column,
+    /// Where its power is entered, if it has any: asked once and not with every tile.
+    pub(crate) flows: Option<Account>,
+    /// Whether it begins the forces of tiles.
+    pub(crate) begins_tiles: bool,
 }
 
 /// Bodies that are stepped together: one, or up to eight alike ones side by side.
@@ -117,10 +122,13 @@ pub struct System<const D: usize> {
     pub(crate) plan: TilePlan,
     /// What the pins hold.
     pub(crate) held: Held<D>,
+    /// Work of damping and of loads in the step that is made, where that has several stages.
+    pub(crate) step_work: [StepWork; 2],
     /// Pairs of columns that the integrator uses within a step.
     pub(crate) stages: usize,
     pub(crate) forces: [Column; D],
     pub(crate) before: [Column; D],
+    pub(crate) velocity_before: [Column; D],
     pub(crate) slots: Column,
 }
 
@@ -163,9 +171,11 @@ impl<const D: usize> System<D> {
             room: Room::default(),
             plan: TilePlan::new(places, std::iter::empty()),
             held: Held::default(),
+            step_work: Default::default(),
             stages: 0,
             forces: core::array::from_fn(|_| Column::default()),
             before: core::array::from_fn(|_| Column::default()),
+            velocity_before: core::array::from_fn(|_| Column::default()),
             slots: Column::default(),
         }
     }
@@ -178,7 +188,10 @@ impl<const D: usize> System<D> {
         }
         let memory = potential.initial_memory();
         let scratch = Column::zeros(potential.scratch_len());
-        self.members.push(Member { potential, memory, scratch });
+        let account = potential.account();
+        let flows = (potential.views().damping || account == Account::User).then_some(account);
+        let begins_tiles = potential.begins_tiles();
+        self.members.push(Member { potential, memory, scratch, flows, begins_tiles });
     }
     /// Lays out tiles and buffers after the models, the pins or the integrator changed.
     pub fn plan(&mut self, work_columns: usize) {

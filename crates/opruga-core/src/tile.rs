@@ -34,6 +34,7 @@ pub struct Weight<'a, const D: usize> {
 
 impl<const D: usize> Tile<'_, D> {
     /// Begins the forces with the weight, unless that is done.
+    #[inline]
     pub fn settle(&mut self, simd: Simd) {
         if self.weight.is_some() {
             simd.run(Settle { tile: self });

@@ -20,13 +20,14 @@ impl Room {
     }
 }
 
-/// Room that is used within a step only: forces, stages of an integrator, positions before obstacles act.
+/// Room that is used within a step only: forces, stages of an integrator, the motion before obstacles act.
 ///
 /// Systems that are stepped one after the other share one, so that it stays in the cache.
 #[derive(Debug)]
 pub struct Workspace<const D: usize> {
     forces: [Column; D],
     before: [Column; D],
+    velocity_before: [Column; D],
     stages: Vec<[Columns<D>; 2]>,
 }
 
@@ -35,6 +36,7 @@ impl<const D: usize> Default for Workspace<D> {
         Workspace {
             forces: core::array::from_fn(|_| Column::default()),
             before: core::array::from_fn(|_| Column::default()),
+            velocity_before: core::array::from_fn(|_| Column::default()),
             stages: Vec::new(),
         }
     }
@@ -48,7 +50,7 @@ impl<const D: usize> Workspace<D> {
     fn make_room(&mut self, buffers: usize, stages: usize, places: usize) {
         if self.forces[0].len() < buffers + WIDTH || self.before[0].is_empty() {
             self.forces.iter_mut().for_each(|column| column.grow(buffers + WIDTH));
-            self.before.iter_mut().for_each(|column| column.grow(TILE + WIDTH));
+            self.before.iter_mut().chain(&mut self.velocity_before).for_each(|column| column.grow(TILE + WIDTH));
         }
         if self.stages.len() < stages {
             self.stages.resize_with(stages, || [Columns::zeros(0), Columns::zeros(0)]);
@@ -62,7 +64,7 @@ impl<const D: usize> Workspace<D> {
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let stages = self.stages.iter().flatten().flat_map(|columns| &columns.0);
-        self.forces.iter().chain(&self.before).chain(stages).map(Column::heap_bytes).sum()
+        self.forces.iter().chain(&self.before).chain(&self.velocity_before).chain(stages).map(Column::heap_bytes).sum()
     }
 }
 
@@ -71,6 +73,7 @@ impl<const D: usize> System<D> {
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
         std::mem::swap(&mut self.forces, &mut workspace.forces);
         std::mem::swap(&mut self.before, &mut workspace.before);
+        std::mem::swap(&mut self.velocity_before, &mut workspace.velocity_before);
         std::mem::swap(&mut self.state.work, &mut workspace.stages);
     }
     /// Makes room for a step where nobody has lent any.

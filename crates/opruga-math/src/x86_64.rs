@@ -201,7 +201,7 @@ register! {
     select |m, yes, no| _mm256_blendv_pd(no, yes, m),
     both |a, b| _mm256_and_pd(a, b), any |m| _mm256_movemask_pd(m) != 0,
     after |a, before| _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(before, a), a),
-    first |count| _mm256_cmp_pd::<_CMP_LT_OQ>(_mm256_loadu_pd(PLACES.as_ptr()), _mm256_set1_pd(few(count))),
+    first |count| first_avx2(count),
     single |from: *const f32| _mm256_cvtps_pd(_mm_loadu_ps(from)),
     gather |from: &[f64], at: &[u32]| {
         _mm256_setr_pd(from[at[0] as usize], from[at[1] as usize], from[at[2] as usize], from[at[3] as usize])
@@ -224,6 +224,18 @@ register! {
     single |from: *const f32| _mm512_cvtps_pd(_mm256_loadu_ps(from)),
     gather |from: &[f64], at: &[u32]| gather_avx512(from, at),
     split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
+}
+
+/// A mask of the first places. A function: what is longer than a call is not inlined as a closure.
+///
+/// # Safety
+/// The processor must have AVX2.
+#[inline]
+#[target_feature(enable = "avx,avx2")]
+unsafe fn first_avx2(count: usize) -> __m256d {
+    // SAFETY: there are four places.
+    let places = unsafe { _mm256_loadu_pd(PLACES.as_ptr()) };
+    _mm256_cmp_pd::<_CMP_LT_OQ>(places, _mm256_set1_pd(few(count)))
 }
 
 /// Mantissas from √½ to √2 and exponents of positive, normal numbers.

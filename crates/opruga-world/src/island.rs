@@ -26,6 +26,8 @@ pub(crate) struct Island<const D: usize> {
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
+    /// The largest speed of the last frames [m/s]: how far a body may go within a frame that its speeds do not tell.
+    lively: f64,
     /// The states at the looks within the last frame.
     looks: Vec<Saved<D>>,
 }
@@ -55,10 +57,15 @@ impl<const D: usize> Saved<D> {
     }
 
     /// Takes another state into the same memory.
-    fn take(&mut self, system: &System<D>, time: f64) {
+    ///
+    /// The columns change hands, and the system goes on with a copy: what is kept stays as it is in memory, and is not
+    /// written there once more.
+    fn take(&mut self, system: &mut System<D>, time: f64) {
+        std::mem::swap(&mut self.x, &mut system.state.x);
+        std::mem::swap(&mut self.v, &mut system.state.v);
         for d in 0..D {
-            self.x.0[d].copy_from_slice(&system.state.x.0[d]);
-            self.v.0[d].copy_from_slice(&system.state.v.0[d]);
+            system.state.x.0[d].copy_from_slice(&self.x.0[d]);
+            system.state.v.0[d].copy_from_slice(&self.v.0[d]);
         }
         self.memory.resize(system.members.len(), Vec::new());
         for (kept, member) in self.memory.iter_mut().zip(&system.members) {
@@ -106,8 +113,14 @@ impl<const D: usize> Island<D> {
             work: Work8::default(),
             outcome: Ok(()),
             last: None,
+            lively: 0.0,
             looks: Vec::new(),
         };
+        // Nothing is known yet of how a body moves that was just made: its own size in a second is much.
+        let [low, high] = island.survey.position;
+        for d in 0..D {
+            island.lively = (high[d] - low[d]).larger(island.lively);
+        }
         island.stock = take_stock(&mut island.system);
         island
     }
@@ -171,6 +184,7 @@ impl<const D: usize> Island<D> {
 
     fn step_through(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
         self.save(plan.start);
+        self.lively = self.survey.largest_speed().larger(0.5 * self.lively);
         let swept = self.swept(plan);
         let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);
@@ -253,7 +267,7 @@ impl<const D: usize> Island<D> {
 
     fn save(&mut self, time: f64) {
         match &mut self.last {
-            Some(saved) => saved.take(&self.system, time),
+            Some(saved) => saved.take(&mut self.system, time),
             None => self.last = Some(Saved::of(&self.system, time)),
         }
     }
@@ -262,7 +276,7 @@ impl<const D: usize> Island<D> {
     fn keep_look(&mut self, number: usize) {
         let time = self.system.time;
         match self.looks.get_mut(number) {
-            Some(look) => look.take(&self.system, time),
+            Some(look) => look.take(&mut self.system, time),
             None => self.looks.push(Saved::of(&self.system, time)),
         }
     }
@@ -303,8 +317,8 @@ impl<const D: usize> Island<D> {
         let dt = f64::from(plan.substeps) * plan.h;
         for d in 0..D {
             let fall = 0.5 * self.system.gravity[d] * dt * dt;
-            // A body may deform at its own speed; the margin is a tenth of its size.
-            let margin = 0.1 * (high[d] - low[d]) + fall.abs();
+            // A body may deform at its own speed, or four times as fast; a tenth of its size is much in any case.
+            let margin = (0.1 * (high[d] - low[d])).smaller(4.0 * self.lively * dt) + fall.abs();
             low[d] += (slow[d] * dt).smaller(0.0) - margin;
             high[d] += (fast[d] * dt).larger(0.0) + margin;
         }

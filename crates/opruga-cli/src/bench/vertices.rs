@@ -23,6 +23,8 @@ pub(crate) struct Row {
     steps_per_second: f64,
     /// Frames of 16 steps, drawing included if it was asked for.
     frames_per_second: f64,
+    /// What the world keeps on the heap.
+    heap_bytes_per_vertex: f64,
     /// Time of eight square roots and divisions in the same run: what this machine can do.
     calibration_nanoseconds: f64,
 }
@@ -183,6 +185,7 @@ pub(crate) fn time(
         nanoseconds_per_vertex_step: nanoseconds,
         steps_per_second: 1.0 / step,
         frames_per_second: 1.0 / (16.0 * step + drawn),
+        heap_bytes_per_vertex: world.heap_bytes() as f64 / total as f64,
         calibration_nanoseconds: calibration(world.simd()),
     })
 }

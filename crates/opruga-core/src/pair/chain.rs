@@ -1,6 +1,7 @@
 //! Runs whose second nodes are the next ones: outlines, rows of grids. The inner loop of springs and of gas in the plane.
 
 use super::PairLaw;
+use super::lone::Lone;
 use crate::state::{Layout, Parameter, View};
 use crate::tile::{Tile, Weight};
 use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
@@ -16,12 +17,15 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
     /// Places of all pairs.
     pub(super) length: usize,
     pub(super) layout: Layout,
+    /// The pair by itself that comes next.
+    pub(super) closing: Option<Lone>,
 }
 
 /// One case of the loop.
 struct Walk<'a, 'c, 'v, 't, L, const D: usize, const BATCH: bool, const FRESH: bool, const SAME: bool> {
     chain: &'a Chain<'c, 'v, L, D>,
-    weight: Weight<'a, D>,
+    // By reference: numbers beside pointers would be read together with them, which waits until each has been written.
+    weight: &'a Weight<'a, D>,
     tile: &'a mut Tile<'t, D>,
     power: &'a mut [f64; WIDTH],
 }
@@ -33,6 +37,10 @@ impl<L: PairLaw<D>, const D: usize, const BATCH: bool, const FRESH: bool, const 
     fn run<P: Pack>(self) {
         let mut power = P::load(self.power);
         self.chain.walk::<P, BATCH, FRESH, SAME>(self.weight, self.tile, &mut power);
+        if let Some(closing) = self.chain.closing {
+            let layout = if BATCH { Layout::Batch } else { Layout::Single };
+            Lone { layout, ..closing }.add::<P, L, D>(self.chain.law, self.chain.view, self.tile, &mut power);
+        }
         power.store(self.power);
     }
 }
@@ -49,7 +57,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
     }
 
     fn add_laid_out<const BATCH: bool>(&self, simd: Simd, tile: &mut Tile<D>, power: &mut [f64; WIDTH]) {
-        let weight = Weight { mass: &Parameter::NONE, gravity: [0.0; D] };
+        let weight = &Weight { mass: &Parameter::NONE, gravity: [0.0; D] };
         if L::UNIFORM {
             tile.settle(simd);
             return simd.run(Walk::<_, _, BATCH, false, true> { chain: self, weight, tile, power });
@@ -62,7 +70,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         match tile.weight {
             Some(weight) if whole && second.repeats() && third.repeats() && weight.mass.repeats() => {
                 tile.weight = None;
-                simd.run(Walk::<_, _, BATCH, true, true> { chain: self, weight, tile, power });
+                simd.run(Walk::<_, _, BATCH, true, true> { chain: self, weight: &weight, tile, power });
             }
             _ => {
                 tile.settle(simd);
@@ -80,7 +88,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
     #[inline(always)]
     fn walk<P: Pack, const BATCH: bool, const FRESH: bool, const SAME: bool>(
         &self,
-        weight: Weight<D>,
+        weight: &Weight<D>,
         tile: &mut Tile<D>,
         power: &mut P,
     ) {

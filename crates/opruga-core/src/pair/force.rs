@@ -1,8 +1,9 @@
 //! Forces of pairs on the nodes of a tile, and sums over pairs.
 
 use super::chain::Chain;
+use super::lone::{Alone, Lone};
 use super::pull::Gather;
-use super::{PairLaw, PairTable, PairTerm, slot_of, within};
+use super::{PairLaw, PairTable, PairTerm, Run, slot_of, within};
 use crate::state::{At, Layout, OrderedSum, Parameter, View, load};
 use crate::tile::{TILE, Tile};
 use core::ops::Range;
@@ -21,8 +22,23 @@ impl PairTable {
         } else {
             &[]
         };
-        for k in 0..if numbered { mine.len() } else { self.runs.len() } {
-            let run = self.runs[if numbered { mine[k] as usize } else { k }];
+        let count = if numbered { mine.len() } else { self.runs.len() };
+        let nth = |k: usize| self.runs[if numbered { mine[k] as usize } else { k }];
+        let lone = |run: Run| Lone {
+            a: run.a as usize * stride,
+            b: run.b as usize * stride,
+            number: run.first as usize * stride,
+            layout: self.layout,
+        };
+        let mut k = 0;
+        while k < count {
+            let run = nth(k);
+            k += 1;
+            if run.count == 1 {
+                tile.settle(simd);
+                simd.run(Alone { lone: lone(run), law, view, tile, power: &mut power });
+                continue;
+            }
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
             // The places of the run whose first (second) node lies in the tile.
@@ -32,14 +48,13 @@ impl PairTable {
                 continue;
             }
             if run.b == run.a + 1 && length > WIDTH {
-                Chain { law, view, a, first, length, layout: self.layout }.add(simd, tile, &mut power);
+                // What closes an outline comes behind it, in one piece of work.
+                let closing = if k < count && nth(k).count == 1 { Some(lone(nth(k))) } else { None };
+                k += usize::from(closing.is_some());
+                Chain { law, view, a, first, length, layout: self.layout, closing }.add(simd, tile, &mut power);
                 continue;
             }
             tile.settle(simd);
-            if length == 1 {
-                simd.run(Alone { law, view, nodes: [a, b], number: first, tile, power: &mut power });
-                continue;
-            }
             if length <= WIDTH {
                 let place = [a, b, first, length];
                 simd.run(Short { table: self, law, view, place, own, other, tile, power: &mut power });
@@ -205,8 +220,22 @@ impl PairTable {
     /// Adds up a function of both ends over all pairs, with bits that do not depend on the layout.
     #[inline(always)]
     pub fn sum<P: Pack, T: PairTerm<P, D>, const D: usize>(&self, view: &View<D>, term: T) -> P {
-        let stride = self.layout.stride();
-        let mut sum = OrderedSum::<P>::new(self.layout);
+        match self.layout {
+            Layout::Single => self.sum_laid_out::<P, T, D, false>(view, term),
+            Layout::Batch => self.sum_laid_out::<P, T, D, true>(view, term),
+        }
+    }
+
+    /// The same for a layout that the compiler knows: then the partial sums stay in registers.
+    #[inline(always)]
+    fn sum_laid_out<P: Pack, T: PairTerm<P, D>, const D: usize, const BATCH: bool>(
+        &self,
+        view: &View<D>,
+        term: T,
+    ) -> P {
+        let layout = if BATCH { Layout::Batch } else { Layout::Single };
+        let stride = layout.stride();
+        let mut sum = OrderedSum::<P>::new(layout);
         for run in &self.runs {
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
@@ -216,13 +245,26 @@ impl PairTable {
             let x = Strip::<D>::new(&view.x, base, packed + to_a.max(to_b));
             let [p0, p1, p2] = term.parameters();
             let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
-            for k in (0..packed).step_by(WIDTH) {
-                let (from, to) = (lanes!(P, i => x.load::<P>(i, k + to_a)), lanes!(P, i => x.load::<P>(i, k + to_b)));
-                sum.add(k, length, term.of([p0.load(k), p1.load(k), p2.load(k)], from, to));
+            for eight in (0..packed).step_by(if BATCH { WIDTH * WIDTH } else { WIDTH }) {
+                // Side by side, every pack has a partial sum of its own among eight.
+                for j in 0..if BATCH { WIDTH } else { 1 } {
+                    let k = eight + j * WIDTH;
+                    if BATCH && k >= packed {
+                        break;
+                    }
+                    let from = lanes!(P, i => x.load::<P>(i, k + to_a));
+                    let to = lanes!(P, i => x.load::<P>(i, k + to_b));
+                    let value = term.of([p0.load(k), p1.load(k), p2.load(k)], from, to);
+                    if BATCH {
+                        sum.add_to(j, value);
+                    } else {
+                        sum.add(k, length, value);
+                    }
+                }
             }
         }
         if let Some(pull) = &self.pull {
-            match self.layout {
+            match layout {
                 Layout::Single => {
                     for k in (0..pull.loose.len()).step_by(WIDTH) {
                         let (a, b) = (&pull.ends[0][k..k + WIDTH], &pull.ends[1][k..k + WIDTH]);
@@ -245,54 +287,6 @@ impl PairTable {
             }
         }
         sum.total()
-    }
-}
-
-/// A pair by itself, of one body.
-struct Alone<'a, 'v, 't, L, const D: usize> {
-    law: L,
-    view: &'a View<'v, D>,
-    nodes: [usize; 2],
-    number: usize,
-    tile: &'a mut Tile<'t, D>,
-    power: &'a mut [f64; WIDTH],
-}
-impl<L: PairLaw<D>, const D: usize> Work for Alone<'_, '_, '_, L, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        let Alone { law, view, nodes: [a, b], number, tile, power } = self;
-        let mut d = [0.0; D];
-        let mut rate = [0.0; D];
-        for i in 0..D {
-            d[i] = view.x[i][a] - view.x[i][b];
-            if L::DAMPED {
-                rate[i] = view.v[i][a] - view.v[i][b];
-            }
-        }
-        let [p0, p1, p2] = law.parameters();
-        let parameters = if L::UNIFORM {
-            let [second, third] = law.uniform::<P>();
-            [0.0, second.to_array()[0], third.to_array()[0]]
-        } else {
-            [p0.at(number), p1.at(number), p2.at(number)]
-        };
-        let (force, dissipated) = law.force(parameters, d, rate, law.ahead(d));
-        let range = tile.range.clone();
-        for i in 0..D {
-            for (node, sign) in [(a, 1.0), (b, L::SECOND)] {
-                if range.contains(&node) {
-                    // Whole packs are written, since whole packs are read soon after.
-                    let (first, lane) = ((node - range.start) / WIDTH * WIDTH, node % WIDTH);
-                    let old = P::load(&tile.force[i][first..]);
-                    let new = P::select(P::first(lane + 1), old + P::splat(sign * force[i]), old);
-                    P::select(P::first(lane), old, new).store(&mut tile.force[i][first..]);
-                }
-            }
-        }
-        if L::DAMPED && range.contains(&a) {
-            power[0] += dissipated;
-        }
     }
 }
 

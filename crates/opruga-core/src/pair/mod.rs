@@ -11,6 +11,7 @@
 
 mod chain;
 mod force;
+mod lone;
 mod pull;
 
 use crate::state::{Layout, Parameter};
@@ -171,6 +172,7 @@ impl PairTable {
     }
 
     /// Where the runs of a tile begin.
+    #[inline]
     fn runs_from(&self, tile: usize) -> usize {
         self.tile_start[tile.min(self.tile_start.len() - 1)] as usize
     }

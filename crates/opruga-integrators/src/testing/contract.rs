@@ -63,8 +63,9 @@ fn every_kind_is_registered_once() {
 struct Witness(Mutex<Vec<(f64, f64, f64)>>);
 
 impl Contacts<2> for Witness {
-    fn resolve(&self, _simd: Simd, moved: &mut Moved<2>) {
+    fn resolve(&self, _simd: Simd, moved: &mut Moved<2>) -> u8 {
         self.0.lock().unwrap().push((moved.before[0][0], moved.x.0[0][0], moved.time));
+        0
     }
 }
 

@@ -48,11 +48,7 @@ impl<const D: usize> PairLaw<D> for EdgePush<'_> {
     }
     #[inline(always)]
     fn uniform<P: Pack>(&self) -> [P; 2] {
-        // One number is read as one number: eight that were just written one by one would have to be waited for.
-        let gauge = match self.layout {
-            Layout::Single => P::splat(self.gauge[0]),
-            Layout::Batch => P::load(self.gauge),
-        };
+        let gauge: P = of_bodies(self.layout, self.gauge);
         [gauge * P::splat(0.5), gauge * P::splat(-0.5)]
     }
     #[inline(always)]
@@ -88,8 +84,19 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
     }
 }
 
+/// One number of each body. Of one body it is read as one number: eight that were just written one by one would have to be
+/// waited for.
+#[inline(always)]
+fn of_bodies<P: Pack>(layout: Layout, numbers: &[f64]) -> P {
+    match layout {
+        Layout::Single => P::splat(numbers[0]),
+        Layout::Batch => P::load(numbers),
+    }
+}
+
 /// Gauge pressure times the area vectors of the nodes of a tile.
 struct Push<'a, 't, const D: usize> {
+    layout: Layout,
     gauge: &'a [f64],
     area: &'a [f64],
     tile: &'a mut Tile<'t, D>,
@@ -98,7 +105,7 @@ impl<const D: usize> Work for Push<'_, '_, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let (gauge, tile) = (P::load(self.gauge), self.tile);
+        let (gauge, tile): (P, _) = (of_bodies(self.layout, self.gauge), self.tile);
         let places = self.area.len() / D;
         for place in tile.range.clone().step_by(WIDTH) {
             let k = place - tile.range.start;
@@ -144,7 +151,7 @@ impl Boundary {
     ) {
         match self {
             Boundary::Plane(edges) => edges.add_force(simd, EdgePush { layout: view.layout, gauge }, view, tile),
-            Boundary::Space(_) => simd.run(Push { gauge, area, tile }),
+            Boundary::Space(_) => simd.run(Push { layout: view.layout, gauge, area, tile }),
         }
     }
 

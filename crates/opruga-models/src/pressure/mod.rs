@@ -213,11 +213,6 @@ impl<const D: usize> Potential<D> for Pressure {
                 scratch[2 * WIDTH + body] = amount;
                 scratch[3 * WIDTH + body] = f64::from(limited);
             }
-            if self.layout == Layout::Single {
-                let (gauge, amount) = (scratch[WIDTH], scratch[2 * WIDTH]);
-                scratch[WIDTH..2 * WIDTH].fill(gauge);
-                scratch[2 * WIDTH..3 * WIDTH].fill(amount);
-            }
         }
         Ok(())
     }
