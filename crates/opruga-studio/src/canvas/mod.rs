@@ -2,6 +2,7 @@
 
 mod brush;
 mod camera;
+mod detail;
 mod handles;
 mod look;
 mod outline;
