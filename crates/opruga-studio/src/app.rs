@@ -53,6 +53,9 @@ pub struct Studio {
     rate: f64,
     /// What draws, and on which device, where there is a choice.
     drawn_by: Option<[String; 2]>,
+    /// Where what is done is kept against the loss of the window.
+    #[cfg(not(target_arch = "wasm32"))]
+    rescue: Option<crate::rescue::Rescue>,
 }
 
 impl Studio {
@@ -83,7 +86,15 @@ impl Studio {
             told: (String::new(), 0.0),
             rate: 60.0,
             drawn_by: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            rescue: None,
         })
+    }
+
+    /// Keeps what is done there, against the loss of the window.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn keep_at(&mut self, rescue: crate::rescue::Rescue) {
+        self.rescue = Some(rescue);
     }
 
     /// Goes on in another context, on another device: pictures that were handed to the last one are handed over anew.
@@ -177,6 +188,10 @@ impl Studio {
         });
         self.windows(ui, &shown, &mut asks);
         self.keeping.poll();
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(rescue) = &mut self.rescue {
+            rescue.poll(&self.link);
+        }
         for ask in asks {
             if let Request::Show(show) = &ask {
                 if show.quantity != self.show.quantity {

@@ -97,6 +97,8 @@ pub enum Said {
     AddressTooLarge(u64),
     /// The browser keeps its address.
     AddressStays,
+    /// The window before was lost; what was done in it is saved in this file.
+    WindowLost(String),
 }
 
 impl core::fmt::Display for Said {

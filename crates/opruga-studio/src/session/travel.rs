@@ -38,6 +38,13 @@ impl Session {
         self.pacing.rest();
     }
 
+    /// Goes to the end of the scene, frame by frame, as if it had been there already.
+    pub fn go_to_the_end(&mut self) {
+        let end = self.engine.shown(&self.show).seconds / self.engine.frame_seconds();
+        self.latest = self.latest.max(end.round() as u64);
+        self.seek(self.latest);
+    }
+
     /// What is done now replaces what was recorded later: the future is written anew from here.
     pub(super) fn branch(&mut self) -> Result<(), Said> {
         let now = self.engine.frames();
