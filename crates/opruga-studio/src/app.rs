@@ -146,7 +146,7 @@ impl Studio {
         self.rate += 0.05 * (1.0 / seconds - self.rate);
         let mut asks = Vec::new();
         self.shortcuts(ui, &shown, &mut asks);
-        self.dropped(ui, &mut asks);
+        self.dropped(ui, &shown, &mut asks);
         let words = self.language;
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
         let narrow = ui.available_width() <= NARROW;
@@ -420,9 +420,14 @@ impl Studio {
     }
 
     /// Files that were dropped on the window or chosen: scenes are opened, shapes become bodies.
-    fn dropped(&mut self, ui: &Ui, asks: &mut Vec<Request>) {
+    fn dropped(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
         for arrived in self.hand.arrived(ui) {
             match arrived {
+                // In the middle of what is seen, and not so large that nothing else is.
+                Arrived::Request(Request::Take(shape, ..)) => {
+                    let size = opruga::draw::nice_length(0.3 * self.canvas.room(shown));
+                    asks.push(Request::Take(shape, self.canvas.middle(shown), size));
+                }
                 Arrived::Request(request) => asks.push(request),
                 Arrived::Told(severity, said) => self.keeping.tell(severity, said),
             }

@@ -22,6 +22,8 @@ pub enum Step {
     Shape(&'static str),
     /// A body was taken away.
     Delete,
+    /// Another scene was opened instead of the one of this name.
+    Open(String),
     /// A point was let go.
     Unpin,
     /// Everything that was recorded was taken back.

@@ -192,6 +192,7 @@ words! {
     step_delete: "delete", "brisanje";
     step_unpin: "free a point", "oslobađanje točke";
     step_reset: "reset", "povratak na početak";
+    step_open: "back to", "natrag na";
     step_compare: "side by side", "usporedba";
     undone: "Undone:", "Poništeno:";
     redone: "Done again:", "Ponovljeno:";

@@ -119,6 +119,12 @@ impl Canvas {
         if shown.dimension == 3 { self.space.eye().map_or([0.0; 3], |eye| eye.target) } else { self.flat.middle() }
     }
 
+    /// The shorter side of what is seen [m].
+    pub fn room(&self, shown: &Shown) -> f64 {
+        let side = self.rect.map_or(600.0, |rect| f64::from(rect.width().min(rect.height())));
+        if shown.dimension == 3 { self.space.eye().map_or(2.0, |eye| eye.radius) } else { self.flat.metres(side) }
+    }
+
     /// Where a point of the scene is in the window.
     pub fn on_screen(&self, shown: &Shown, point: [f64; 3]) -> Option<Pos2> {
         let rect = self.rect?;

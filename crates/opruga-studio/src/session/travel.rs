@@ -160,7 +160,10 @@ impl Session {
     }
 
     pub(super) fn step_back(&mut self) -> Result<(), Said> {
-        let Some(past) = self.undo.last().cloned() else { return Ok(()) };
+        let Some(past) = self.undo.last().cloned() else {
+            self.open_before();
+            return Ok(());
+        };
         let present = self.past(past.label.clone());
         self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
         self.pins = past.pins;

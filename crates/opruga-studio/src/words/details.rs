@@ -1,10 +1,19 @@
 //! What models, integrators, obstacles and the world say in English, in Croatian: sentences with gaps for names and numbers.
 
-use super::sentences::SENTENCES;
+use super::sentences::{PARTS, SENTENCES};
 
 /// The Croatian of a sentence, where it is one of these.
 pub(super) fn croatian(english: &str) -> Option<String> {
-    SENTENCES.iter().find_map(|(pattern, wanted)| {
+    found(SENTENCES, english)
+}
+
+/// The same of a part of a sentence, or of a whole one.
+pub(super) fn part(english: &str) -> Option<String> {
+    found(PARTS, english).or_else(|| croatian(english))
+}
+
+fn found(table: &[(&str, &str)], english: &str) -> Option<String> {
+    table.iter().find_map(|(pattern, wanted)| {
         let mut parts = matched(pattern, english)?.into_iter();
         let mut out = String::new();
         let mut rest = *wanted;
@@ -50,7 +59,7 @@ fn matched(pattern: &str, text: &str) -> Option<Vec<String>> {
     let filled = |end: usize| {
         let own = &text[..end];
         let own = match kind {
-            Gap::Sentence => croatian(own)?,
+            Gap::Sentence => part(own)?,
             Gap::Value if !is_value(own) => return None,
             Gap::Value | Gap::Name => own.to_string(),
         };
@@ -93,7 +102,7 @@ mod tests {
             }
             all
         };
-        for (english, croatian) in SENTENCES {
+        for (english, croatian) in SENTENCES.iter().chain(PARTS) {
             assert_eq!(gaps(english), gaps(croatian), "{english}");
             assert_ne!(english, croatian);
         }
@@ -112,6 +121,7 @@ mod tests {
         // A sentence may be put together of several: the words between its gaps are what is looked for.
         let missing: Vec<&str> = SENTENCES
             .iter()
+            .chain(PARTS)
             .flat_map(|(english, _)| {
                 english.split("{~}").flat_map(|part| part.split("{}")).flat_map(|part| part.split("{#}"))
             })

@@ -29,6 +29,7 @@ impl Language {
             Step::Duplicate => self.step_duplicate().into(),
             Step::Move => self.step_move().into(),
             Step::Delete => self.step_delete().into(),
+            Step::Open(name) => format!("{} {name}", self.step_open()),
             Step::Unpin => self.step_unpin().into(),
             Step::Reset => self.step_reset().into(),
             Step::Compare => self.step_compare().into(),

@@ -85,7 +85,7 @@ fn error(line: &str) -> Option<String> {
 /// A line below an error.
 fn beside(line: &str, english: &str, croatian: &str) -> Option<String> {
     let rest = line.strip_prefix(english)?;
-    Some(format!("{croatian}{}", details::croatian(rest).unwrap_or_else(|| rest.into())))
+    Some(format!("{croatian}{}", details::part(rest).unwrap_or_else(|| rest.into())))
 }
 
 #[cfg(test)]

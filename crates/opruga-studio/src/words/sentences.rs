@@ -152,9 +152,9 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          {} m; dopušteno: {} m",
     ),
     (
-        "`{}` did not converge in {~} at t = {} s: the forces are out of balance by {} N, and the last correction was \
+        "`{}` did not converge in {~} at t = {}: the forces are out of balance by {} N, and the last correction was \
          {} m; allowed: {} m",
-        "`{}` nije konvergirao ({~}) u t = {} s: sile su izvan ravnoteže za {} N, a zadnji je popravak {} m; dopušteno: \
+        "`{}` nije konvergirao ({~}) u t = {}: sile su izvan ravnoteže za {} N, a zadnji je popravak {} m; dopušteno: \
          {} m",
     ),
     // The world.
@@ -198,7 +198,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "tijelo `{}` slijedi integrator prizora: integrator.{}",
     ),
     ("there is no collider {}; allowed: {}", "nema prepreke {}; dopušteno: {}"),
-    ("there is no body `{}`; did you mean `{}`?", "nema tijela `{}`; misliš li `{}`?"),
+    ("there is no body {}; did you mean `{}`?", "nema tijela {}; misliš li `{}`?"),
     ("there is no body `{}`", "nema tijela `{}`"),
     ("`{}` is {#}; allowed: {~}", "`{}` je {#}; dopušteno: {~}"),
     ("is {#}; allowed: {~}", "je {#}; dopušteno: {~}"),
@@ -291,12 +291,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          stotinu i za desetinu",
     ),
     (
-        "a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did not end; \
-         now the cell farthest from its volume is {} of body `{}`, J = {}; hint: another start, or a material that pushes such \
-         cells back (`fixed_corotated`)",
+        "a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did not \
+         end{~}; hint: another start, or a material that pushes such cells back (`fixed_corotated`)",
         "tijelo je mirovalo spljošteno, izvrnuto ili presavijeno, u ravnoteži koju ni poremećaj do desetine njegove veličine nije \
-         prekinuo; ćelija najdalje od svojeg obujma sada je {} tijela `{}`, J = {}; savjet: drukčiji početak, ili materijal koji \
-         takve ćelije vraća (`fixed_corotated`)",
+         prekinuo{~}; savjet: drukčiji početak, ili materijal koji takve ćelije vraća (`fixed_corotated`)",
     ),
     (
         "a gas was held at its `largest_pressure`, counted per substep and body",
@@ -308,9 +306,32 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "komora nije obuhvaćala ništa ili je bila izvrnuta, brojano po podkoraku i tijelu: njezin je plin otvara kako kaže opis; \
          obris koji je prošao kroz sebe može takav ostati",
     ),
-    // Parts of sentences.
+    // What stands in a scene.
+    ("`{}` is missing in `{}`", "`{}` nedostaje u `{}`"),
+    ("`{}` is missing", "`{}` nedostaje"),
+    ("there is no field `{}` in `{}`", "nema polja `{}` u `{}`"),
+    ("`{}` is {#}", "`{}` je {#}"),
+    ("`{}` is {~}", "`{}` je {~}"),
+    // Files.
+    ("the file `{}` is not there", "datoteke `{}` nema"),
+    ("{} cannot be read", "{} se ne može pročitati"),
+];
+
+/// Parts of sentences, which say nothing by themselves, and what stands below an error.
+pub(super) const PARTS: &[(&str, &str)] = &[
     ("is turned inside out", "je izvrnuta"),
     ("has no volume", "nema obujma"),
+    (
+        "; now the cell farthest from its volume is {} of body `{}`, J = {}",
+        "; ćelija najdalje od svojeg obujma je {} tijela `{}`, J = {}",
+    ),
+    ("a number", "broj"),
+    ("a whole number", "cijeli broj"),
+    ("a text", "tekst"),
+    ("a list", "popis"),
+    ("a table", "tablica"),
+    ("a truth value", "istina ili laž"),
+    ("a date", "datum"),
     ("gained", "previše"),
     ("lost", "premalo"),
     ("1 rigid mode", "jedan kruti pomak"),
@@ -338,16 +359,5 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("a list of finite numbers", "popis konačnih brojeva"),
     ("a list of whole numbers from 0", "popis cijelih brojeva od 0"),
     ("a list of points of {} finite numbers", "popis točaka od po {} konačnih brojeva"),
-    // What stands in a scene.
-    ("`{}` is a number", "`{}` je broj"),
-    ("`{}` is a whole number", "`{}` je cijeli broj"),
-    ("`{}` is a text", "`{}` je tekst"),
-    ("`{}` is a list", "`{}` je popis"),
-    ("`{}` is a table", "`{}` je tablica"),
-    ("`{}` is missing", "`{}` nedostaje"),
     ("did you mean `{}`?", "misliš li `{}`?"),
-    ("`{}` is {#}", "`{}` je {#}"),
-    // Files.
-    ("the file `{}` is not there", "datoteke `{}` nema"),
-    ("{} cannot be read", "{} se ne može pročitati"),
 ];
