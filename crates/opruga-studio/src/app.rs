@@ -53,6 +53,9 @@ pub struct Studio {
     rate: f64,
     /// What draws, and on which device, where there is a choice.
     drawn_by: Option<[String; 2]>,
+    /// Where what is done is kept against the loss of the window.
+    #[cfg(not(target_arch = "wasm32"))]
+    rescue: Option<crate::rescue::Rescue>,
 }
 
 impl Studio {
@@ -83,7 +86,15 @@ impl Studio {
             told: (String::new(), 0.0),
             rate: 60.0,
             drawn_by: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            rescue: None,
         })
+    }
+
+    /// Keeps what is done there, against the loss of the window.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn keep_at(&mut self, rescue: crate::rescue::Rescue) {
+        self.rescue = Some(rescue);
     }
 
     /// Goes on in another context, on another device: pictures that were handed to the last one are handed over anew.
@@ -135,7 +146,7 @@ impl Studio {
         self.rate += 0.05 * (1.0 / seconds - self.rate);
         let mut asks = Vec::new();
         self.shortcuts(ui, &shown, &mut asks);
-        self.dropped(ui, &mut asks);
+        self.dropped(ui, &shown, &mut asks);
         let words = self.language;
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
         let narrow = ui.available_width() <= NARROW;
@@ -177,6 +188,10 @@ impl Studio {
         });
         self.windows(ui, &shown, &mut asks);
         self.keeping.poll();
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(rescue) = &mut self.rescue {
+            rescue.poll(&self.link);
+        }
         for ask in asks {
             if let Request::Show(show) = &ask {
                 if show.quantity != self.show.quantity {
@@ -405,9 +420,14 @@ impl Studio {
     }
 
     /// Files that were dropped on the window or chosen: scenes are opened, shapes become bodies.
-    fn dropped(&mut self, ui: &Ui, asks: &mut Vec<Request>) {
+    fn dropped(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
         for arrived in self.hand.arrived(ui) {
             match arrived {
+                // In the middle of what is seen, and not so large that nothing else is.
+                Arrived::Request(Request::Take(shape, ..)) => {
+                    let size = opruga::draw::nice_length(0.3 * self.canvas.room(shown));
+                    asks.push(Request::Take(shape, self.canvas.middle(shown), size));
+                }
                 Arrived::Request(request) => asks.push(request),
                 Arrived::Told(severity, said) => self.keeping.tell(severity, said),
             }

@@ -4,6 +4,7 @@ use crate::said::Said;
 use crate::session::Request;
 use opruga::io::{Files, scene};
 use std::path::Path;
+use toml_edit::{Array, DocumentMut, InlineTable, Value};
 
 /// Endings of files that become bodies, with the fields of their shape.
 const SHAPES: [(&str, &str, bool); 6] = [
@@ -15,7 +16,7 @@ const SHAPES: [(&str, &str, bool); 6] = [
     ("glb", "size = 1.0", true),
 ];
 
-/// What is asked for: a scene to open, or a scene with the shape of the file in it. A file that is no scene and no shape,
+/// What is asked for: a scene to open, or the shape of the file to be taken into the scene. A file that is no scene and no shape,
 /// or too large to be one, is refused before it is read.
 ///
 /// # Errors
@@ -46,7 +47,44 @@ pub(crate) fn request(
     if file.contains(['"', '\\']) {
         return Err(Said::NameOfFile(file.into()));
     }
-    Ok(Request::OpenAround { name, text: around(file, fields, *space, &ending), files: files() })
+    let (text, space) = (around(file, fields, *space, &ending), *space);
+    Ok(Request::Take(Shape { name, file: file.into(), text, space, files: files() }, [0.0; 3], 1.0))
+}
+
+/// A shape from a file.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// Its name.
+    pub name: String,
+    /// Its file.
+    pub file: String,
+    /// A scene around it.
+    pub text: String,
+    /// Whether it is one of space.
+    pub space: bool,
+    /// Where its file is.
+    pub files: Files,
+}
+
+impl Shape {
+    /// Its body in a scene that others are in, of this size [m], with its middle at a point, from a file that is called so there.
+    pub fn body(&self, file: &str, middle: [f64; 3], size: f64) -> Option<InlineTable> {
+        let document: DocumentMut = self.text.parse().ok()?;
+        let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
+        body.insert("name", self.name.as_str().into());
+        let hundredths = |x: &f64| Value::from((100.0 * x).round() / 100.0);
+        body.insert(
+            "position",
+            Array::from_iter(middle[..if self.space { 3 } else { 2 }].iter().map(hundredths)).into(),
+        );
+        let shape = body.get_mut("shape")?.as_inline_table_mut()?;
+        shape.insert("file", file.into());
+        shape.insert("size", size.into());
+        if shape.contains_key("spacing") {
+            shape.insert("spacing", (0.05 * size).into());
+        }
+        Some(body)
+    }
 }
 
 /// A scene with one shape over a floor.

@@ -18,11 +18,16 @@ pub mod app;
 pub mod canvas;
 pub mod dropping;
 mod hand;
+pub mod handing;
 pub mod measure;
 pub mod panels;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod rescue;
 pub mod runner;
 pub mod share;
 pub mod theme;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod watch;
 pub mod words;
 pub mod work;
 

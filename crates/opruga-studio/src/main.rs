@@ -5,9 +5,14 @@ use opruga::io::recording::{MAGIC, Recording};
 use opruga::io::{Files, scene};
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
+use opruga_studio::rescue::{self, Rescue};
+use opruga_studio::said::Said;
 use opruga_studio::session::{Request, Session};
-use std::path::Path;
+use opruga_studio::shown::Severity;
+use opruga_studio::watch;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 fn main() -> ExitCode {
@@ -24,8 +29,21 @@ fn main() -> ExitCode {
         );
         return ExitCode::SUCCESS;
     }
+    let kept = std::env::var_os(watch::KEPT);
+    if kept.is_none() && measured.is_none() {
+        return watch::run(&std::env::args_os().skip(1).collect::<Vec<_>>());
+    }
+    if kept.is_some() {
+        watch::end_with_the_watch();
+    }
+    let kept = kept.filter(|path| !path.is_empty()).map(PathBuf::from);
     let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
-    let session = match open(&wanted) {
+    let opened = match kept.as_ref().filter(|kept| kept.exists()).map(|kept| rescue::read(kept)) {
+        Some(shared) => shared.and_then(|shared| rescue::resume(&shared, options())).map_err(|said| said.to_string()),
+        None => open(&wanted),
+    };
+    let lost = std::env::var(watch::SAVED).ok();
+    let session = match opened {
         Ok(session) => session,
         Err(errors) => {
             eprintln!("{errors}");
@@ -43,15 +61,25 @@ fn main() -> ExitCode {
     if measured.is_some() {
         measure::listen();
     }
+    let opened = Arc::new(AtomicBool::new(false));
+    let is_open = Arc::clone(&opened);
     let outcome = eframe::run_native(
         "Opruga Studio",
         options,
         Box::new(move |creation| {
-            let studio = Studio::new(session, &creation.egui_ctx)?;
+            let mut studio = Studio::new(session, &creation.egui_ctx)?;
+            is_open.store(true, Ordering::Relaxed);
             if let Some(count) = measured {
                 return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }
-            studio.ask(Request::Play(true));
+            match lost {
+                // Time stands where the window before was lost.
+                Some(saved) => studio.tell(Severity::Refused, Said::WindowLost(saved)),
+                None => studio.ask(Request::Play(true)),
+            }
+            if let Some(kept) = kept {
+                studio.keep_at(Rescue::at(kept));
+            }
             Ok(Box::new(studio))
         }),
     );
@@ -63,10 +91,15 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
+        // What watches over it saves what was done.
+        Err(error) if opened.load(Ordering::Relaxed) => {
+            eprintln!("the window has failed: {error}");
+            ExitCode::from(watch::LOST)
+        }
         Err(error) => {
             eprintln!("error[studio.no_window]: no window can be opened: {error}");
             eprintln!("  = hint: `opruga run {wanted}` runs without a window and writes pictures");
-            ExitCode::from(5)
+            ExitCode::from(watch::NO_WINDOW)
         }
     }
 }
@@ -74,7 +107,7 @@ fn main() -> ExitCode {
 /// Opens a scene file, a scene that comes with the program, or a recorded run.
 fn open(wanted: &str) -> Result<Session, String> {
     let path = Path::new(wanted);
-    let options = Options { threads: threads(), ..Options::default() };
+    let options = options();
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
         return Session::open(wanted, text, opruga::scenes::files(), options).map_err(|said| said.to_string());
     }
@@ -98,6 +131,7 @@ fn is_recording(path: &Path) -> bool {
 }
 
 /// One processor is for the interface.
-fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8))
+fn options() -> Options {
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8));
+    Options { threads, ..Options::default() }
 }

@@ -22,6 +22,8 @@ pub enum Step {
     Shape(&'static str),
     /// A body was taken away.
     Delete,
+    /// Another scene was opened instead of the one of this name.
+    Open(String),
     /// A point was let go.
     Unpin,
     /// Everything that was recorded was taken back.
@@ -97,6 +99,8 @@ pub enum Said {
     AddressTooLarge(u64),
     /// The browser keeps its address.
     AddressStays,
+    /// The window before was lost; what was done in it is saved in this file.
+    WindowLost(String),
 }
 
 impl core::fmt::Display for Said {

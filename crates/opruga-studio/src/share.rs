@@ -1,5 +1,5 @@
-//! A whole scene in an address: its text and the files that it names, compressed, as letters behind the `#`, which browsers
-//! keep to themselves.
+//! A whole scene in one piece: its text and the files that it names, compressed; in an address as letters behind the `#`, which
+//! browsers keep to themselves.
 
 use crate::said::Said;
 use flate2::read::DeflateDecoder;
@@ -27,18 +27,46 @@ pub struct Shared {
     pub files: Files,
 }
 
-/// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
+/// A scene in one piece. Files that come with the program are left out.
 ///
 /// # Errors
-/// A sentence for the person where the scene is too large for an address.
-pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
+/// A sentence for the person where there is no memory for it.
+pub fn pack(scene: &Shared) -> Result<Vec<u8>, Said> {
     let known = opruga::scenes::files();
     let own = scene.files.held_files().filter(|(name, bytes)| known.held_file(name) != Some(*bytes));
     let files: Map<String, Value> = own.map(|(name, bytes)| (name.into(), base64::encode(bytes).into())).collect();
     let whole = json!({ "name": scene.name, "text": scene.text, "files": files }).to_string();
     let mut encoder = DeflateEncoder::new(Vec::new(), flate2::Compression::best());
-    let packed = encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|e| e.to_string())?;
-    let letters = base64::encode(&packed).trim_end_matches('=').replace('+', "-").replace('/', "_");
+    Ok(encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|e| e.to_string())?)
+}
+
+/// The scene of [`pack`].
+///
+/// # Errors
+/// A sentence for the person: the scene is not whole, or larger than 64 MiB.
+pub fn unpack(packed: &[u8]) -> Result<Shared, Said> {
+    let cut = || Said::AddressCut;
+    let mut whole = Vec::new();
+    DeflateDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut whole).map_err(|_| cut())?;
+    if whole.len() as u64 > MOST_BYTES {
+        return Err(Said::AddressTooLarge(MOST_BYTES));
+    }
+    let whole: Value = serde_json::from_slice(&whole).map_err(|_| cut())?;
+    let word = |key: &str| whole[key].as_str().map(String::from).ok_or_else(cut);
+    let mut own = Vec::new();
+    for (name, letters) in whole["files"].as_object().ok_or_else(cut)? {
+        let bytes = letters.as_str().and_then(|letters| base64::decode(letters.as_bytes())).ok_or_else(cut)?;
+        own.push((name.clone(), Arc::from(bytes)));
+    }
+    Ok(Shared { name: word("name")?, text: word("text")?, files: opruga::scenes::files().with(own) })
+}
+
+/// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
+///
+/// # Errors
+/// A sentence for the person where the scene is too large for an address.
+pub fn to_fragment(scene: &Shared) -> Result<String, Said> {
+    let letters = base64::encode(&pack(scene)?).trim_end_matches('=').replace('+', "-").replace('/', "_");
     if letters.len() > MOST_LETTERS {
         return Err(Said::AddressTooLong(letters.len(), MOST_LETTERS));
     }
@@ -63,19 +91,6 @@ pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Said> {
         let shared = Shared { name: fragment.into(), text: text.into(), files: opruga::scenes::files() };
         return Ok(Some(shared));
     };
-    let cut = || Said::AddressCut;
-    let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or_else(cut)?;
-    let mut whole = Vec::new();
-    DeflateDecoder::new(packed.as_slice()).take(MOST_BYTES + 1).read_to_end(&mut whole).map_err(|_| cut())?;
-    if whole.len() as u64 > MOST_BYTES {
-        return Err(Said::AddressTooLarge(MOST_BYTES));
-    }
-    let whole: Value = serde_json::from_slice(&whole).map_err(|_| cut())?;
-    let word = |key: &str| whole[key].as_str().map(String::from).ok_or_else(cut);
-    let mut own = Vec::new();
-    for (name, letters) in whole["files"].as_object().ok_or_else(cut)? {
-        let bytes = letters.as_str().and_then(|letters| base64::decode(letters.as_bytes())).ok_or_else(cut)?;
-        own.push((name.clone(), Arc::from(bytes)));
-    }
-    Ok(Some(Shared { name: word("name")?, text: word("text")?, files: opruga::scenes::files().with(own) }))
+    let packed = base64::decode(letters.replace('-', "+").replace('_', "/").as_bytes()).ok_or(Said::AddressCut)?;
+    unpack(&packed).map(Some)
 }

@@ -1,8 +1,11 @@
 //! Every word of the interface, in every language, in one place.
 
 mod croatian;
+mod details;
 mod messages;
 mod named;
+mod scene_errors;
+mod sentences;
 
 pub use named::Part;
 
@@ -80,6 +83,15 @@ words! {
     draw_hint: "Draw a closed outline: it becomes a body", "Nacrtaj zatvoreni obris: postaje tijelo";
     add: "Add", "Dodaj";
     add_hint: "Shapes that become bodies", "Oblici koji postaju tijela";
+    of_ball: "ball", "lopta";
+    of_big_ball: "big ball", "velika lopta";
+    of_square: "square", "kvadrat";
+    of_triangle: "triangle", "trokut";
+    of_jelly: "jelly", "žele";
+    of_rope: "rope", "uže";
+    of_balloon: "balloon", "balon";
+    of_tube: "tube", "zračnica";
+    of_cloth: "cloth", "tkanina";
     fit: "Fit", "Sve u kadar";
     fit_hint: "Show everything", "Prikaži sve";
     colour: "Colour", "Boja";
@@ -180,6 +192,7 @@ words! {
     step_delete: "delete", "brisanje";
     step_unpin: "free a point", "oslobađanje točke";
     step_reset: "reset", "povratak na početak";
+    step_open: "back to", "natrag na";
     step_compare: "side by side", "usporedba";
     undone: "Undone:", "Poništeno:";
     redone: "Done again:", "Ponovljeno:";

@@ -471,15 +471,30 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     assert!(refusal(&mut session).contains("dimension"));
     assert_eq!((session.hash(), session.name()), (hash, name.as_str()));
     let svg = b"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\"><path d=\"M0 0 H10 V10 H0 Z\"/></svg>";
-    session.handle(take(&put("square.svg", svg)).expect("a shape"));
+    // A shape of the plane comes into a scene of the plane, also on the way, and again under another name.
+    for count in 2..4 {
+        session.handle(take(&put("square.svg", svg)).expect("a shape"));
+        no_refusal(&mut session);
+        assert_eq!((session.shown().bodies.len(), session.name()), (count, name.as_str()));
+        pass(&mut session, 3);
+    }
+    let squares = session.shown().bodies.iter().filter(|body| body.name.starts_with("square")).count();
+    assert_eq!(squares, 2);
+    let other = String::from_utf8_lossy(svg).replace("H10 V10", "H10 V5");
+    session.handle(take(&put("square.svg", other.as_bytes())).expect("a shape"));
     no_refusal(&mut session);
-    assert_eq!(session.name(), "square");
-    pass(&mut session, 3);
+    assert!(session.saved().contains("square-2.svg"), "another file of the same name");
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert_eq!(session.shown().bodies.len(), 3);
+    // One of space opens a scene of its own, from which there is a way back.
     let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     session.handle(take(&put("four.obj", obj)).expect("a shape"));
     no_refusal(&mut session);
     pass(&mut session, 3);
     assert_eq!(session.shown().dimension, 3);
+    session.handle(Request::Undo);
+    assert_eq!((session.shown().bodies.len(), session.name()), (3, name.as_str()));
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 
@@ -493,6 +508,29 @@ fn a_surface_that_is_dropped_takes_as_many_substeps_as_it_needs() {
     assert_eq!(session.name(), "spot");
     assert!(session.shown().substeps > 96, "more than it begins with");
     pass(&mut session, 2);
+}
+
+#[test]
+fn from_a_scene_that_was_opened_there_is_a_way_back_to_what_was_done_in_the_one_before() {
+    let mut session = open("ball");
+    pull(&mut session, 12);
+    let (hash, saved) = (session.hash(), session.saved());
+    let text = opruga::scenes::find("pressures").expect("a scene");
+    let request = Request::Open { name: "pressures".into(), text: text.into(), files: Files::default() };
+    session.handle(request.clone());
+    pass(&mut session, 3);
+    assert_eq!(session.name(), "pressures");
+    assert_eq!(session.shown().undo, Some(opruga_studio::said::Step::Open("ball".into())));
+    session.handle(Request::Undo);
+    assert_eq!((session.name(), session.hash(), session.saved()), ("ball", hash, saved));
+    assert!(!session.is_moving());
+    session.handle(Request::Seek(3));
+    arrive(&mut session);
+    assert_eq!(session.frames(), 3);
+    // Where nothing was done there is nothing to come back to.
+    let mut fresh = open("ball");
+    fresh.handle(request);
+    assert_eq!(fresh.shown().undo, None);
 }
 
 /// What a message offers for a scene that was not opened changes that scene, and not the one that is open.

@@ -347,6 +347,21 @@ fn a_window_without_size_a_crowd_and_a_phone_are_shown_without_harm() {
 }
 
 #[test]
+fn a_hundred_thousand_vertices_are_drawn_with_no_more_triangles_than_can_be_seen() {
+    let mut window = Window::open("giant-ring", SIZE);
+    assert_eq!(window.shown().picture.bodies[0].positions.len(), 100_000);
+    window.frames(2);
+    let output = window.harness.output();
+    let corners = |primitive: egui::epaint::ClippedPrimitive| match primitive.primitive {
+        egui::epaint::Primitive::Mesh(mesh) => mesh.vertices.len(),
+        egui::epaint::Primitive::Callback(_) => 0,
+    };
+    let drawn = window.harness.ctx.tessellate(output.shapes.clone(), output.pixels_per_point);
+    let count: usize = drawn.into_iter().map(corners).sum();
+    assert!(count < 30_000, "{count} corners");
+}
+
+#[test]
 fn every_word_has_letters_to_be_drawn_with_and_languages_change() {
     let mut window = Window::open("ball", SIZE);
     window.click("Hrvatski");

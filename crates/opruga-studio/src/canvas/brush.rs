@@ -1,14 +1,22 @@
 //! Bodies as triangles, written straight into one mesh: the interface has only to copy them, and the arrays are kept from
 //! picture to picture.
 
+use super::detail::Detail;
 use egui::epaint::{Vertex, WHITE_UV};
-use egui::{Color32, Mesh, Painter, Pos2, Shape, Vec2};
+use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Vec2};
 use std::sync::Arc;
 
 /// Points of a line nearer to one another than this are drawn as one; with hard borders, in a crowd, nearer than that [points of
 /// the screen].
 const JOINED: f32 = 0.4;
 const JOINED_HARD: f32 = 1.5;
+/// Points of a line above which it is looked at whether it is straight in places, and what may lie beside it then [points of the
+/// screen].
+const LONG: usize = 256;
+const BESIDE: f32 = 0.1;
+const BESIDE_HARD: f32 = 0.4;
+/// By how much its colours may differ then, of 255.
+const ALIKE: u8 = 6;
 /// The most by which a corner sticks out, as a multiple of half the width.
 const MOST_MITRE: f32 = 2.0;
 
@@ -19,13 +27,18 @@ pub(crate) struct Brush {
     shown: Option<Arc<Mesh>>,
     /// The width of a soft border; 0 for hard ones [points of the screen].
     soft: f32,
+    /// What is seen at all.
+    screen: Option<Rect>,
     /// The points of a line that are told apart on the screen.
     line: Vec<(Pos2, Color32)>,
+    /// Those of them that are needed.
+    kept: Vec<u32>,
 }
 
 impl Brush {
-    /// Begins a picture with borders of this softness.
-    pub(crate) fn begin(&mut self, soft: f32) {
+    /// Begins a picture with borders of this softness, of which this is seen.
+    pub(crate) fn begin(&mut self, soft: f32, screen: Rect) {
+        self.screen = Some(screen);
         // What was shown last is no longer needed by anybody: its arrays are used again.
         if let Some(Ok(mesh)) = self.shown.take().map(Arc::try_unwrap) {
             self.mesh = mesh;
@@ -107,6 +120,16 @@ impl Brush {
         while line.len() > 1 && (line[line.len() - 1].0 - line[0].0).length_sq() <= near {
             line.pop();
         }
+        if line.len() > LONG {
+            let beside = if self.soft > 0.0 { BESIDE } else { BESIDE_HARD };
+            let screen = self.screen.unwrap_or(Rect::EVERYTHING).expand(2.0 * width);
+            let detail = Detail { near: joined, beside, colour: ALIKE, screen };
+            detail.seen(line.iter().copied(), &mut self.kept);
+            for (to, from) in self.kept.iter().enumerate() {
+                line[to] = line[*from as usize];
+            }
+            line.truncate(self.kept.len());
+        }
         match line[..] {
             [] => {}
             // So far away that it is but a point.
@@ -186,7 +209,7 @@ mod tests {
     fn a_ring_covers_its_length_times_its_width_and_is_valid() {
         for soft in [0.0, 1.0] {
             let mut brush = Brush::default();
-            brush.begin(soft);
+            brush.begin(soft, Rect::EVERYTHING);
             brush.ring(circle(200, 50.0), 4.0);
             assert!(brush.mesh.is_valid());
             let wanted = std::f32::consts::TAU * 50.0 * (4.0 + soft);
@@ -198,9 +221,9 @@ mod tests {
     #[test]
     fn points_that_the_screen_cannot_tell_apart_cost_nothing() {
         let mut brush = Brush::default();
-        brush.begin(1.0);
+        brush.begin(1.0, Rect::EVERYTHING);
         brush.ring(circle(100_000, 50.0), 2.0);
-        let rough = 2 * 4 * (std::f32::consts::TAU * 50.0 / JOINED) as usize;
+        let rough = 4 * 200;
         assert!(brush.mesh.vertices.len() < rough, "{}", brush.mesh.vertices.len());
         assert!((covered(&brush.mesh) / (std::f32::consts::TAU * 50.0 * 3.0) - 1.0).abs() < 1e-2);
     }
@@ -208,7 +231,7 @@ mod tests {
     #[test]
     fn corners_however_sharp_and_points_on_one_another_give_finite_triangles() {
         let mut brush = Brush::default();
-        brush.begin(1.0);
+        brush.begin(1.0, Rect::EVERYTHING);
         let at = |x: f32, y: f32| (Pos2::new(x, y), Color32::RED);
         brush.ring([at(0.0, 0.0), at(10.0, 0.0), at(0.0, 0.001), at(0.0, 0.0), at(0.0, 0.0)].into_iter(), 2.0);
         brush.ring([at(5.0, 5.0), at(5.0, 5.0)].into_iter(), 2.0);
@@ -221,7 +244,7 @@ mod tests {
     #[test]
     fn the_arrays_of_a_picture_that_nobody_holds_any_more_are_used_again() {
         let mut brush = Brush::default();
-        brush.begin(1.0);
+        brush.begin(1.0, Rect::EVERYTHING);
         brush.ring(circle(64, 50.0), 2.0);
         let context = egui::Context::default();
         let painter = Painter::new(context, egui::LayerId::debug(), egui::Rect::EVERYTHING);
@@ -229,7 +252,7 @@ mod tests {
         brush.end(&painter);
         assert_eq!(brush.mesh.vertices.capacity(), 0);
         drop(painter);
-        brush.begin(1.0);
+        brush.begin(1.0, Rect::EVERYTHING);
         assert!(brush.mesh.vertices.is_empty() && brush.mesh.vertices.capacity() <= room);
     }
 }

@@ -38,7 +38,7 @@ impl Flat {
     }
 
     /// Makes a view that nobody has moved wider where a body of the plane leaves what is seen, by no more than two sizes to each
-    /// side of what was there first; whether it did.
+    /// side of what was there first; after that it goes along with bodies that find room in it. Whether it did.
     pub(crate) fn widen(&self, view: &mut View, first: &[[f64; 3]; 2], shown: &Shown, rect: Rect) -> bool {
         if shown.dimension != 2 {
             return false;
@@ -49,10 +49,21 @@ impl Flat {
         for d in 0..2 {
             let most = 2.0 * (first[1][d] - first[0][d]);
             let (low, high) = positions().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[d]), b.max(p[d])));
+            let seen = [corners[0][d].min(corners[1][d]), corners[0][d].max(corners[1][d])];
+            let edge = 0.02 * (seen[1] - seen[0]);
+            if low < first[0][d] - most || high > first[1][d] + most {
+                // Away from everything: the view keeps its size and goes along.
+                let over = [seen[0] + edge - low, high - seen[1] + edge];
+                if high - low + 2.0 * edge < seen[1] - seen[0] && over.iter().any(|over| *over > 0.0) {
+                    let way = if over[1] > 0.0 { over[1] } else { -over[0] };
+                    (view.low[d], view.high[d]) = (view.low[d] + way, view.high[d] + way);
+                    wider = true;
+                }
+                continue;
+            }
             let (low, high) = (low.max(first[0][d] - most), high.min(first[1][d] + most));
-            let edge = 0.02 * (corners[0][d] - corners[1][d]).abs();
-            let below = corners[0][d].min(corners[1][d]) + edge - low;
-            let above = high - corners[0][d].max(corners[1][d]) + edge;
+            let below = seen[0] + edge - low;
+            let above = high - seen[1] + edge;
             if below > 0.0 && view.low[d] > first[0][d] - most {
                 view.low[d] -= below;
                 wider = true;
@@ -111,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_view_that_nobody_has_moved_follows_a_body_that_leaves_it_and_not_for_ever() {
+    fn a_view_that_nobody_has_moved_widens_for_a_body_that_leaves_it_and_then_goes_along() {
         let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(390.0, 600.0));
         let ball = |x: f64| opruga::draw::BodyPicture {
             positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
@@ -132,9 +143,13 @@ mod tests {
                 flat.fit(&view, rect, None);
             }
             let right = flat.to_screen(rect, [x + 0.5, 0.5, 0.0], false);
-            assert!(x > 1.8 || rect.contains(right), "{x} {right:?}");
+            assert!(rect.contains(right), "{x} {right:?}");
         }
-        assert!(view.high[0] - view.low[0] < 4.0, "{:?}", view.high);
+        assert!(view.high[0] - view.low[0] < 4.0, "it grows for ever: {:?}", view.high);
+        // Two bodies that fly apart find no room in it: it stays.
+        let mut apart = shown(0.0);
+        apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
+        assert!(!flat.widen(&mut view, &first, &apart, rect));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod brush;
 mod camera;
+mod detail;
 mod handles;
 mod look;
 mod outline;
@@ -116,6 +117,12 @@ impl Canvas {
     /// The middle of what is seen [m]: where new bodies are put.
     pub fn middle(&self, shown: &Shown) -> [f64; 3] {
         if shown.dimension == 3 { self.space.eye().map_or([0.0; 3], |eye| eye.target) } else { self.flat.middle() }
+    }
+
+    /// The shorter side of what is seen [m].
+    pub fn room(&self, shown: &Shown) -> f64 {
+        let side = self.rect.map_or(600.0, |rect| f64::from(rect.width().min(rect.height())));
+        if shown.dimension == 3 { self.space.eye().map_or(2.0, |eye| eye.radius) } else { self.flat.metres(side) }
     }
 
     /// Where a point of the scene is in the window.

@@ -4,7 +4,8 @@
 use opruga::draw::{BodyPicture, Facets};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Outlines up to which triangles are found anew where a body has folded.
+/// Outlines up to which triangles are kept, and found anew where a body has folded; of larger ones those are found for every picture
+/// that are seen in it.
 const MOST_ANEW: usize = 4_000;
 /// Bodies up to which all are looked at for folds with every picture; of more, so many with each.
 const LOOKED_AT: usize = 64;
@@ -34,8 +35,10 @@ pub(crate) struct Outline {
     pub(crate) open: Vec<[u32; 2]>,
     /// Whether there are springs that are not edges as well: those would be painted over.
     pub(crate) springs: bool,
-    /// The triangles between the closed lines; none where the body has cells.
+    /// The triangles between the closed lines; none where the body has cells, or more edges than are filled in full.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Whether it has more edges than are filled in full.
+    pub(crate) large: bool,
 }
 
 impl Outlines {
@@ -66,7 +69,7 @@ impl Outlines {
             *slot = None;
         }
         let outline = slot.get_or_insert_with(|| Outline::new(body, edges, counts));
-        let looked_at = its_turn && edges.len() <= MOST_ANEW && body.cells.is_empty();
+        let looked_at = its_turn && !outline.large && body.cells.is_empty();
         if looked_at && !fits(body, &outline.triangles) {
             outline.triangles = fill(body, &outline.closed);
         }
@@ -80,8 +83,9 @@ impl Outline {
         let sorted =
             |list: &[[u32; 2]]| -> BTreeSet<[u32; 2]> { list.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect() };
         let springs = !sorted(&body.segments).is_subset(&sorted(edges));
-        let triangles = if body.cells.is_empty() { fill(body, &closed) } else { Vec::new() };
-        Outline { counts, closed, open, springs, triangles }
+        let large = edges.len() > MOST_ANEW && body.cells.is_empty();
+        let triangles = if body.cells.is_empty() && !large { fill(body, &closed) } else { Vec::new() };
+        Outline { counts, closed, open, springs, triangles, large }
     }
 }
 
@@ -136,7 +140,7 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
 }
 
 /// Triangles within closed lines; a line that runs clockwise is a hole in the one around it.
-fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
+pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
     let point = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
     let twice = |line: &[u32]| -> f64 {
         (0..line.len())

@@ -125,7 +125,7 @@ pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &B
     };
     caption(low(rect), Align2::CENTER_BOTTOM, format!("{words}{far}"), paper.ink, room);
     if let Some(reason) = &beside.stopped {
-        let text = format!("{}\n{}", language.right_stopped(), language.english(reason));
+        let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
         caption(
             rect.center_top() + Vec2::new(0.0, 70.0),
             Align2::CENTER_TOP,

@@ -2,8 +2,9 @@
 
 use super::brush::Brush;
 use super::camera::Flat;
+use super::detail::{Detail, corners};
 use super::look::{Look, Paper};
-use super::outlines::Outlines;
+use super::outlines::{Outlines, fill};
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
@@ -50,6 +51,9 @@ pub(crate) struct Kept {
     /// Where the nodes of a body are on the screen, and their colours.
     at: Vec<Pos2>,
     colours: Vec<Color32>,
+    /// The corners of a large outline that are seen: their places on it, and of each node its number among them.
+    seen: Vec<u32>,
+    number: Vec<u32>,
 }
 
 impl Kept {
@@ -64,7 +68,7 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     let Look { painter, shown, rect, paper, .. } = *look;
     let picture = &shown.picture;
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
-    grid(painter, flat, rect, paper, &picture.length_unit, picture.y_down);
+    grid(painter, flat, rect, paper, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
     // A single outline has no more points than the screen; a crowd and a lattice may.
     let alone = matches!(&picture.bodies[..], [body] if body.segments.len() <= body.positions.len());
@@ -75,7 +79,7 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     let lines: usize = picture.bodies.iter().map(|body| body.segments.len() + edges(body)).sum();
     let crowd = lines > SOFT_EDGES && !alone;
     kept.outlines.next_picture();
-    kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() });
+    kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() }, rect);
     let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map), paper);
     for (place, body) in picture.bodies.iter().enumerate() {
         kept.at.clear();
@@ -95,13 +99,14 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
         label(painter, &body.label, &spots, paper);
     }
     arrows(painter, shown, flat, &project);
+    scale_bar(painter, flat, rect, paper, &picture.length_unit);
 }
 
 /// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, range, shown, .. } = *look;
     let (place, body) = number;
-    let Kept { outlines, brush, at, colours } = kept;
+    let Kept { outlines, brush, at, colours, seen, number: numbers } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
         // The areas that it carries, in their own colours, one over another.
         for area in &body.areas {
@@ -127,7 +132,17 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let outline = outlines.of(place, body);
     let (triangles, strength) =
         if body.cells.is_empty() { (&outline.triangles, FILLED) } else { (&body.cells, FILLED_CELLS) };
-    if !triangles.is_empty() {
+    if outline.large {
+        // So many points of a surface are not told apart: those are filled that are.
+        let detail = Detail { near: 1.0, beside: 0.35, colour: 24, screen: rect };
+        let lines = corners(&outline.closed, detail, |node| (at[*node as usize], colours[*node as usize]), seen);
+        let mut triangles = fill(body, &lines);
+        numbers.resize(at.len(), 0);
+        lines.iter().flatten().zip(0..).for_each(|(node, number)| numbers[*node as usize] = number);
+        triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
+        let shade = |node: &u32| (at[*node as usize], colours[*node as usize].gamma_multiply(strength));
+        brush.fill(lines.iter().flatten().map(shade), &triangles);
+    } else if !triangles.is_empty() {
         brush.fill(at.iter().zip(colours.iter()).map(|(pos, c)| (*pos, c.gamma_multiply(strength))), triangles);
     }
     if !paper.dark {
@@ -171,9 +186,14 @@ fn darker(c: Color32) -> Color32 {
     Color32::from_rgb(scale(c.r()), scale(c.g()), scale(c.b()))
 }
 
-/// Squares of a round length, and that length.
-fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, unit: &str, y_down: bool) {
-    let length = nice_length(flat.metres(110.0));
+/// The sides of the squares of the grid: a round length [m].
+fn square(flat: &Flat) -> f64 {
+    nice_length(flat.metres(110.0))
+}
+
+/// Squares of a round length.
+fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool) {
+    let length = square(flat);
     let [left, top] = flat.to_world(rect, rect.min, y_down);
     let [right, bottom] = flat.to_world(rect, rect.max, y_down);
     let (low, high) = (top.min(bottom), top.max(bottom));
@@ -184,14 +204,19 @@ fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, unit: &str, y
     for k in (low / length).ceil() as i64..=(high / length).floor() as i64 {
         painter.hline(rect.x_range(), flat.to_screen(rect, [0.0, k as f64 * length, 0.0], y_down).y, stroke);
     }
+}
+
+/// How long a side of these squares is; over everything, as floors often reach to the corner where it is.
+fn scale_bar(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, unit: &str) {
+    let length = square(flat);
     let from = Pos2::new(rect.left() + 14.0, rect.bottom() - 14.0);
     let to = from + Vec2::new((length * flat.scale) as f32, 0.0);
-    painter.line_segment([from, to], Stroke::new(2.0, paper.soft));
+    painter.line_segment([from, to], Stroke::new(2.0, paper.ink));
     for end in [from, to] {
-        painter.line_segment([end - Vec2::new(0.0, 4.0), end + Vec2::new(0.0, 4.0)], Stroke::new(1.5, paper.soft));
+        painter.line_segment([end - Vec2::new(0.0, 4.0), end + Vec2::new(0.0, 4.0)], Stroke::new(1.5, paper.ink));
     }
     let text = format!("{} {unit}", format_value(length));
-    painter.text(from + Vec2::new(0.0, -6.0), Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), paper.soft);
+    painter.text(from + Vec2::new(0.0, -6.0), Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), paper.ink);
 }
 
 fn obstacle(

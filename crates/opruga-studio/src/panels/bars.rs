@@ -257,7 +257,7 @@ pub fn status(
         for warning in shown.warnings.iter().take(2) {
             let text = format!("{}: {} ({})", words.warning(), warning.code, warning.count);
             let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
-            ui.label(text).on_hover_text(words.english(&warning.message));
+            ui.label(text).on_hover_text(words.detail(&warning.message));
         }
     });
 }

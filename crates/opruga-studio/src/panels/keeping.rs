@@ -5,6 +5,7 @@
 use crate::differences::right_of;
 use crate::document::Document;
 use crate::engine;
+use crate::handing;
 use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::said::Said;
@@ -143,38 +144,18 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
         What::Animation => "gif",
         What::Table => "csv",
     };
-    let bytes = made(what, copied, show, progress).await?;
-    let first = hand_over(&copied.name, ending, &bytes)?;
+    if what != What::Scene {
+        let bytes = made(what, copied, show, progress).await?;
+        return Ok(Said::Written(vec![handing::file(&copied.name, ending, &bytes)?]));
+    }
+    let mut written = handing::scene_with_files(&copied.name, &copied.text, &copied.files)?;
     // Side by side there are two scenes.
-    let (What::Scene, Some(differences)) = (what, &copied.differences) else {
-        return Ok(Said::Written(vec![first]));
-    };
-    let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
-    let second = hand_over(&format!("{}-right", copied.name), ending, right.text().as_bytes())?;
-    Ok(Said::Written(vec![first, second]))
-}
-
-/// A file in the folder `out/studio` that is not there yet.
-#[cfg(not(target_arch = "wasm32"))]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
-    let folder = std::path::PathBuf::from("out").join("studio");
-    let named = || folder.display().to_string();
-    std::fs::create_dir_all(&folder).map_err(|e| Said::NoFolder(named(), e.to_string()))?;
-    let path = |number: u32| {
-        let name = if number == 1 { format!("{name}.{ending}") } else { format!("{name}-{number}.{ending}") };
-        folder.join(name)
-    };
-    let free = (1..10_000).map(path).find(|path| !path.exists());
-    let path = free.ok_or_else(|| Said::FolderFull(named()))?;
-    opruga::io::safe_write::safe_write(&path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
-    Ok(path.display().to_string())
-}
-
-/// A download.
-#[cfg(target_arch = "wasm32")]
-fn hand_over(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
-    let name = format!("{name}.{ending}");
-    crate::browser::download(&name, bytes).map(|()| name)
+    if let Some(differences) = &copied.differences {
+        let right = right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files)?.0;
+        let name = format!("{}-right", copied.name);
+        written.extend(handing::scene_with_files(&name, &right.text(), &copied.files)?);
+    }
+    Ok(Said::Written(written))
 }
 
 /// The bytes of a file.

@@ -4,9 +4,9 @@ use crate::differences::Difference;
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
 use opruga::core::potential::Reading;
-use opruga::draw::OKABE_ITO;
+use opruga::draw::{OKABE_ITO, format_value, nice_ticks};
 
 /// The most moments that are kept.
 const MOST: usize = 3_000;
@@ -148,6 +148,13 @@ impl Plots {
     }
 }
 
+/// About so many round numbers on an axis. Their distance is that of all of them, so that all are seen alike.
+fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
+    let ticks = nice_ticks(input.bounds.0, input.bounds.1, count);
+    let step_size = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(input.bounds.1 - input.bounds.0, f64::min);
+    ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
+}
+
 fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, Vec<[f64; 2]>)>) {
     let dark = ui.visuals().dark_mode;
     let ink = |number: usize| {
@@ -172,7 +179,11 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
             .allow_drag(false)
             .allow_zoom(false)
             .allow_boxed_zoom(false)
-            .y_axis_min_width(26.0);
+            .x_grid_spacer(|input| marks(input, 3))
+            .y_grid_spacer(|input| marks(input, 4))
+            .x_axis_formatter(|mark, _| format!("{} s", format_value(mark.value)))
+            .y_axis_formatter(|mark, _| format_value(mark.value))
+            .y_axis_min_width(30.0);
         let owned: Vec<(String, Vec<[f64; 2]>)> = lines.into_iter().map(|(n, l)| (n.to_string(), l)).collect();
         plot.show(ui, move |plot| {
             for (number, (name, points)) in owned.into_iter().enumerate() {

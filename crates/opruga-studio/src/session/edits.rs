@@ -174,7 +174,7 @@ impl Session {
         }
     }
 
-    fn dimension(&mut self) -> usize {
+    pub(super) fn dimension(&mut self) -> usize {
         usize::from(self.engine.shown(&self.show).dimension)
     }
 

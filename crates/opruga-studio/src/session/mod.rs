@@ -7,6 +7,7 @@
 //! ```
 
 mod edits;
+mod opening;
 mod pointer;
 mod recorded;
 mod seen;
@@ -17,6 +18,7 @@ pub use pointer::Grip;
 
 use crate::differences::{Difference, add_difference};
 use crate::document::Document;
+use crate::dropping::Shape;
 use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
@@ -49,15 +51,9 @@ pub enum Request {
         /// Where the files are that it names.
         files: Files,
     },
-    /// Open a scene that was made around a shape: it takes as many substeps as the shape needs.
-    OpenAround {
-        /// Its name.
-        name: String,
-        /// Its text.
-        text: String,
-        /// Where the files are that it names.
-        files: Files,
-    },
+    /// Take a shape from a file into the scene, with its middle at a point and of this size [m]; where it is of the other dimension,
+    /// open a scene around it with as many substeps as it needs.
+    Take(Shape, [f64; 3], f64),
     /// Let time pass, or not.
     Play(bool),
     /// One frame.
@@ -105,8 +101,11 @@ pub enum Request {
 impl Request {
     /// Whether it changes the scene.
     fn is_edit(&self) -> bool {
-        use Request::{Compare, Differ, Edit, Integrator, Models, Redo, Set, Undo};
-        matches!(self, Set(..) | Models(..) | Integrator(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..))
+        use Request::{Compare, Differ, Edit, Integrator, Models, Redo, Set, Take, Undo};
+        matches!(
+            self,
+            Take(..) | Set(..) | Models(..) | Integrator(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..)
+        )
     }
 }
 
@@ -143,6 +142,8 @@ pub struct Session {
     refused: Option<Request>,
     /// The recording that it was opened from.
     recording: Option<recorded::Viewed>,
+    /// The session before another scene was opened, where something had been done in it.
+    before: Option<Box<Session>>,
 }
 
 impl core::fmt::Debug for Session {
@@ -183,6 +184,7 @@ impl Session {
             opened: 1,
             refused: None,
             recording: None,
+            before: None,
         };
         session.keep();
         Ok(session)
@@ -194,7 +196,7 @@ impl Session {
         let (before, edits) = (self.messages, request.is_edit());
         let outcome = match request {
             Request::Open { name, text, files } => self.open_another(&name, &text, files),
-            Request::OpenAround { name, text, files } => self.open_around(&name, &text, files),
+            Request::Take(shape, middle, size) => self.take_shape(&shape, middle, size),
             Request::Play(playing) => {
                 self.playing = playing;
                 self.pacing.rest();
@@ -315,31 +317,6 @@ impl Session {
         if self.keyframes.wants(frame) {
             self.keyframes.keep(frame, self.engine.snapshot());
         }
-    }
-
-    fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
-        let mut next = Session::open(name, text, files, self.options.clone())?;
-        (next.show, next.speed, next.playing) = (self.show, self.speed, true);
-        (next.opened, next.messages) = (self.opened + 1, self.messages);
-        *self = next;
-        Ok(())
-    }
-
-    /// The same with as many substeps as it needs.
-    fn open_around(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
-        match self.open_another(name, text, files.clone()) {
-            Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
-                self.open_with(name, text, files, with_a_margin(substeps))
-            }
-            outcome => outcome,
-        }
-    }
-
-    /// The same with so many substeps.
-    fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
-        let mut document = Document::new(name, text)?;
-        document.set("time.substeps", &Value::Integer(i64::from(substeps)));
-        self.open_another(name, &document.text(), files)
     }
 
     fn accept(&mut self, offer: &Offer) -> Result<(), Said> {

@@ -15,7 +15,7 @@ impl Session {
         shown.playing = self.playing;
         shown.speed = self.speed;
         shown.pace = Pace { ratio: self.pacing.ratio(), frame_cost: self.pacing.cost() };
-        shown.undo = self.undo.last().map(|past| past.label.clone());
+        shown.undo = self.undo.last().map(|past| past.label.clone()).or_else(|| self.opening());
         shown.redo = self.redo.last().map(|past| past.label.clone());
         shown.message.clone_from(&self.message);
         shown.opened = self.opened;

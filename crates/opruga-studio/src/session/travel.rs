@@ -38,6 +38,13 @@ impl Session {
         self.pacing.rest();
     }
 
+    /// Goes to the end of the scene, frame by frame, as if it had been there already.
+    pub fn go_to_the_end(&mut self) {
+        let end = self.engine.shown(&self.show).seconds / self.engine.frame_seconds();
+        self.latest = self.latest.max(end.round() as u64);
+        self.seek(self.latest);
+    }
+
     /// What is done now replaces what was recorded later: the future is written anew from here.
     pub(super) fn branch(&mut self) -> Result<(), Said> {
         let now = self.engine.frames();
@@ -153,7 +160,10 @@ impl Session {
     }
 
     pub(super) fn step_back(&mut self) -> Result<(), Said> {
-        let Some(past) = self.undo.last().cloned() else { return Ok(()) };
+        let Some(past) = self.undo.last().cloned() else {
+            self.open_before();
+            return Ok(());
+        };
         let present = self.past(past.label.clone());
         self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
         self.pins = past.pins;

@@ -1,6 +1,6 @@
 //! Messages in words.
 
-use super::{Language, Part};
+use super::{Language, Part, details, scene_errors};
 use crate::differences::Difference;
 use crate::said::{Said, Step};
 use opruga::WorldError;
@@ -29,6 +29,7 @@ impl Language {
             Step::Duplicate => self.step_duplicate().into(),
             Step::Move => self.step_move().into(),
             Step::Delete => self.step_delete().into(),
+            Step::Open(name) => format!("{} {name}", self.step_open()),
             Step::Unpin => self.step_unpin().into(),
             Step::Reset => self.step_reset().into(),
             Step::Compare => self.step_compare().into(),
@@ -57,7 +58,10 @@ impl Language {
         match said {
             Said::Because(text) => match self {
                 Language::English => text.clone(),
-                Language::Croatian => format!("Poruka je na engleskom:\n{text}"),
+                Language::Croatian => {
+                    let known = details::croatian(text).or_else(|| scene_errors::croatian(text));
+                    known.unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
+                }
             },
             Said::World(error) => self.world_error(error),
             Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
@@ -143,6 +147,13 @@ impl Language {
                 "the scene in the address is too large; allowed: {most} bytes",
                 "prizor u adresi je prevelik; dopušteno: {most} bajtova"
             ),
+            Said::WindowLost(file) => either!(
+                self,
+                "The last window was lost, probably with its graphics driver. What was done is saved in {file}, and goes on here: \
+                 time stands at the last moment that was kept",
+                "Posljednji prozor je izgubljen, vjerojatno s grafičkim upravljačkim programom. Učinjeno je spremljeno u {file} i \
+                 nastavlja se ovdje: vrijeme stoji na zadnjem sačuvanom trenutku"
+            ),
             Said::AddressStays => {
                 either!(
                     self,
@@ -170,11 +181,14 @@ impl Language {
             ),
             WorldError::NotConverged { body, message, hint } => format!(
                 "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",
-                self.english(&format!("{message}; hint: {hint}"))
+                match (details::croatian(message), details::croatian(hint)) {
+                    (Some(message), Some(hint)) => format!("{message}; savjet: {hint}"),
+                    _ => self.english(&format!("{message}; hint: {hint}")),
+                }
             ),
             WorldError::Step { body, message } => format!(
                 "Tijelo `{body}`: model u tom stanju nema smisla; svijet je na zadnjoj dobroj sličici\n{}",
-                self.english(message)
+                self.detail(message)
             ),
             WorldError::Build { place, source } => {
                 let why = match source.code {
@@ -190,9 +204,12 @@ impl Language {
                     "static.rigid_modes" => "tijelo ništa ne drži",
                     _ => "ne može",
                 };
-                format!("{place}: {why}\n{}", self.english(&source.to_string()))
+                match details::croatian(&source.message) {
+                    Some(known) => format!("{place}: {known}"),
+                    None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
+                }
             }
-            WorldError::Path { path, message } => format!("`{path}` ne može\n{}", self.english(message)),
+            WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
             WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),
         }
     }

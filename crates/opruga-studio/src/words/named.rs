@@ -2,7 +2,7 @@
 //! they say of themselves; in Croatian what stands in [`croatian`]. A kind of which nothing stands there, because a program has
 //! added it, is called as in the scene file, and its English sentence is marked as such.
 
-use super::{Language, croatian};
+use super::{Language, croatian, details};
 use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Spec};
 
 /// What a kind is a kind of.
@@ -158,6 +158,14 @@ impl Language {
             Allowed::Points => format!("popis točaka od {dimension} konačna broja"),
             Allowed::Curve => "krivulja [[t, vrijednost], …] konačnih brojeva, t raste".into(),
             Allowed::Path | Allowed::Choice(_) => "put [[t, x, y, …], …] konačnih brojeva, t raste".into(),
+        }
+    }
+
+    /// What a part of the program says in English; in Croatian where that is known ([`details`]), and told to be English else.
+    pub fn detail(self, text: &str) -> String {
+        match self {
+            Language::English => text.into(),
+            Language::Croatian => details::croatian(text).unwrap_or_else(|| self.english(text)),
         }
     }
 

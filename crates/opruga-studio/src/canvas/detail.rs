@@ -1,0 +1,232 @@
+//! How much of a closed line can be seen: points that the screen cannot tell from the line between others are left away, however
+//! many there are.
+
+use egui::{Color32, Pos2, Rect, Vec2};
+
+/// What is told apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Detail {
+    /// Points nearer to one another than this are one [points of the screen].
+    pub(crate) near: f32,
+    /// By how much a line may pass beside points that are left away [points of the screen].
+    pub(crate) beside: f32,
+    /// By how much a colour may differ from that where the line begins, of 255.
+    pub(crate) colour: u8,
+    /// What lies outside of this is not seen.
+    pub(crate) screen: Rect,
+}
+
+/// A straight piece of a line that is grown point by point.
+struct Piece {
+    from: (Pos2, Color32),
+    /// The directions in which all of its points lie near enough, as the two outermost; none before the first that is far enough.
+    cone: Option<[Vec2; 2]>,
+    /// The greatest distance of its points.
+    far: f32,
+    /// Whether it has a second point: what two neighbours differ in is drawn between them.
+    begun: bool,
+    /// Whether its points still lie near enough to a straight line.
+    straight: bool,
+    /// The sides of the screen beyond which all of its points lie.
+    outside: u8,
+}
+
+impl Piece {
+    fn new(from: (Pos2, Color32), detail: &Detail) -> Piece {
+        Piece { from, cone: None, far: 0.0, begun: false, straight: true, outside: detail.outside(from.0) }
+    }
+
+    /// Whether it may reach to one more point.
+    fn takes(&mut self, point: (Pos2, Color32), detail: &Detail) -> bool {
+        self.outside &= detail.outside(point.0);
+        let way = point.0 - self.from.0;
+        let long = way.length();
+        let [a, b] = [self.from.1, point.1].map(|colour| colour.to_array());
+        let free = !std::mem::replace(&mut self.begun, true) || long <= detail.near;
+        let alike = free || a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= detail.colour);
+        // What goes back has a tip that would be lost.
+        self.straight &= alike && long.is_finite() && long >= self.far - detail.beside;
+        self.far = self.far.max(long);
+        if self.straight && long > detail.near {
+            let ahead = way / long;
+            let sine = (detail.beside / long).min(1.0);
+            let cosine = (1.0 - sine * sine).sqrt();
+            let turned = |sine: f32| Vec2::new(cosine * ahead.x - sine * ahead.y, sine * ahead.x + cosine * ahead.y);
+            let own = [turned(-sine), turned(sine)];
+            let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
+            self.cone = match self.cone {
+                None => Some(own),
+                Some([low, high]) => {
+                    self.straight = cross(low, ahead) >= 0.0 && cross(ahead, high) >= 0.0;
+                    let inner_low = if cross(low, own[0]) > 0.0 { own[0] } else { low };
+                    Some([inner_low, if cross(own[1], high) > 0.0 { own[1] } else { high }])
+                }
+            };
+        }
+        self.straight || self.outside != 0
+    }
+}
+
+impl Detail {
+    fn outside(&self, at: Pos2) -> u8 {
+        let Rect { min, max } = self.screen;
+        u8::from(at.x < min.x) | u8::from(at.x > max.x) << 1 | u8::from(at.y < min.y) << 2 | u8::from(at.y > max.y) << 3
+    }
+
+    /// The places of the points of a closed line that are needed, in their order.
+    pub(crate) fn seen(&self, line: impl Iterator<Item = (Pos2, Color32)>, kept: &mut Vec<u32>) {
+        kept.clear();
+        let mut piece: Option<(Piece, (Pos2, Color32), u32)> = None;
+        for (place, point) in line.enumerate() {
+            let place = place as u32;
+            match &mut piece {
+                None => {
+                    kept.push(place);
+                    piece = Some((Piece::new(point, self), point, place));
+                }
+                Some((now, last, end)) => {
+                    if !now.takes(point, self) {
+                        *now = Piece::new(*last, self);
+                        now.takes(point, self);
+                        kept.push(*end);
+                    }
+                    (*last, *end) = (point, place);
+                }
+            }
+        }
+        if let Some((now, last, end)) = piece
+            && (last.0 - now.from.0).length() > self.near
+        {
+            kept.push(end);
+        }
+    }
+
+    /// The same with twice as much left away.
+    fn rougher(self) -> Detail {
+        Detail { near: 2.0 * self.near, beside: 2.0 * self.beside, colour: self.colour.saturating_mul(2), ..self }
+    }
+}
+
+/// Corners up to which a surface is made of triangles anew with every picture.
+const MOST_CORNERS: usize = 5_000;
+
+/// The closed lines of a large outline as far as they are seen, with no more corners than can be filled for every picture; `of` is
+/// where a node is on the screen, and its colour.
+pub(crate) fn corners(
+    closed: &[Vec<u32>],
+    mut detail: Detail,
+    of: impl Fn(&u32) -> (Pos2, Color32),
+    kept: &mut Vec<u32>,
+) -> Vec<Vec<u32>> {
+    loop {
+        let mut seen = |line: &Vec<u32>| {
+            detail.seen(line.iter().map(&of), kept);
+            kept.iter().map(|place| line[*place as usize]).collect::<Vec<u32>>()
+        };
+        let lines: Vec<Vec<u32>> = closed.iter().map(&mut seen).filter(|line| line.len() >= 3).collect();
+        if lines.iter().map(Vec::len).sum::<usize>() <= MOST_CORNERS || detail.near > 64.0 {
+            return lines;
+        }
+        detail = detail.rougher();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RED: Color32 = Color32::RED;
+
+    fn detail() -> Detail {
+        let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(1000.0, 800.0));
+        Detail { near: 0.4, beside: 0.1, colour: 6, screen }
+    }
+
+    fn circle(count: usize, radius: f32) -> Vec<(Pos2, Color32)> {
+        let at = |k: usize| Vec2::angled(std::f32::consts::TAU * k as f32 / count as f32) * radius;
+        (0..count).map(|k| (Pos2::new(500.0, 400.0) + at(k), RED)).collect()
+    }
+
+    fn kept(detail: &Detail, line: &[(Pos2, Color32)]) -> Vec<u32> {
+        let mut kept = Vec::new();
+        detail.seen(line.iter().copied(), &mut kept);
+        kept
+    }
+
+    /// The distance of a point from the closed line through some of the points.
+    fn distance(at: Pos2, line: &[(Pos2, Color32)], kept: &[u32]) -> f32 {
+        let ends = (0..kept.len()).map(|k| [k, (k + 1) % kept.len()].map(|k| line[kept[k] as usize].0));
+        let far = |[a, b]: [Pos2; 2]| {
+            let (way, to) = (b - a, at - a);
+            let share = (way.dot(to) / way.length_sq().max(1e-12)).clamp(0.0, 1.0);
+            (to - way * share).length()
+        };
+        ends.map(far).fold(f32::MAX, f32::min)
+    }
+
+    #[test]
+    fn of_a_hundred_thousand_points_of_a_circle_those_are_kept_that_can_be_told_apart() {
+        let line = circle(100_000, 350.0);
+        let kept = kept(&detail(), &line);
+        assert!((50..400).contains(&kept.len()), "{}", kept.len());
+        let worst = line.iter().step_by(97).map(|p| distance(p.0, &line, &kept)).fold(0.0, f32::max);
+        assert!(worst < 0.5, "{worst}");
+    }
+
+    #[test]
+    fn no_point_of_a_crumpled_line_lies_farther_beside_than_what_is_told_apart() {
+        let mut line = circle(20_000, 300.0);
+        for (k, point) in line.iter_mut().enumerate() {
+            let wave = 12.0 * (0.013 * k as f32).sin() + 3.0 * (0.11 * k as f32).cos();
+            point.0 += (point.0 - Pos2::new(500.0, 400.0)).normalized() * wave;
+        }
+        let kept = kept(&detail(), &line);
+        assert!(kept.len() < line.len() / 4, "{}", kept.len());
+        let worst = line.iter().step_by(7).map(|p| distance(p.0, &line, &kept)).fold(0.0, f32::max);
+        assert!(worst < 0.9, "{worst}");
+    }
+
+    #[test]
+    fn tips_corners_and_colours_are_kept_and_points_on_one_another_and_numbers_that_are_none_do_no_harm() {
+        let at = |x: f32, y: f32| (Pos2::new(x, y), RED);
+        // There and back along one line: the tip.
+        let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
+        let tip = kept(&detail(), &spike);
+        assert!(tip.iter().any(|place| (*place as i32 - 100).abs() <= 1), "{tip:?}");
+        // A straight line that changes its colour.
+        let green = Color32::from_rgb(0, 200, 0);
+        let two: Vec<_> = (0..200).map(|k| (Pos2::new(k as f32, 9.0), if k < 90 { RED } else { green })).collect();
+        let both = kept(&detail(), &two);
+        assert!(both.contains(&89) && both.contains(&90), "{both:?}");
+        assert!(both.len() < 8, "{both:?}");
+        assert_eq!(kept(&detail(), &[at(5.0, 5.0); 40]), [0]);
+        let odd = [at(0.0, 0.0), at(f32::NAN, 3.0), at(9.0, 0.0), at(9.0, 9.0)];
+        assert!(kept(&detail(), &odd).len() <= odd.len() + 1);
+        assert!(kept(&detail(), &[]).is_empty());
+    }
+
+    #[test]
+    fn what_lies_beside_the_screen_costs_nothing_and_what_enters_it_is_seen() {
+        // A large circle of which the screen shows a piece.
+        let line = circle(100_000, 40_000.0);
+        let moved: Vec<_> = line.iter().map(|(p, c)| (*p + Vec2::new(39_600.0, 0.0), *c)).collect();
+        let kept = kept(&detail(), &moved);
+        assert!(kept.len() < 60, "{}", kept.len());
+        let screen = detail().screen;
+        let inside = moved.iter().filter(|p| screen.contains(p.0));
+        let worst = inside.map(|p| distance(p.0, &moved, &kept)).fold(0.0, f32::max);
+        assert!(worst < 0.5, "{worst}");
+    }
+
+    #[test]
+    fn an_outline_has_never_more_corners_than_are_filled_with_every_picture() {
+        let of = |node: &u32| {
+            let far = 300.0 + if node % 2 == 0 { 20.0 } else { 0.0 };
+            let turn = std::f32::consts::TAU * *node as f32 / 60_000.0;
+            (Pos2::new(500.0, 400.0) + Vec2::angled(turn) * far, RED)
+        };
+        let closed = vec![(0..60_000).collect::<Vec<u32>>()];
+        let lines = corners(&closed, detail(), of, &mut Vec::new());
+        assert!((3..=MOST_CORNERS).contains(&lines[0].len()), "{}", lines[0].len());
+    }
+}

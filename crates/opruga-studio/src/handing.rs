@@ -1,0 +1,146 @@
+//! Where files go: a window writes them into the folder `out/studio`, a page hands them over as downloads. A scene goes with the
+//! files that it names, so that it runs from where it lies.
+
+use crate::said::Said;
+use opruga::io::{Files, scene};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The files that a scene names, by those names.
+pub fn named_files(name: &str, text: &str, files: &Files) -> BTreeMap<String, Arc<[u8]>> {
+    let options = scene::Options { files: files.clone(), ..scene::Options::default() };
+    scene::survey(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &options).files
+}
+
+#[cfg(target_arch = "wasm32")]
+pub(crate) use page::{file, scene_with_files};
+#[cfg(not(target_arch = "wasm32"))]
+pub use window::{Folder, file, scene_with_files};
+
+#[cfg(not(target_arch = "wasm32"))]
+mod window {
+    use super::*;
+    use opruga::io::safe_write::safe_write;
+    use std::path::{Path, PathBuf};
+
+    /// Names that are tried: `ball`, `ball-2` and so on.
+    const MOST_NAMES: u32 = 10_000;
+
+    /// A folder in which no file replaces another.
+    #[derive(Clone, Debug)]
+    pub struct Folder(PathBuf);
+
+    impl Default for Folder {
+        fn default() -> Folder {
+            Folder(PathBuf::from("out").join("studio"))
+        }
+    }
+
+    impl Folder {
+        /// A folder at this place; it is made when the first file comes.
+        pub fn at(path: impl Into<PathBuf>) -> Folder {
+            Folder(path.into())
+        }
+
+        fn made(&self) -> Result<(), Said> {
+            let refused = |e: std::io::Error| Said::NoFolder(self.0.display().to_string(), e.to_string());
+            std::fs::create_dir_all(&self.0).map_err(refused)
+        }
+
+        fn free(&self, name: impl Fn(String) -> String, of: &str) -> Result<PathBuf, Said> {
+            let numbered = |number: u32| if number == 1 { of.to_string() } else { format!("{of}-{number}") };
+            let free = (1..MOST_NAMES).map(|number| self.0.join(name(numbered(number)))).find(|path| !path.exists());
+            free.ok_or_else(|| Said::FolderFull(self.0.display().to_string()))
+        }
+
+        /// Writes a file that is not there yet; where it is.
+        ///
+        /// # Errors
+        /// What the system refuses.
+        pub fn file(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Said> {
+            self.made()?;
+            let path = self.free(|name| format!("{name}.{ending}"), name)?;
+            write(&path, bytes)?;
+            Ok(path)
+        }
+
+        /// Writes a scene; one that names files goes into a folder of its own together with them. The scene is told first.
+        ///
+        /// # Errors
+        /// What the system refuses: then nothing is left of it.
+        pub fn scene(&self, name: &str, text: &str, files: &Files) -> Result<Vec<PathBuf>, Said> {
+            let named = named_files(name, text, files);
+            if named.is_empty() {
+                return self.file(name, "toml", text.as_bytes()).map(|path| vec![path]);
+            }
+            self.made()?;
+            let own = Folder(self.free(|name| name, name)?);
+            let outcome = own.fill(name, text, &named);
+            if outcome.is_err() {
+                // It was made for this alone.
+                let _ = std::fs::remove_dir_all(&own.0);
+            }
+            outcome
+        }
+
+        fn fill(&self, name: &str, text: &str, named: &BTreeMap<String, Arc<[u8]>>) -> Result<Vec<PathBuf>, Said> {
+            self.made()?;
+            let mut written = vec![self.0.join(format!("{name}.toml"))];
+            for (name, bytes) in named {
+                let path = self.0.join(name);
+                // A scene cannot name what lies outside of its folder.
+                Folder(path.parent().unwrap_or(&self.0).to_path_buf()).made()?;
+                write(&path, bytes)?;
+                written.push(path);
+            }
+            write(&written[0], text.as_bytes())?;
+            Ok(written)
+        }
+    }
+
+    fn write(path: &Path, bytes: &[u8]) -> Result<(), Said> {
+        safe_write(path, false, |file| file.write_all(bytes)).map_err(|e| e.to_string())?;
+        Ok(())
+    }
+
+    /// Writes a file into `out/studio`; where it is.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
+        Folder::default().file(name, ending, bytes).map(|path| path.display().to_string())
+    }
+
+    /// Writes a scene and the files that it names into `out/studio`; where they are.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn scene_with_files(name: &str, text: &str, files: &Files) -> Result<Vec<String>, Said> {
+        let written = Folder::default().scene(name, text, files)?;
+        Ok(written.iter().map(|path| path.display().to_string()).collect())
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+mod page {
+    use super::*;
+
+    /// A download; its name.
+    pub(crate) fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Said> {
+        let name = format!("{name}.{ending}");
+        crate::browser::download(&name, bytes).map(|()| name)
+    }
+
+    /// A scene and the files that it names, each as a download. A browser puts them all into one folder: there the scene names them.
+    pub(crate) fn scene_with_files(name: &str, text: &str, files: &Files) -> Result<Vec<String>, Said> {
+        let (mut text, mut written) = (text.to_string(), vec![format!("{name}.toml")]);
+        for (named, bytes) in named_files(name, &text, files) {
+            let last = named.rsplit('/').next().unwrap_or(&named).to_string();
+            text = text.replace(&format!("\"{named}\""), &format!("\"{last}\""));
+            crate::browser::download(&last, &bytes)?;
+            written.push(last);
+        }
+        file(name, "toml", text.as_bytes())?;
+        Ok(written)
+    }
+}

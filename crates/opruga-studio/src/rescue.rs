@@ -1,0 +1,104 @@
+//! What a person has done is kept while it is done: where the window is lost, with the graphics device, the driver or the whole
+//! screen, it is found there by the program that watches over it ([`crate::watch`]).
+
+use crate::handing::named_files;
+use crate::runner::{Copied, Link};
+use crate::said::Said;
+use crate::session::Session;
+use crate::share::{self, Shared};
+use crate::work;
+use opruga::Options;
+use opruga::io::{Files, safe_write::safe_write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
+
+/// How long at most what was done is not kept yet.
+const EVERY: Duration = Duration::from_secs(2);
+
+/// The place where what is done is kept.
+#[derive(Debug)]
+pub struct Rescue {
+    path: PathBuf,
+    asked: Option<Receiver<Copied>>,
+    writing: Option<Receiver<()>>,
+    /// When it was asked for last.
+    last: Option<Instant>,
+    /// The text that was kept last.
+    kept: Arc<str>,
+    /// The files of a scene, which are read once: the scene and where they are, and what they hold.
+    files: Option<(String, Files, Files)>,
+}
+
+impl Rescue {
+    /// Keeps what is done in this file.
+    pub fn at(path: impl Into<PathBuf>) -> Rescue {
+        Rescue { path: path.into(), asked: None, writing: None, last: None, kept: "".into(), files: None }
+    }
+
+    /// Looks whether something is to be kept; to be called with every picture.
+    pub fn poll(&mut self, link: &Link) {
+        if self.writing.as_ref().is_some_and(|writing| writing.try_recv() == Err(std::sync::mpsc::TryRecvError::Empty))
+        {
+            return;
+        }
+        self.writing = None;
+        if let Some(copied) = self.asked.as_ref().and_then(work::done) {
+            self.asked = None;
+            self.keep(copied);
+        } else if self.asked.is_none() && self.last.is_none_or(|last| last.elapsed() >= EVERY) {
+            (self.asked, self.last) = (Some(link.copy()), Some(Instant::now()));
+        }
+    }
+
+    fn keep(&mut self, copied: Copied) {
+        if *copied.text == *self.kept {
+            return;
+        }
+        self.kept = copied.text.as_str().into();
+        let known = self.files.take().filter(|(name, files, _)| *name == copied.name && *files == copied.files);
+        let files = known.map_or_else(
+            || {
+                let held = Files::held(named_files(&copied.name, &copied.text, &copied.files));
+                (copied.name.clone(), copied.files.clone(), held)
+            },
+            |known| known,
+        );
+        let shared = Shared { name: copied.name, text: copied.text, files: files.2.clone() };
+        self.files = Some(files);
+        let path = self.path.clone();
+        self.writing = Some(work::spawn(async move {
+            // Where it cannot be kept, the window goes on all the same: this is for the day on which it does not.
+            let _ = write(&path, &shared);
+        }));
+    }
+}
+
+/// Writes a scene so that it is whole whenever it is read.
+///
+/// # Errors
+/// What the system refuses.
+pub fn write(path: &Path, shared: &Shared) -> Result<(), Said> {
+    let packed = share::pack(shared)?;
+    safe_write(path, true, |file| file.write_all(&packed)).map_err(|e| e.to_string())?;
+    Ok(())
+}
+
+/// The scene that was kept.
+///
+/// # Errors
+/// Why it cannot be read.
+pub fn read(path: &Path) -> Result<Shared, Said> {
+    share::unpack(&std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?)
+}
+
+/// The session that was lost, on its way to the moment where it was; time stands there.
+///
+/// # Errors
+/// Why it cannot be opened.
+pub fn resume(shared: &Shared, options: Options) -> Result<Session, Said> {
+    let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), options)?;
+    session.go_to_the_end();
+    Ok(session)
+}

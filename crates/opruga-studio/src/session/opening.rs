@@ -1,0 +1,94 @@
+//! What opens another scene, the way back to the one before, and shapes from files, which are taken into the scene.
+
+use super::{Edit, Session, with_a_margin};
+use crate::document::Document;
+use crate::dropping::Shape;
+use crate::handing::named_files;
+use crate::said::{Said, Step};
+use crate::shown::Severity;
+use opruga::WorldError;
+use opruga::core::spec::Value;
+use opruga::io::Files;
+use std::sync::Arc;
+
+impl Session {
+    /// Another scene. The one before can be come back to where something was done in it.
+    pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+        let next = Session::open(name, text, files, self.options.clone())?;
+        self.go_over_to(next, true);
+        Ok(())
+    }
+
+    /// Puts another session in the place of this one.
+    fn go_over_to(&mut self, mut next: Session, playing: bool) {
+        self.release();
+        (next.show, next.speed, next.playing) = (self.show, self.speed, playing);
+        (next.opened, next.messages) = (self.opened + 1, self.messages);
+        let before = std::mem::replace(self, next);
+        // One way back and no more: every session holds its states.
+        let worked_on = before.document.commands() > before.own_commands || !before.undo.is_empty();
+        self.before = worked_on.then(|| Box::new(Session { before: None, ..before }));
+        self.pacing.rest();
+    }
+
+    /// What an undo would do where nothing was done in this scene: the way back to the one before.
+    pub(super) fn opening(&self) -> Option<Step> {
+        self.before.as_ref().map(|before| Step::Open(before.document.name.clone()))
+    }
+
+    /// Goes back to the scene that was open before, as it was left, if there is one.
+    pub(super) fn open_before(&mut self) {
+        let (Some(step), Some(before)) = (self.opening(), self.before.take()) else { return };
+        self.go_over_to(*before, false);
+        let time = self.engine.time();
+        self.tell(Severity::Told, Said::Undone(step, time), None);
+    }
+
+    /// A shape from a file as one more body; a scene around it where this one has another dimension.
+    pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Said> {
+        let fits = (self.dimension() == 3) == shape.space;
+        let files: Vec<(String, Arc<[u8]>)> = match fits {
+            true => named_files(&shape.name, &shape.text, &shape.files).into_iter().collect(),
+            false => Vec::new(),
+        };
+        // Where it cannot be read, or is of several files, the scene around it tells or shows so.
+        let [(_, bytes)] = &files[..] else { return self.open_around(&shape.name, &shape.text, shape.files.clone()) };
+        let file = self.free_file(&shape.file, bytes);
+        let Some(body) = shape.body(&file, middle, size) else { return Err(Said::NameOfFile(shape.file.clone())) };
+        let before = self.files.clone();
+        self.files = before.clone().with([(file, Arc::clone(bytes))]);
+        let outcome = self.edit(&Edit::Add(body));
+        if outcome.is_err() {
+            self.files = before;
+        }
+        outcome
+    }
+
+    /// A name under which the scene can hold a file of these bytes: its own, or one with a number.
+    fn free_file(&self, file: &str, bytes: &Arc<[u8]>) -> String {
+        let (stem, ending) = file.rsplit_once('.').unwrap_or((file, ""));
+        let numbered = |number: u32| if number == 1 { file.to_string() } else { format!("{stem}-{number}.{ending}") };
+        let free = |name: &String| match self.files.held_file(name) {
+            Some(held) => held == bytes,
+            None => self.files.path_of(name).is_none_or(|path| !path.exists()),
+        };
+        (1..=u32::MAX).map(numbered).find(free).unwrap_or_else(|| file.to_string())
+    }
+
+    /// The scene around a shape, with as many substeps as it needs.
+    fn open_around(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
+        match self.open_another(name, text, files.clone()) {
+            Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
+                self.open_with(name, text, files, with_a_margin(substeps))
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// The same with so many substeps.
+    pub(super) fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
+        let mut document = Document::new(name, text)?;
+        document.set("time.substeps", &Value::Integer(i64::from(substeps)));
+        self.open_another(name, &document.text(), files)
+    }
+}

@@ -1,0 +1,203 @@
+//! A program that watches over the window. OpenGL has no way to ask for another device in the same window, and where a driver
+//! fails it takes the program with it. So the window is a program of its own that this one starts: where it is lost, what was done
+//! is saved and said, and another window goes on from there.
+
+use crate::handing::Folder;
+use crate::rescue;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// Names the file in which the window keeps what is done.
+pub const KEPT: &str = "OPRUGA_STUDIO_KEPT";
+/// Says where what was done was saved when the window before was lost.
+pub const SAVED: &str = "OPRUGA_STUDIO_SAVED";
+/// The exit code of a window that could not be opened.
+pub const NO_WINDOW: u8 = 5;
+/// The exit code of a window that was lost.
+pub const LOST: u8 = 70;
+/// So many windows may be lost within so long; then no other is opened.
+const MOST_LOST: usize = 3;
+const WITHIN: Duration = Duration::from_secs(60);
+
+/// What follows the end of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// It was closed, or has said what is wrong.
+    End(u8),
+    /// Somebody has ended it.
+    Ended,
+    /// It was lost.
+    Lost,
+}
+
+/// Watches over windows on what the arguments name.
+pub fn run(arguments: &[OsString]) -> ExitCode {
+    let Ok(kept) = Kept::new() else {
+        // A window that nobody watches over is better than none.
+        return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
+    };
+    let mut lost: Vec<Instant> = Vec::new();
+    let mut saved: Option<String> = None;
+    loop {
+        let status = match window(arguments, Some(&kept.file()), saved.as_deref()) {
+            Ok(status) => status,
+            Err(error) => {
+                eprintln!("error[studio.no_window]: the window cannot be started: {error}");
+                return ExitCode::from(NO_WINDOW);
+            }
+        };
+        let next = next(status.code(), signal(&status));
+        if let Next::End(code) = next {
+            if code == NO_WINDOW && saved.is_some() {
+                hint(saved.as_deref());
+            }
+            return ExitCode::from(code);
+        }
+        let why = signal(&status)
+            .map_or_else(|| format!("exit code {}", status.code().unwrap_or(-1)), |number| format!("signal {number}"));
+        eprintln!("error[studio.lost]: the window was lost ({why})");
+        saved = save(&kept.file());
+        match &saved {
+            Some(path) => eprintln!("  = what was done is saved: {path}"),
+            None => eprintln!("  = nothing was kept of it"),
+        }
+        lost.retain(|at| at.elapsed() < WITHIN);
+        lost.push(Instant::now());
+        if next == Next::Ended || lost.len() >= MOST_LOST {
+            hint(saved.as_deref());
+            return ExitCode::from(NO_WINDOW);
+        }
+        eprintln!("  = another window goes on from there");
+    }
+}
+
+fn hint(saved: Option<&str>) {
+    if let Some(path) = saved {
+        eprintln!("  = hint: `opruga run {path}` runs it without a window, `opruga studio {path}` opens it again");
+    }
+}
+
+/// What follows an exit code or a signal.
+fn next(code: Option<i32>, signal: Option<i32>) -> Next {
+    match (code, signal) {
+        (Some(code @ (0 | 2)), _) => Next::End(code as u8),
+        (Some(code), _) if code == i32::from(NO_WINDOW) => Next::End(NO_WINDOW),
+        // Hang up, interrupt, terminate: that is asked for.
+        (None, Some(1 | 2 | 15)) => Next::Ended,
+        _ => Next::Lost,
+    }
+}
+
+#[cfg(unix)]
+fn signal(status: &ExitStatus) -> Option<i32> {
+    std::os::unix::process::ExitStatusExt::signal(status)
+}
+
+#[cfg(not(unix))]
+fn signal(_: &ExitStatus) -> Option<i32> {
+    None
+}
+
+fn code(code: Option<i32>) -> ExitCode {
+    code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(LOST), ExitCode::from)
+}
+
+/// A window until its end. It ends with this program, whose end it sees at its input.
+fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> std::io::Result<ExitStatus> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(arguments).stdin(Stdio::piped()).env(KEPT, kept.map_or(OsString::new(), |path| path.into()));
+    match saved {
+        Some(path) => command.env(SAVED, path),
+        None => command.env_remove(SAVED),
+    };
+    let mut child = command.spawn()?;
+    // Waiting would close the input.
+    let input = child.stdin.take();
+    let status = child.wait();
+    drop(input);
+    status
+}
+
+/// Saves what was kept among the files of the studio, or where that is refused, leaves it beside; where it is.
+fn save(kept: &Path) -> Option<String> {
+    let shared = rescue::read(kept).ok()?;
+    let beside = kept.parent().map(Folder::at);
+    let written = Folder::default()
+        .scene(&shared.name, &shared.text, &shared.files)
+        .or_else(|_| beside.unwrap_or_default().scene(&shared.name, &shared.text, &shared.files));
+    written.ok()?.first().map(|path| path.display().to_string())
+}
+
+/// A folder that nobody else can have made, with the file in it; it goes with this where nothing else lies in it.
+struct Kept(PathBuf);
+
+impl Kept {
+    fn new() -> std::io::Result<Kept> {
+        let name = |number: u32| format!("opruga-studio-{}-{number}", std::process::id());
+        let folders = (0..100).map(|number| std::env::temp_dir().join(name(number)));
+        let made = |folder: &PathBuf| std::fs::create_dir(folder).is_ok();
+        folders.into_iter().find(made).map(Kept).ok_or_else(|| std::io::ErrorKind::AlreadyExists.into())
+    }
+
+    fn file(&self) -> PathBuf {
+        self.0.join("kept.opruga-studio")
+    }
+}
+
+impl Drop for Kept {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(self.file());
+        let _ = std::fs::remove_dir(&self.0);
+    }
+}
+
+/// Ends this program where the one that watches over it has ended.
+pub fn end_with_the_watch() {
+    std::thread::spawn(|| {
+        use std::io::Read as _;
+        let mut rest = Vec::new();
+        // Nothing is ever sent: the end comes when nobody is there to send.
+        let _ = std::io::stdin().lock().read_to_end(&mut rest);
+        std::process::exit(0);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::share::Shared;
+
+    #[test]
+    fn a_window_that_was_closed_ends_the_watch_and_one_that_was_lost_does_not() {
+        for (code, signal, wanted) in [
+            (Some(0), None, Next::End(0)),
+            (Some(2), None, Next::End(2)),
+            (Some(5), None, Next::End(5)),
+            // The screen is gone, a panic, a driver that gives up, one that reads where nothing is.
+            (Some(1), None, Next::Lost),
+            (Some(101), None, Next::Lost),
+            (Some(i32::from(LOST)), None, Next::Lost),
+            (None, Some(6), Next::Lost),
+            (None, Some(11), Next::Lost),
+            (None, Some(15), Next::Ended),
+        ] {
+            assert_eq!(next(code, signal), wanted, "{code:?} {signal:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_kept_is_read_as_it_was_and_the_folder_goes_with_the_watch() {
+        let kept = Kept::new().expect("a folder");
+        let shared = Shared { name: "ball".into(), text: "format = 1".into(), files: opruga::scenes::files() };
+        rescue::write(&kept.file(), &shared).expect("written");
+        rescue::write(&kept.file(), &Shared { text: "format = 2".into(), ..shared.clone() }).expect("written again");
+        assert_eq!(rescue::read(&kept.file()).expect("read").text, "format = 2");
+        std::fs::write(kept.file(), b"cut").expect("written");
+        assert!(rescue::read(&kept.file()).is_err());
+        let folder = kept.0.clone();
+        drop(kept);
+        assert!(!folder.exists());
+    }
+}

@@ -1,0 +1,363 @@
+//! Sentences that models, integrators, obstacles and the world say, in English and in Croatian.
+
+/// English and Croatian. `{}` stands for a name or a number that stays as it is, `{#}` for a value that has no words of
+/// its own, `{~}` for a part of a sentence that is one of these sentences itself. The first that fits counts.
+pub(super) const SENTENCES: &[(&str, &str)] = &[
+    // Models.
+    ("the body has no {} edges to carry springs", "tijelo nema bridova ({}) koji bi nosili opruge"),
+    ("edge {} has no length; `modulus` needs one", "brid {} nema duljinu, a `modulus` je treba"),
+    ("exactly one of `{}` and `{}` must be given", "treba zadati točno jedno od `{}` i `{}`"),
+    (
+        "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline",
+        "`modulus` treba trokute uz bridove; za lanac ili obris zadaj `stiffness`",
+    ),
+    ("the body has no closed boundary to hold a gas", "tijelo nema zatvorenu granicu koja bi držala plin"),
+    (
+        "chamber {} encloses {} m³; allowed: > 0 (is it inside out?)",
+        "komora {} obuhvaća {} m³; dopušteno: > 0 (je li izvrnuta?)",
+    ),
+    (
+        "the boundary has no holes, so there is no cavity to hold a gas; `inside = \"boundary\"` fills the body",
+        "granica nema rupa, pa nema ni šupljine koja bi držala plin; `inside = \"boundary\"` puni tijelo",
+    ),
+    (
+        "the body has no cells: it is an outline, a surface or a chain. Filled shapes are `grid`, shapes from files with a \
+         `filling`, and volume meshes",
+        "tijelo nema ćelija: obris je, ploha ili lanac. Ispunjeni su oblici `grid`, oblici iz datoteka s `filling` i mreže tijela",
+    ),
+    ("the mesh has no group of cells `{}`; {}", "mreža nema skupinu ćelija `{}`; ima: {}"),
+    ("the group of cells `{}` is empty", "skupina ćelija `{}` je prazna"),
+    ("the cells of the mesh have no numbers `{}`; known: {}", "ćelije mreže nemaju brojeve `{}`; poznati: {}"),
+    (
+        "`mooney_share` is {}; allowed with `poissons_ratio` = {}: at most {} = ν/(1 − 2ν)",
+        "`mooney_share` je {}; dopušteno uz `poissons_ratio` = {}: najviše {} = ν/(1 − 2ν)",
+    ),
+    (
+        "Young's modulus of cell {} is {} Pa; allowed: a number > 0",
+        "Youngov modul ćelije {} je {} Pa; dopušteno: broj > 0",
+    ),
+    ("there is no material `{}`", "nema materijala `{}`"),
+    (
+        "`poissons_ratio` is {}; allowed for linear {}: at most {}, since they lock near incompressibility. Give the body \
+         `order = 2`, or say `locking = \"accept\"`",
+        "`poissons_ratio` je {}; dopušteno za linearne ćelije ({}): najviše {}, jer se blizu nestlačivosti ukoče. Zadaj tijelu \
+         `order = 2` ili `locking = \"accept\"`",
+    ),
+    (
+        "cell {} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out \
+         beyond what its material can follow in plane stress",
+        "ćelija {} u t = {} s nema pozitivnu debljinu bez naprezanja okomito na ravninu: rastegnuta je ili izvrnuta više nego što \
+         njezin materijal u ravninskom naprezanju može slijediti",
+    ),
+    (
+        "cell {} with the nodes {}] {~} at rest: det ∂X/∂ξ = {}; allowed: more than {}",
+        "ćelija {} s čvorovima {}] {~} u mirovanju: det ∂X/∂ξ = {}; dopušteno: više od {}",
+    ),
+    (
+        "the published program is plane; allowed: dimension = 2",
+        "objavljeni program je ravninski; dopušteno: dimension = 2",
+    ),
+    ("the body has no outline", "tijelo nema obrisa"),
+    ("`held` needs `pointer`", "`held` treba `pointer`"),
+    (
+        "each row of `held` is [press, release] with press < release",
+        "svaki redak od `held` je [pritisak, puštanje], pritisak < puštanje",
+    ),
+    ("`modulus` needs `thickness`", "`modulus` treba `thickness`"),
+    ("`thickness` goes with `modulus`, not with `stiffness`", "`thickness` ide uz `modulus`, a ne uz `stiffness`"),
+    (
+        "the body has nothing to bend: no node between two edges of an outline or chain, no edge between two triangles",
+        "tijelo nema što savijati: nijedan čvor između dvaju bridova obrisa ili lanca, nijedan brid između dvaju trokuta",
+    ),
+    (
+        "hinge {} has an edge without length or a triangle without area at rest",
+        "zglob {} ima u mirovanju brid bez duljine ili trokut bez površine",
+    ),
+    // Integrators.
+    (
+        "nothing holds the body against {~}: {~}; an equilibrium needs a body that is held; hint: pin as many axes of \
+         nodes as there are rigid modes, or give it something to rest on",
+        "ništa ne drži tijelo protiv: {~} ({~}); ravnoteža treba tijelo koje nešto drži; savjet: pribodi toliko \
+         osi čvorova koliko je krutih pomaka, ili mu daj na čemu će ležati",
+    ),
+    (
+        "the body lies on an obstacle, and neither that nor pins hold it against {~}; an equilibrium needs a body that is held; \
+         hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
+        "tijelo leži na prepreci, a ni ona ni pribodene točke ne drže ga protiv: {~}; ravnoteža treba tijelo koje nešto drži; \
+         savjet: za svaki pribodi os čvora, ili neka prepreka trlja (`friction`)",
+    ),
+    ("translation along {}, {~}", "pomak duž {}, {~}"),
+    ("translation along {}", "pomak duž {}"),
+    ("rotation about an axis along {}, {~}", "zakret oko osi duž {}, {~}"),
+    ("rotation about an axis along {}", "zakret oko osi duž {}"),
+    ("rotation", "zakret"),
+    (
+        "steps that counted though they had not converged have made the body a hundred times as large as it was: more substeps, \
+         or `when_not_converged = \"halve\"`",
+        "koraci koji su vrijedili iako nisu konvergirali učinili su tijelo stotinu puta većim: više podkoraka, ili \
+         `when_not_converged = \"halve\"`",
+    ),
+    (
+        "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{}` damps nothing, and would add it up without \
+         end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting",
+        "`accuracy` je \"real_time\", čiji koraci dio ostave izvan ravnoteže; `{}` ništa ne prigušuje i zbrajao bi ga bez kraja; \
+         dopušteno: \"exact\"; savjet: `backward_euler` i `bdf2` mogu u stvarnom vremenu",
+    ),
+    (
+        "`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix; allowed with it: \"auto\", \
+         \"conjugate_gradients\", \"cholesky\"",
+        "`linear_solver` je \"matrix_free\", a `accuracy` je \"real_time\", koji čuva matricu; dopušteno uz njega: \"auto\", \
+         \"conjugate_gradients\", \"cholesky\"",
+    ),
+    (
+        "`linear_solver` is \"matrix_free\", and `arc_length` factors a matrix; allowed with it: {}",
+        "`linear_solver` je \"matrix_free\", a `arc_length` rastavlja matricu; dopušteno uz njega: {}",
+    ),
+    (
+        "`arc_length` is given, and the scene has obstacles, of which the curve of equilibria knows nothing; allowed with \
+         obstacles: the whole load at once, in as many `load_steps` as it takes",
+        "`arc_length` je zadan, a prizor ima prepreke, o kojima krivulja ravnoteža ništa ne zna; dopušteno uz prepreke: cijeli \
+         teret odjednom, u koliko god `load_steps` treba",
+    ),
+    ("more substeps, or `accuracy = \"exact\"`", "više podkoraka, ili `accuracy = \"exact\"`"),
+    (
+        "more substeps, or more `iterations`; the step was already halved down to 1/256",
+        "više podkoraka ili više `iterations`; korak je već prepolavljan do 1/256",
+    ),
+    (
+        "more substeps, more `iterations`, or `when_not_converged = \"halve\"`",
+        "više podkoraka, više `iterations`, ili `when_not_converged = \"halve\"`",
+    ),
+    ("a shorter `arc_length`, or more `iterations`", "kraći `arc_length`, ili više `iterations`"),
+    (
+        "the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap",
+        "teret je već prepolavljan do 1/256: gdje tijelo popusti, `arc_length` ga prati kroz preskok",
+    ),
+    (
+        "the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest",
+        "teret je već prepolavljan do 1/256: pravilo koje prigušeno korača kroz vrijeme nađe gdje će tijelo mirovati",
+    ),
+    (
+        "`when_not_converged = \"halve\"` or more `load_steps`; where a body gives way, `arc_length`",
+        "`when_not_converged = \"halve\"` ili više `load_steps`; gdje tijelo popusti, `arc_length`",
+    ),
+    (
+        "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
+        "`when_not_converged = \"halve\"`, više `load_steps`, ili više `iterations`",
+    ),
+    (
+        "`{}` did not converge in {~} at t = {} s, beyond {~}: the forces are out of balance by {} N, and the \
+         last correction was {} m; allowed: {} m",
+        "`{}` nije konvergirao ({~}) u t = {} s, iza {~}: sile su izvan ravnoteže za {} N, a zadnji je popravak \
+         {} m; dopušteno: {} m",
+    ),
+    (
+        "`{}` did not converge in {~} at t = {}: the forces are out of balance by {} N, and the last correction was \
+         {} m; allowed: {} m",
+        "`{}` nije konvergirao ({~}) u t = {}: sile su izvan ravnoteže za {} N, a zadnji je popravak {} m; dopušteno: \
+         {} m",
+    ),
+    // The world.
+    (
+        "the model has no second derivatives, which `{}` needs; hint: an explicit integrator steps it, such as \
+         `symplectic_euler`",
+        "model nema druge derivacije, koje treba `{}`; savjet: eksplicitni integrator može s njim, na primjer \
+         `symplectic_euler`",
+    ),
+    ("there is no such model", "nema takvog modela"),
+    ("there is no such integrator", "nema takvog integratora"),
+    ("there is no such body", "nema takvog tijela"),
+    ("there is no such command", "nema takve naredbe"),
+    (
+        "cell {} belongs to the models {} and {} of the body, whose stiffness would add up; allowed: every cell in one `fem` \
+         model. Name groups without common cells by `cells`",
+        "ćelija {} pripada modelima {} i {} tijela, čije bi se krutosti zbrojile; dopušteno: svaka ćelija u jednom modelu `fem`. \
+         S `cells` imenuj skupine bez zajedničkih ćelija",
+    ),
+    (
+        "{} of {} cells, the first of them cell {}, are in none of the groups {} of the models: they would have mass and no \
+         stiffness; allowed: every cell in one model",
+        "{} od {} ćelija, prva od njih {}, nije ni u jednoj skupini {} modela: imale bi masu, a ne i krutost; dopušteno: svaka \
+         ćelija u jednom modelu",
+    ),
+    (
+        "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by its own \
+         mass; allowed with it: `mass = \"lumped\"`. Consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark",
+        "`mass` je \"consistent\", što povezuje ubrzanja čvorova ćelije, a `{}` miče svaki čvor njegovom masom; dopušteno uz \
+         njega: `mass = \"lumped\"`. Konzistentne mase idu uz backward_euler, bdf2, implicit_midpoint i newmark",
+    ),
+    (
+        "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed with \
+         obstacles: `mass = \"lumped\"`",
+        "`mass` je \"consistent\", a ima prepreka, čiji sudari djeluju na mase pojedinih čvorova; dopušteno uz prepreke: \
+         `mass = \"lumped\"`",
+    ),
+    ("body `{}` has no model `{}`; it has {}", "tijelo `{}` nema model `{}`; ima {}"),
+    (
+        "body `{}` follows the integrator of the scene: integrator.{}",
+        "tijelo `{}` slijedi integrator prizora: integrator.{}",
+    ),
+    ("there is no collider {}; allowed: {}", "nema prepreke {}; dopušteno: {}"),
+    ("there is no body {}; did you mean `{}`?", "nema tijela {}; misliš li `{}`?"),
+    ("there is no body `{}`", "nema tijela `{}`"),
+    ("`{}` is {#}; allowed: {~}", "`{}` je {#}; dopušteno: {~}"),
+    ("is {#}; allowed: {~}", "je {#}; dopušteno: {~}"),
+    (
+        "the forces around the state are not finite, so no stable step can be given",
+        "sile oko stanja nisu konačne, pa se ne može dati stabilni korak",
+    ),
+    (
+        "body `{}` diverged: node {} in the substep from t = {} s; the world is at its last good frame, t = {} s",
+        "tijelo `{}` je divergiralo: čvor {}, u podkoraku od t = {} s; svijet je na zadnjoj dobroj sličici, t = {} s",
+    ),
+    (
+        "body `{}`: {~}; the world is at its last good frame; hint: {~}",
+        "tijelo `{}`: {~}; svijet je na zadnjoj dobroj sličici; savjet: {~}",
+    ),
+    ("body `{}`: {~}; the world is at its last good frame", "tijelo `{}`: {~}; svijet je na zadnjoj dobroj sličici"),
+    // Warnings.
+    (
+        "body `{}` of {} kg would sag by about {} m under its weight, more than its size of {} m: are its units mixed (metres, \
+         kilograms, newtons per metre)?",
+        "tijelo `{}` od {} kg ulegnulo bi se pod svojom težinom oko {} m, više od svoje veličine od {} m: jesu li jedinice \
+         pomiješane (metri, kilogrami, njutni po metru)?",
+    ),
+    (
+        "body `{}` begins inside obstacle {} ({}): {~}, node {} the deepest by {} m; {~}",
+        "tijelo `{}` počinje u prepreci {} ({}): {~}, najdublji je čvor {}, {} m; {~}",
+    ),
+    ("moved by ({}) m it would be free", "pomaknuto za ({}) m bilo bi slobodno"),
+    ("no shift along the surfaces around it would free it", "nijedan pomak duž ploha oko njega ne bi ga oslobodio"),
+    (
+        "`{}` has no stable step for body `{}` (ω = {} rad/s): its fastest motion grows as exp({} t)",
+        "`{}` nema stabilnog koraka za tijelo `{}` (ω = {} rad/s): njegovo najbrže gibanje raste kao exp({} t)",
+    ),
+    (
+        "at t = {} s the largest stable step of body `{}` had fallen to {} s, below h = {} s: what is squeezed or stretched is \
+         stiffer than at rest; substeps >= {} hold there",
+        "u t = {} s najveći stabilni korak tijela `{}` pao je na {} s, ispod h = {} s: stisnuto ili rastegnuto kruće je nego u \
+         mirovanju; ondje vrijedi podkoraka >= {}",
+    ),
+    (
+        "the step h = {} s of `{}` is unstable for body `{}`: the largest stable step is {} s (stiffness ω = {} rad/s, damping {} \
+         1/s); allowed: h <= {}; hint: substeps >= {}",
+        "korak h = {} s integratora `{}` nestabilan je za tijelo `{}`: najveći stabilni korak je {} s (krutost ω = {} rad/s, \
+         prigušenje {} 1/s); dopušteno: h <= {}; savjet: podkoraka >= {}",
+    ),
+    ("commands on body `{}` ended when it was taken away", "naredbe tijelu `{}` završile su kad je uklonjeno"),
+    ("forces were shortened to `world.largest_force`", "sile su skraćene na `world.largest_force`"),
+    ("velocities were shortened to `world.largest_velocity`", "brzine su skraćene na `world.largest_velocity`"),
+    ("pulls were shortened to their `largest_force`", "vuče su skraćene na svoju `largest_force`"),
+    (
+        "bodies went farther than `world.largest_distance` and were taken away",
+        "tijela su otišla dalje od `world.largest_distance` i uklonjena su",
+    ),
+    (
+        "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {~} by the end: the error of \
+         the integrator; {~}",
+        "sličica je završila s više od desetine energije gibanja neobjašnjene (`closure`), do kraja {} J {~}: pogreška \
+         integratora; {~}",
+    ),
+    (
+        "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it",
+        "tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila; najmanja je kod `verlet`",
+    ),
+    (
+        "more substeps make it smaller, and rules of higher order make less of it",
+        "s više podkoraka je manja, a manja je i kod pravila višeg reda",
+    ),
+    (
+        "a step counted though Newton's method had not converged (`when_not_converged = \"accept\"`)",
+        "korak je vrijedio iako Newtonova metoda nije konvergirala (`when_not_converged = \"accept\"`)",
+    ),
+    (
+        "a step, of time or of the load, was made in two halves since Newton's method had not converged (`when_not_converged = \
+         \"halve\"`)",
+        "korak, vremena ili tereta, učinjen je u dvije polovice jer Newtonova metoda nije konvergirala (`when_not_converged = \
+         \"halve\"`)",
+    ),
+    (
+        "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of \
+         balance that would move single nodes by up to {} m; the body is too stiff or too slender for the step: more substeps, \
+         `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
+        "korak u stvarnom vremenu potrošio je svoje, ili toliko umnožaka da u sporim gibanjima može ostati mnogo: sile izvan \
+         ravnoteže koje bi pojedine čvorove pomaknule do {} m; tijelo je prekruto ili pretanko za korak: više podkoraka, \
+         `linear_solver = \"cholesky\"`, ili `accuracy = \"exact\"`",
+    ),
+    (
+        "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a hundredth and \
+         by a tenth",
+        "tijelo koje je mirovalo spljošteno, izvrnuto ili presavijeno nasumce je poremećeno, za 1e-4 svoje veličine, zatim za \
+         stotinu i za desetinu",
+    ),
+    (
+        "a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did not \
+         end{~}; hint: another start, or a material that pushes such cells back (`fixed_corotated`)",
+        "tijelo je mirovalo spljošteno, izvrnuto ili presavijeno, u ravnoteži koju ni poremećaj do desetine njegove veličine nije \
+         prekinuo{~}; savjet: drukčiji početak, ili materijal koji takve ćelije vraća (`fixed_corotated`)",
+    ),
+    (
+        "a gas was held at its `largest_pressure`, counted per substep and body",
+        "plin je zadržan na `largest_pressure`, brojano po podkoraku i tijelu",
+    ),
+    (
+        "a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open as the \
+         reference says; an outline that went through itself may stay so",
+        "komora nije obuhvaćala ništa ili je bila izvrnuta, brojano po podkoraku i tijelu: njezin je plin otvara kako kaže opis; \
+         obris koji je prošao kroz sebe može takav ostati",
+    ),
+    // What stands in a scene.
+    ("`{}` is missing in `{}`", "`{}` nedostaje u `{}`"),
+    ("`{}` is missing", "`{}` nedostaje"),
+    ("there is no field `{}` in `{}`", "nema polja `{}` u `{}`"),
+    ("`{}` is {#}", "`{}` je {#}"),
+    ("`{}` is {~}", "`{}` je {~}"),
+    // Files.
+    ("the file `{}` is not there", "datoteke `{}` nema"),
+    ("{} cannot be read", "{} se ne može pročitati"),
+];
+
+/// Parts of sentences, which say nothing by themselves, and what stands below an error.
+pub(super) const PARTS: &[(&str, &str)] = &[
+    ("is turned inside out", "je izvrnuta"),
+    ("has no volume", "nema obujma"),
+    (
+        "; now the cell farthest from its volume is {} of body `{}`, J = {}",
+        "; ćelija najdalje od svojeg obujma je {} tijela `{}`, J = {}",
+    ),
+    ("a number", "broj"),
+    ("a whole number", "cijeli broj"),
+    ("a text", "tekst"),
+    ("a list", "popis"),
+    ("a table", "tablica"),
+    ("a truth value", "istina ili laž"),
+    ("a date", "datum"),
+    ("gained", "previše"),
+    ("lost", "premalo"),
+    ("1 rigid mode", "jedan kruti pomak"),
+    ("{} rigid modes", "krutih pomaka: {}"),
+    ("1 iteration", "jedna iteracija"),
+    ("{} iterations", "iteracija: {}"),
+    ("{} of the load", "{} tereta"),
+    ("1 node", "jedan čvor"),
+    ("{} nodes", "čvorova: {}"),
+    // What is allowed.
+    ("a finite number", "konačan broj"),
+    ("a number >= {} and <= {}", "broj >= {} i <= {}"),
+    ("a number >= {} and < {}", "broj >= {} i < {}"),
+    ("a number > {} and <= {}", "broj > {} i <= {}"),
+    ("a number > {} and < {}", "broj > {} i < {}"),
+    ("a number >= {}", "broj >= {}"),
+    ("a number > {}", "broj > {}"),
+    ("a number <= {}", "broj <= {}"),
+    ("a number < {}", "broj < {}"),
+    ("a whole number from {} to {}", "cijeli broj od {} do {}"),
+    ("true or false", "true ili false"),
+    ("a text of at most 256 bytes", "tekst od najviše 256 bajtova"),
+    ("one of {}", "jedno od {}"),
+    ("{} finite numbers", "konačni brojevi, njih {}"),
+    ("a list of finite numbers", "popis konačnih brojeva"),
+    ("a list of whole numbers from 0", "popis cijelih brojeva od 0"),
+    ("a list of points of {} finite numbers", "popis točaka od po {} konačnih brojeva"),
+    ("did you mean `{}`?", "misliš li `{}`?"),
+];
