@@ -95,7 +95,7 @@ fn a_held_solid_shows_where_it_lay_and_one_that_falls_does_not() {
     let [heart, croatia] = [0, 1].map(|body: usize| &later.bodies[body]);
     assert!(heart.rest.segments.is_empty() && !croatia.rest.segments.is_empty());
     let far = |a: &[[f64; 3]], b: &[[f64; 3]]| {
-        a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs() + (a[1] - b[1]).abs()).fold(0.0, f64::max)
+        largest(a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs() + (a[1] - b[1]).abs()))
     };
     assert!(far(&croatia.rest.positions, &start.bodies[1].positions) < 1e-6, "the lines stay where it lay");
     assert!(far(&croatia.rest.positions, &croatia.positions) > 0.1, "and it has moved");

@@ -5,6 +5,9 @@ use crate::canvas::{Canvas, paint};
 use crate::picture::AreaPicture;
 use tiny_skia::{Paint, Path, PathBuilder};
 
+/// The width in pixels of the line around a painted area.
+const HAIRLINE: f32 = 0.5;
+
 /// The lines around an area as one path.
 pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> {
     let mut builder = PathBuilder::new();
@@ -67,7 +70,12 @@ pub(super) fn fill(canvas: &mut Canvas, area: &AreaPicture, projection: &Project
 pub(super) fn draw(canvas: &mut Canvas, areas: &[AreaPicture], projection: &Projection) {
     for area in areas {
         if let Some([red, green, blue, opacity]) = area.colour {
-            fill(canvas, area, projection, &paint([red, green, blue], f64::from(opacity) / 255.0));
+            let paint = paint([red, green, blue], f64::from(opacity) / 255.0);
+            fill(canvas, area, projection, &paint);
+            // What is squeezed to nothing is still there: a thin line holds the ends of a stem together.
+            if let (255, Some(lines)) = (opacity, path(area, projection)) {
+                canvas.stroke(&lines, HAIRLINE, &paint);
+            }
         }
     }
 }
