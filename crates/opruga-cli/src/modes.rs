@@ -9,11 +9,10 @@ use opruga::core::spec::Values;
 use opruga::draw;
 use opruga::io::safe_write::{Existing, OutputFolder};
 use opruga::math::words::{number, rounded};
-use opruga::pictures::Scenery;
+use opruga::pictures::{Scenery, rest_of};
 use opruga::world::modes::Mode;
 use opruga::{Registry, World};
 use serde_json::json;
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The largest displacement in a picture, in extents of the body.
@@ -173,7 +172,7 @@ fn draw_shapes<const D: usize>(
         for body in &mut picture.bodies {
             body.scalar = moved(&rest, body);
         }
-        picture.bodies.insert(0, outline(&rest));
+        picture.bodies.iter_mut().for_each(|body| body.rest = rest_of(&rest));
         picture.legend = Some(draw::Legend {
             label: "displacement / largest".into(),
             unit: String::new(),
@@ -210,41 +209,4 @@ fn moved(rest: &draw::BodyPicture, body: &draw::BodyPicture) -> Vec<f64> {
     let ways: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();
     let most = ways.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     ways.into_iter().map(|way| way / most).collect()
-}
-
-/// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
-const SHARP: f64 = 0.8;
-
-/// The body at rest as grey lines: its outline, or where its surface has edges.
-fn outline(rest: &draw::BodyPicture) -> draw::BodyPicture {
-    let segments = match &rest.facets {
-        draw::Facets::Edges(edges) => edges.clone(),
-        draw::Facets::Triangles(triangles) => sharp_edges(triangles, &rest.positions),
-    };
-    let positions = rest.positions.clone();
-    draw::BodyPicture { positions, segments, colour: Some([130, 136, 146]), ..draw::BodyPicture::default() }
-}
-
-/// Edges of one triangle alone, and those where two meet at an angle.
-fn sharp_edges(triangles: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[u32; 2]> {
-    let normal = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|k| positions[k as usize]);
-        let (u, v): ([f64; 3], [f64; 3]) =
-            (core::array::from_fn(|d| b[d] - a[d]), core::array::from_fn(|d| c[d] - a[d]));
-        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-        n.map(|x| x / length)
-    };
-    let mut edges: BTreeMap<[u32; 2], Vec<[f64; 3]>> = BTreeMap::new();
-    for triangle in triangles {
-        for k in 0..3 {
-            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
-            edges.entry([a.min(b), a.max(b)]).or_default().push(normal(triangle));
-        }
-    }
-    let sharp = |normals: &[[f64; 3]]| match normals {
-        [a, b] => (0..3).map(|d| a[d] * b[d]).sum::<f64>() < SHARP,
-        _ => true,
-    };
-    edges.into_iter().filter(|(_, normals)| sharp(normals)).map(|(edge, _)| edge).collect()
 }

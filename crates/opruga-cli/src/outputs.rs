@@ -141,15 +141,16 @@ impl Outputs<'_> {
         let dimension = scenery.picture(first).dimension;
         let mut fitting = draw::Fitting::default();
         draw::spread(moments, MOST_FITTED).into_iter().for_each(|m| fitting.add(&scenery.picture(m)));
-        let view = match fitting.finish() {
-            Ok(view) => view,
+        let (strip, whole) = (fitting.clone().finish(), fitting.everything().finish());
+        let (view, film) = match strip.and_then(|strip| whole.map(|whole| (strip, whole))) {
+            Ok(views) => views,
             Err(nothing @ draw::DrawError::Empty(_)) => {
                 eprintln!("note: no strip and no video: {nothing}");
                 return Ok(());
             }
             Err(error) => return Err(draw_failed(error)),
         };
-        let count = draw::best_count(&view, dimension, moments.len());
+        let count = scenery.panels().unwrap_or_else(|| draw::best_count(&view, dimension, moments.len()));
         let pictures: Vec<draw::Picture> =
             draw::spread(moments, count).into_iter().map(|m| scenery.picture(m)).collect();
         let panels: Vec<&draw::Picture> = pictures.iter().collect();
@@ -158,7 +159,7 @@ impl Outputs<'_> {
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
         if !self.stop.load(Ordering::Relaxed) {
-            files.push(self.video(scenery, recorder, &view, dimension)?);
+            files.push(self.video(scenery, recorder, &film, dimension)?);
         }
         Ok(())
     }

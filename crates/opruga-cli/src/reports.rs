@@ -147,15 +147,18 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         ("colliders", kinds(&catalogue.colliders)),
     ];
     let pairs = opruga::Registry::<2>::default().pairs();
-    let scenes: Vec<(&str, &str)> =
-        opruga::scenes::names().map(|n| (n, opruga::scenes::title(opruga::scenes::find(n).unwrap_or("")))).collect();
+    let told = |name| {
+        let text = opruga::scenes::find(name).unwrap_or("");
+        (name, opruga::scenes::title(text), opruga::scenes::credit(text))
+    };
+    let scenes: Vec<(&str, &str, &str)> = opruga::scenes::names().map(told).collect();
     if as_json {
         let row = |k: &Kind| json!({"kind": k.kind, "summary": k.summary, "dimensions": k.dimensions});
         let mut object = serde_json::Map::new();
         for (name, kinds) in &sections {
             object.insert((*name).into(), kinds.iter().map(row).collect::<Vec<_>>().into());
         }
-        let scenes: Vec<_> = scenes.iter().map(|(n, t)| json!({"name": n, "title": t})).collect();
+        let scenes: Vec<_> = scenes.iter().map(|(n, t, c)| json!({"name": n, "title": t, "credit": c})).collect();
         object.insert("scenes".into(), scenes.into());
         let pair = |(model, integrator, fits): &(&str, &str, bool)| json!({"model": model, "integrator": integrator, "fits": fits});
         object.insert("pairs".into(), pairs.iter().map(pair).collect::<Vec<_>>().into());
@@ -182,8 +185,12 @@ pub(crate) fn list(as_json: bool) -> Result<u8, Failure> {
         let _ = writeln!(text, "  {model:<18} not with {}", integrators.join(", "));
     }
     let _ = writeln!(text, "scenes (opruga run NAME)");
-    for (name, title) in scenes {
-        let _ = writeln!(text, "  {name:<18} {title}");
+    let widest = scenes.iter().map(|scene| scene.0.len()).max().unwrap_or(0);
+    for (name, title, credit) in scenes {
+        let _ = writeln!(text, "  {name:<widest$} {title}");
+        if !credit.is_empty() {
+            let _ = writeln!(text, "  {:<widest$}   {credit}", "");
+        }
     }
     print_data(&text)?;
     Ok(0)

@@ -86,6 +86,11 @@ impl<'a> Canvas<'a> {
         self.pixmap.fill_path(path, paint, FillRule::EvenOdd, Transform::identity(), None);
     }
 
+    /// Fills all that the loops of a path enclose, which run all in one sense, however often.
+    pub(crate) fn fill_all(&mut self, path: &Path, paint: &Paint) {
+        self.pixmap.fill_path(path, paint, FillRule::Winding, Transform::identity(), None);
+    }
+
     /// Draws the line of a path with round ends and corners.
     pub(crate) fn stroke(&mut self, path: &Path, width: f32, paint: &Paint) {
         self.stroke_dashed(path, width, &[], paint);

@@ -10,6 +10,8 @@ pub enum ColourMap {
     Cividis,
     /// From dark to light grey, for eyes that see no colours, and for print.
     Grey,
+    /// From a pale grey over yellow and red to dark violet: for what is mostly small, such as stress, on bodies in the light.
+    Embers,
     /// From blue through a light grey to red: for quantities around a middle value.
     Diverging,
 }
@@ -51,6 +53,19 @@ const CIVIDIS: [[u8; 3]; 10] = [
 
 /// The ends of a map without colours.
 const GREY: [[u8; 3]; 2] = [[28, 30, 34], [244, 245, 247]];
+
+/// The stops of a map from a pale grey to dark violet, evenly falling in lightness.
+const EMBERS: [[u8; 3]; 9] = [
+    [233, 236, 239],
+    [244, 227, 183],
+    [250, 205, 124],
+    [249, 171, 85],
+    [238, 131, 70],
+    [214, 90, 75],
+    [176, 55, 88],
+    [128, 33, 92],
+    [74, 20, 76],
+];
 
 /// The stops of a map from blue to red through a light grey.
 const DIVERGING: [[u8; 3]; 11] = [
@@ -98,13 +113,20 @@ pub(crate) const RUBBER: [u8; 3] = [196, 40, 90];
 
 impl ColourMap {
     /// All of them, in the order of menus.
-    pub const ALL: [ColourMap; 4] = [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey, ColourMap::Diverging];
+    pub const ALL: [ColourMap; 5] =
+        [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Embers, ColourMap::Grey, ColourMap::Diverging];
+
+    /// Whether its low end is light, so that lines over it must be dark.
+    pub(crate) fn is_light_below(self) -> bool {
+        self == ColourMap::Embers
+    }
 
     /// The colour at a place from 0 (low) to 1 (high); values outside take the nearest end.
     pub fn colour(self, place: f64) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             ColourMap::Viridis => &VIRIDIS,
             ColourMap::Cividis => &CIVIDIS,
+            ColourMap::Embers => &EMBERS,
             ColourMap::Grey => &GREY,
             ColourMap::Diverging => &DIVERGING,
         };
@@ -143,11 +165,12 @@ mod tests {
     }
 
     #[test]
-    fn maps_from_low_to_high_grow_in_lightness() {
-        for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey] {
+    fn maps_from_low_to_high_grow_or_fall_in_lightness() {
+        for map in [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Grey, ColourMap::Embers] {
             let light = |place: f64| {
                 let [red, green, blue] = map.colour(place).map(f64::from);
-                0.2126 * red + 0.7152 * green + 0.0722 * blue
+                let light = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+                if map.is_light_below() { -light } else { light }
             };
             assert!((0..50).all(|step| light(step as f64 / 50.0) < light((step + 1) as f64 / 50.0)), "{map:?}");
         }

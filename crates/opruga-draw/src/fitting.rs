@@ -1,7 +1,8 @@
 //! Finds the view of a run, one picture after the other.
 
 use crate::error::DrawError;
-use crate::picture::{ArrowKind, ColliderPicture, Picture};
+use crate::flat::BORDER;
+use crate::picture::{ArrowKind, ColliderPicture, Picture, Sight};
 use crate::solid::{cast, directions_of_view};
 use crate::view::View;
 use std::collections::BTreeMap;
@@ -12,7 +13,7 @@ const SAMPLE: usize = 20_000;
 const STRAYS: f64 = 0.03;
 
 /// What was seen of a run so far; no picture is kept.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Fitting {
     /// The box around everything.
     bounds: Bounds,
@@ -32,6 +33,8 @@ pub struct Fitting {
     sizes: Vec<f64>,
     /// Whether some picture counts y downwards.
     y_down: bool,
+    /// What the first picture is to show.
+    sight: Option<Sight>,
 }
 
 /// A box along the axes which grows with each point.
@@ -103,6 +106,7 @@ impl Default for Fitting {
             starts: Bounds::empty(),
             sizes: Vec::new(),
             y_down: false,
+            sight: None,
         }
     }
 }
@@ -111,6 +115,7 @@ impl Fitting {
     /// Looks at a picture.
     pub fn add(&mut self, picture: &Picture) {
         self.y_down |= picture.y_down;
+        self.sight.get_or_insert(picture.sight);
         let first = self.sizes.is_empty();
         for body in &picture.bodies {
             let mut around = Bounds::empty();
@@ -121,9 +126,11 @@ impl Fitting {
             if first {
                 self.sizes.push(around.side());
             }
+            body.rest.positions.iter().for_each(|&position| around.add(position, 0.0));
             self.take(&around);
             if picture.dimension == 3 {
-                body.positions.iter().for_each(|&position| self.reach(position));
+                let points = body.positions.iter().chain(&body.rest.positions);
+                points.for_each(|&position| self.reach(position));
             }
         }
         for pull in &picture.pulls {
@@ -190,7 +197,13 @@ impl Fitting {
         }
     }
 
-    /// The view which shows everything that was seen.
+    /// The same without the region that the pictures ask for: all that was seen.
+    pub fn everything(mut self) -> Fitting {
+        self.sight.iter_mut().for_each(|sight| sight.region = None);
+        self
+    }
+
+    /// The view which shows everything that was seen, or the region that the pictures ask for.
     pub fn finish(mut self) -> Result<View, DrawError> {
         if self.bounds.is_empty() {
             return Err(DrawError::Empty("no body has a node at a finite place"));
@@ -207,6 +220,18 @@ impl Fitting {
             self.bounds.add(starts.low, arrow);
             self.bounds.add(starts.high, arrow);
         }
+        let sight = self.sight.unwrap_or_default();
+        if let Some([low, high]) = sight.region {
+            // With the border that is drawn around what must be seen, a flat region is seen and no more.
+            let border = if low[2] == high[2] { BORDER / (1.0 + 2.0 * BORDER) } else { 0.0 };
+            let side = border * Bounds { low, high }.side();
+            self.bounds = Bounds { low, high };
+            for axis in 0..2 {
+                let inset = side.min(0.4 * (high[axis] - low[axis]));
+                self.bounds.low[axis] += inset;
+                self.bounds.high[axis] -= inset;
+            }
+        }
         let (scalars, strays) = range_of(&mut self.scalars, self.ends);
         let mut view = View {
             low: self.bounds.low,
@@ -217,9 +242,14 @@ impl Fitting {
             y_down: self.y_down,
             longest,
             arrow,
-            azimuth: 32.0,
-            elevation: 20.0,
+            body: size,
+            azimuth: sight.azimuth.unwrap_or(32.0),
+            elevation: sight.elevation.unwrap_or(20.0),
         };
+        if sight.region.is_some() {
+            // The corners of the box are what the camera must see.
+            return Ok(view);
+        }
         let spread = if self.starts.is_empty() { 0.0 } else { arrow };
         let seen = self.farthest.iter().filter(|(_, most, _)| most.is_finite());
         let mut points: Vec<[f64; 3]> =
@@ -297,6 +327,33 @@ fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_region_is_what_strips_show_and_films_show_everything() {
+        use crate::picture::BodyPicture;
+        let body = BodyPicture { positions: vec![[0.0; 3], [9.0, 4.0, 2.0]], ..Default::default() };
+        for dimension in [2, 3] {
+            let region = [[1.0, 1.0, 0.0], [3.0, 2.0, 1.0]];
+            let sight = Sight { region: Some(region), azimuth: Some(-20.0), elevation: None };
+            let picture = Picture { dimension, sight, bodies: vec![body.clone()], ..Default::default() };
+            let mut fitting = Fitting::default();
+            fitting.add(&picture);
+            let (part, whole) =
+                (fitting.clone().finish().expect("a view"), fitting.everything().finish().expect("a view"));
+            if dimension == 3 {
+                assert_eq!([part.low, part.high], region);
+            }
+            let flat = Sight { region: Some(region.map(|[x, y, _]| [x, y, 0.0])), ..sight };
+            let flat = View::fit([&Picture { sight: flat, ..picture.clone() }]).expect("a view");
+            let border = BORDER * flat.extent();
+            for axis in 0..2 {
+                assert!((flat.low[axis] - border - region[0][axis]).abs() < 1e-12, "{:?}", flat.low);
+                assert!((flat.high[axis] + border - region[1][axis]).abs() < 1e-12, "{:?}", flat.high);
+            }
+            assert_eq!([whole.low, whole.high], [[0.0; 3], [9.0, 4.0, 2.0]]);
+            assert_eq!([part.azimuth, whole.azimuth, part.elevation], [-20.0, -20.0, 20.0]);
+        }
+    }
 
     #[test]
     fn a_few_strays_do_not_spread_the_colours() {

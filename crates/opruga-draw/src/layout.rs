@@ -59,6 +59,7 @@ impl Layout {
         let margin = 14.0 * unit;
         let top = if style.header { 38.0 * unit } else { margin };
         let bottom = if style.footer { 40.0 * unit } else { margin };
+        let bottom = bottom + Layout::credit_space(&picture.credit, unit);
         let right = match &picture.legend {
             Some(legend) if style.legend => margin + legend_width(legend, view.range(picture), unit),
             _ => margin,
@@ -66,6 +67,18 @@ impl Layout {
         let (width, height) = (style.width as f32, style.height as f32);
         let scene = [margin, top, (width - margin - right).max(8.0), (height - top - bottom).max(8.0)];
         Layout { scene: scene.map(|value| value.round() as u32), unit }
+    }
+
+    /// The height which the line below everything takes that says whose drawings are seen, if there is one.
+    pub(crate) fn credit_space(credit: &str, unit: f32) -> f32 {
+        if credit.is_empty() { 0.0 } else { 18.0 * unit }
+    }
+
+    /// Writes whose drawings are seen, on a line of its own, smaller where it would not fit.
+    pub(crate) fn credit(&self, canvas: &mut Canvas, credit: &str, [left, base]: [f32; 2], room: f32) {
+        let size = 11.5 * self.unit;
+        let fits = (room / text_width(credit, size).max(1.0)).min(1.0);
+        canvas.text(credit, [left, base], size * fits, Anchor::Start, SOFT_INK);
     }
 
     /// The width which the legend takes, if there is one and it is wanted.
@@ -99,6 +112,8 @@ impl Layout {
             let base = top + height + 26.0 * unit;
             self.foot(canvas, &[picture], view, [left, base], width, [0.24 * width, scale as f32]);
         }
+        let base = style.height as f32 - 9.0 * unit;
+        self.credit(canvas, &picture.credit, [left, base], style.width as f32 - 2.0 * left);
         if let (Some(legend), true) = (&picture.legend, style.legend) {
             self.legend(canvas, legend, view, picture);
         }

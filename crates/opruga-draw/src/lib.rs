@@ -33,6 +33,7 @@ pub use image::Image;
 pub use layout::Style;
 pub use picture::{
     AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
+    RestPicture, Sight,
 };
 pub use plot::{Axis, Chart, HeatMap, HeatPanel, Level, Line, Marker, Panel};
 pub use strip::{StripStyle, best_count, captioned_strip, spread, strip};

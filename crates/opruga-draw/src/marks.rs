@@ -6,8 +6,10 @@ use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
-/// The number of pins of a body up to which each is drawn as a support.
+/// The number of pins of a body up to which each may be drawn as a support.
 const SUPPORTS: usize = 40;
+/// How far apart neighbours must be for that, in units of lines.
+const SUPPORT_ROOM: f32 = 17.0;
 
 /// The number of arrows above which they are drawn thinner.
 const CROWD: usize = 50;
@@ -64,23 +66,15 @@ pub(crate) fn draw_marks(
     in_sight: &dyn Fn([f64; 3]) -> bool,
 ) {
     for body in &picture.bodies {
-        let few = body.pinned.len() <= SUPPORTS;
-        // Marks that would lie on one another are one.
-        let apart = if few { 12.0 } else { 7.0 } * unit;
-        let mut marked: Vec<[f32; 2]> = Vec::new();
-        for &node in &body.pinned {
-            let near = |a: &[f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
-            let place = body.positions[node as usize];
-            if let Some(point) = project(place).filter(|_| in_sight(place))
-                && !marked.iter().any(|other| near(other, point))
-            {
-                if few {
-                    support(canvas, point, unit)
-                } else {
-                    canvas.disc(point, 2.2 * unit, INK)
-                }
-                marked.push(point);
-            }
+        let places = body.pinned.iter().map(|node| body.positions[*node as usize]);
+        let points: Vec<[f32; 2]> = places.filter(|place| in_sight(*place)).filter_map(project).collect();
+        // Marks that would lie on one another are one, and where supports would stand in a row there are dots.
+        let supports = marks_apart(&points, 12.0 * unit);
+        let row = supports.len() > 3 && marks_apart(&supports, SUPPORT_ROOM * unit).len() < supports.len();
+        if body.pinned.len() <= SUPPORTS && !row {
+            supports.into_iter().for_each(|point| support(canvas, point, unit));
+        } else {
+            marks_apart(&points, 7.0 * unit).into_iter().for_each(|point| canvas.disc(point, 2.2 * unit, INK));
         }
     }
     draw_arrows(canvas, arrows, view, unit, project, in_sight);
@@ -91,6 +85,18 @@ pub(crate) fn draw_marks(
     }
     // Names are read over everything else.
     labels(canvas, picture, background, unit, project);
+}
+
+/// Those of some points that lie so far from all before them.
+fn marks_apart(points: &[[f32; 2]], apart: f32) -> Vec<[f32; 2]> {
+    let near = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
+    let mut marked: Vec<[f32; 2]> = Vec::new();
+    for &point in points {
+        if !marked.iter().any(|other| near(*other, point)) {
+            marked.push(point);
+        }
+    }
+    marked
 }
 
 /// Draws arrows.
@@ -145,7 +151,8 @@ fn labels(
     let mut all: Vec<Label<'_>> = Vec::new();
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        for pixel in body.positions.iter().filter_map(|x| project(*x)) {
+        // Names stay where they are while a body swings about where it lay.
+        for pixel in body.positions.iter().chain(&body.rest.positions).filter_map(|x| project(*x)) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(pixel[axis]);
                 high[axis] = high[axis].max(pixel[axis]);

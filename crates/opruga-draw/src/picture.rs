@@ -12,6 +12,10 @@ pub struct Picture {
     pub time: f64,
     /// The title, which may be empty.
     pub title: String,
+    /// Whose drawings are seen and under which licence, written small below; may be empty.
+    pub credit: String,
+    /// What is seen and from where, as far as it is not left to what there is.
+    pub sight: Sight,
     /// The deformable bodies.
     pub bodies: Vec<BodyPicture>,
     /// The fixed or moving obstacles.
@@ -34,6 +38,8 @@ impl Default for Picture {
             dimension: 2,
             time: 0.0,
             title: String::new(),
+            credit: String::new(),
+            sight: Sight::default(),
             bodies: Vec::new(),
             colliders: Vec::new(),
             arrows: Vec::new(),
@@ -43,6 +49,17 @@ impl Default for Picture {
             length_unit: "m".into(),
         }
     }
+}
+
+/// What a picture shows and from where; what is absent is chosen by what there is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// The lowest and the highest corner of the box that is shown [m].
+    pub region: Option<[[f64; 3]; 2]>,
+    /// The angle of the camera around the y axis, from z towards x [degrees]; only in three dimensions.
+    pub azimuth: Option<f64>,
+    /// The angle of the camera above the horizon [degrees]; only in three dimensions.
+    pub elevation: Option<f64>,
 }
 
 /// The meaning of the scalars of the bodies.
@@ -80,6 +97,15 @@ pub struct AreaPicture {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Where a body lay before it was deformed.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct RestPicture {
+    /// The points [m].
+    pub positions: Vec<[f64; 3]>,
+    /// The lines between them.
+    pub segments: Vec<[u32; 2]>,
+}
+
 /// One deformable body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPicture {
@@ -100,6 +126,11 @@ pub struct BodyPicture {
     /// How far apart neighbours were at the start [m]: where that leaves no room for dots in a flat picture there are none,
     /// in all pictures of a run alike. Dots are drawn in any case where this is absent.
     pub node_spacing: Option<f64>,
+    /// The larger side of the body at the start [m]: what is drawn of it and how thick is decided by that, in all pictures of a
+    /// run alike; by its size in this picture where this is absent.
+    pub extent: Option<f64>,
+    /// Lines where the body once lay, drawn beneath it; may be empty.
+    pub rest: RestPicture,
     /// The areas which are drawn in two dimensions instead of the outline, one over another; may be empty.
     pub areas: Vec<AreaPicture>,
     /// The nodes which are held in place.
@@ -119,6 +150,8 @@ impl Default for BodyPicture {
             colour: None,
             nodes_drawn: false,
             node_spacing: None,
+            extent: None,
+            rest: RestPicture::default(),
             areas: Vec::new(),
             pinned: Vec::new(),
             label: String::new(),
@@ -244,6 +277,10 @@ impl BodyPicture {
                 let node = beyond.copied().unwrap_or(last as u32);
                 return Err(DrawError::Node { body, nodes: points, part: "areas", node });
             }
+        }
+        let points = self.rest.positions.len();
+        if let Some(&node) = self.rest.segments.iter().flatten().find(|node| **node as usize >= points) {
+            return Err(DrawError::Node { body, nodes: points, part: "lines at rest", node });
         }
         let parts: [(&'static str, Option<u32>); 4] = [
             ("facets", wrong(facets)),

@@ -82,17 +82,22 @@ impl Grid {
         [wide, rows * (self.panel[1] + self.line) + (rows - 1.0) * 0.4 * self.gap]
     }
 
-    /// How far the grid is from the best: a strip of a good shape without empty places.
-    fn fault(&self, count: usize, room: f32) -> f32 {
+    /// How far the grid is from the best: a strip of a good shape without empty places, whose bodies are large enough; `body`
+    /// is how much of the width of a panel a body takes.
+    fn fault(&self, count: usize, room: f32, body: f32) -> f32 {
         let [wide, tall] = self.size();
         let empty = (self.columns * self.rows - count) as f32;
-        (tall / (BEST_SHAPE * wide)).ln().abs() + (room / wide).ln() + 0.2 * empty
+        let shape = (tall / (BEST_SHAPE * wide)).ln();
+        let small = if body > 0.0 { (LARGE_ENOUGH / (body * self.panel[0]).max(1.0)).log2().max(0.0) } else { 0.0 };
+        // A page is turned up and down: what is tall is read more easily than what is wide and low, but for towers.
+        let shape = shape.max(-2.0 * shape) * 0.5 + 1.5 * (shape - 0.8).max(0.0);
+        shape + (room / wide).ln() + 0.2 * empty + SMALL_BODIES * small
     }
 
     /// The best grid of so many panels.
-    fn best(count: usize, aspect: f32, room: f32, unit: f32) -> Grid {
+    fn best(count: usize, aspect: f32, room: f32, unit: f32, body: f32) -> Grid {
         let grids = (1..=6).map(|columns| Grid::new(count, columns, aspect, room, unit));
-        let best = grids.min_by(|a, b| a.fault(count, room).total_cmp(&b.fault(count, room)));
+        let best = grids.min_by(|a, b| a.fault(count, room, body).total_cmp(&b.fault(count, room, body)));
         best.unwrap_or(Grid::new(count, 1, aspect, room, unit))
     }
 
@@ -104,12 +109,26 @@ impl Grid {
     }
 }
 
-/// The number of panels, of nine to twelve or as many as there are, which makes the best strip of a view.
+/// The pixels that a body should have at least along its larger side to be looked at.
+const LARGE_ENOUGH: f32 = 130.0;
+/// How much worse a strip is whose bodies are half as large as they should be.
+const SMALL_BODIES: f32 = 1.2;
+
+/// How much worse a strip is for each moment that it does not show.
+const MISSED: f32 = 0.12;
+
+/// The number of panels, of nine to twelve or as many as there are, which makes the best strip of a view; fewer where the
+/// bodies would be too small to be looked at.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
     let (aspect, room) = (view.aspect(dimension) as f32, style.width as f32);
-    let fault = |count: usize| Grid::best(count, aspect, room, 1.0).fault(count, room);
-    (9..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
+    let body = view.share_of_body(dimension) as f32;
+    let fault = |count: usize| {
+        // Moments that are not shown are missed; more than nine are not.
+        let missed = MISSED * 9_usize.saturating_sub(count) as f32;
+        Grid::best(count, aspect, room, 1.0, body).fault(count, room, body) + missed
+    };
+    (4..=12.min(most)).min_by(|a, b| fault(*a).total_cmp(&fault(*b))).unwrap_or(most)
 }
 
 /// Draws pictures side by side in rows, with one view, one length scale and one legend for all; below each its time.
@@ -134,13 +153,13 @@ pub fn captioned_strip(
     let unit = (style.width as f32 / 1400.0).clamp(0.6, 6.0);
     let margin = (16.0 * unit).round();
     let head = if first.title.is_empty() { margin } else { 44.0 * unit };
-    let foot = 44.0 * unit;
+    let foot = 44.0 * unit + Layout::credit_space(&first.credit, unit);
     let legend = Layout::legend_space(first, view, unit, style.legend);
     let room = style.width as f32 - 2.0 * margin - legend;
     let aspect = style.aspect.unwrap_or_else(|| view.aspect(first.dimension)) as f32;
     let grid = match style.columns {
         Some(columns) => Grid::new(pictures.len(), columns, aspect, room, unit),
-        None => Grid::best(pictures.len(), aspect, room, unit),
+        None => Grid::best(pictures.len(), aspect, room, unit, view.share_of_body(first.dimension) as f32),
     };
     // Captions that are longer than their panels are wide take several lines.
     let (mut grid, size, line) = (grid, 15.0 * unit, 18.0 * unit);
@@ -181,6 +200,8 @@ pub fn captioned_strip(
     let bar = panel.max(120.0 * unit).min(0.45 * (whole - 2.0 * margin));
     let base = [margin, bottom + 26.0 * unit];
     layout.foot(&mut canvas, pictures, view, base, whole - 2.0 * margin, [0.48 * bar, scale as f32]);
+    let last = [margin, head + height + foot - 12.0 * unit];
+    layout.credit(&mut canvas, &first.credit, last, whole - 2.0 * margin);
     if let (Some(legend), true) = (&first.legend, style.legend) {
         layout.legend(&mut canvas, legend, view, first);
     }
@@ -242,6 +263,67 @@ mod tests {
                 assert_eq!(cut, None, "{dimension} {size:?} {count} {width} {height}");
             }
         }
+    }
+
+    #[test]
+    fn a_credit_stands_on_a_line_of_its_own_below_strips_and_in_every_frame_of_a_film() {
+        use crate::picture::BodyPicture;
+        let body = BodyPicture { positions: vec![[0.0; 3], [1.0, 1.0, 0.0]], ..Default::default() };
+        let bare = Picture { bodies: vec![body], ..Default::default() };
+        let credit = "Drawing: Twemoji, © Twitter, Inc and other contributors, CC-BY 4.0";
+        let told = Picture { credit: credit.into(), ..bare.clone() };
+        let view = View::fit([&bare]).expect("a view");
+        for count in [1, 4, 10] {
+            let strip =
+                |picture: &Picture| strip(&vec![picture; count], &view, &StripStyle::default()).expect("a strip");
+            let (without, with) = (strip(&bare), strip(&told));
+            assert_eq!((with.width(), with.height()), (without.width(), without.height() + 18));
+            let above = 4 * without.width() as usize * (without.height() as usize - 20);
+            assert_eq!(with.pixels()[..above], without.pixels()[..above], "nothing else has moved");
+            let inked = |image: &Image, from: u32| {
+                let rows = from..image.height();
+                rows.flat_map(|y| (0..image.width()).map(move |x| [x, y]))
+                    .filter(|[x, y]| image.pixel(*x, *y)[0] < 200)
+                    .count()
+            };
+            assert!(inked(&with, with.height() - 26) > 300 && inked(&without, without.height() - 8) == 0);
+        }
+        let style = crate::Style::film(&view, 2, 640);
+        let film = |picture: &Picture| crate::draw(picture, &view, &style).expect("a frame");
+        let (without, with) = (film(&bare), film(&told));
+        assert_eq!((with.width(), with.height()), (without.width(), without.height()), "frames of one size");
+        let last_rows = with.height() - 16..with.height();
+        let written = |image: &Image| {
+            let at = last_rows.clone().flat_map(|y| (0..image.width()).map(move |x| [x, y]));
+            at.filter(|[x, y]| image.pixel(*x, *y)[0] < 200).count()
+        };
+        assert!(written(&with) > written(&without) + 150, "{} {}", written(&with), written(&without));
+    }
+
+    #[test]
+    fn small_bodies_get_fewer_and_larger_panels() {
+        use crate::picture::BodyPicture;
+        // How many panels, and how wide each of them is.
+        let crowd = |side: f64| {
+            let body = |k: usize| {
+                let [x, y] = [(k % 8) as f64, (k / 8) as f64];
+                BodyPicture { positions: vec![[x, y, 0.0], [x + side, y + side, 0.0]], ..Default::default() }
+            };
+            let picture = Picture { bodies: (0..32).map(body).collect(), ..Default::default() };
+            let view = View::fit([&picture]).expect("a view");
+            let count = best_count(&view, 2, 200);
+            let share = view.share_of_body(2) as f32;
+            (count, Grid::best(count, view.aspect(2) as f32, 1400.0, 1.0, share).panel[0])
+        };
+        let (small, large) = (crowd(0.3), crowd(4.0));
+        assert!(small.0 < large.0 && small.1 > 1.4 * large.1, "{small:?} {large:?}");
+        let one = Picture {
+            bodies: vec![BodyPicture { positions: vec![[0.0; 3], [1.0, 1.0, 0.0]], ..Default::default() }],
+            ..Default::default()
+        };
+        let view = View::fit([&one]).expect("a view");
+        assert!((9..=12).contains(&best_count(&view, 2, 200)));
+        assert_eq!(best_count(&view, 2, 3), 3, "no more than there are");
     }
 
     #[test]

@@ -105,6 +105,7 @@ words! {
     contacts_hint: "Of obstacles on the nodes in the coming step: normal force, friction, and the impulse of an impact over the step", "Prepreka na čvorove u idućem koraku: normalna sila, trenje i impuls sudara kroz trajanje koraka";
     colour_map: "Colours", "Boje";
     viridis: "Violet to yellow", "Ljubičasto do žuto";
+    embers: "Pale to dark violet", "Blijedo do tamnoljubičasto";
     cividis: "Blue to yellow, for red-green blindness", "Plavo do žuto, za daltoniste";
     grey: "Grey, without colours", "Sivo, bez boja";
     diverging: "Blue to red", "Plavo do crveno";

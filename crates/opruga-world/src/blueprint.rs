@@ -22,6 +22,10 @@ pub struct Blueprint<const D: usize> {
     pub title: String,
     /// What pictures and plots call the unit of length: `m`, unless the scene counts in something else, such as pixels.
     pub length_unit: String,
+    /// Whose drawings, maps and surfaces the scene shows, and under which licence: written under every picture.
+    pub credit: String,
+    /// What pictures of the scene show.
+    pub picture: Pictured<D>,
     /// The seed of everything random.
     pub seed: u64,
     /// How time passes.
@@ -54,6 +58,8 @@ impl<const D: usize> Blueprint<D> {
             name: self.name.clone(),
             title: self.title.clone(),
             length_unit: self.length_unit.clone(),
+            credit: self.credit.clone(),
+            picture: self.picture,
             seed: self.seed,
             time: self.time,
             surroundings: self.surroundings,
@@ -65,6 +71,19 @@ impl<const D: usize> Blueprint<D> {
             probes: Vec::new(),
         }
     }
+}
+
+/// What pictures of a scene show; what is absent is chosen by what is seen. No number of the physics depends on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pictured<const D: usize> {
+    /// How many moments a film strip shows.
+    pub panels: Option<u32>,
+    /// The lowest and the highest corner of the part that a film strip shows [m].
+    pub region: Option<[[f64; D]; 2]>,
+    /// The angle of the camera around the y axis, from z towards x [degrees]; only in space.
+    pub azimuth: Option<f64>,
+    /// The angle of the camera above the horizon [degrees]; only in space.
+    pub elevation: Option<f64>,
 }
 
 /// How time passes: a frame is divided into substeps of h = frame / substeps.

@@ -122,6 +122,13 @@ pub const SCENE: Section = Section {
                 Default::Text("m"),
                 "What pictures and plots call the unit of length, for scenes that do not count in metres; no number depends on it.",
             ),
+            Field::new(
+                "credit",
+                Allowed::Text,
+                "",
+                Default::Text(""),
+                "Whose drawings, maps or surfaces the scene shows, and under which licence: written small under every picture and film of it.",
+            ),
         ],
     ),
     children: &[
@@ -138,6 +145,7 @@ pub const SCENE: Section = Section {
             "What is done to the bodies while they move.",
         ),
         child("probe", Holds::List(&PROBE), false, "Columns of `diagnostics.csv` that follow nodes."),
+        child("picture", Holds::Table(&PICTURE), false, "What pictures of the scene show."),
     ],
 };
 
@@ -162,6 +170,47 @@ pub const TIME: Section = Section {
                 "",
                 Default::Integer(16),
                 "The number of steps of the integrator in a frame.",
+            ),
+        ],
+    ),
+    children: &[],
+};
+
+/// `[picture]`.
+pub const PICTURE: Section = Section {
+    spec: &section(
+        "picture",
+        "What pictures of the scene show",
+        "What pictures show, and from where. What is not given is chosen by what is seen in the run; no number of the physics depends on it.",
+        &[
+            Field::new(
+                "panels",
+                Allowed::Integer { least: 1, greatest: 60 },
+                "",
+                Default::Absent,
+                "How many moments `strip.png` shows; by itself as many as leave bodies large enough to be looked at.",
+            ),
+            Field::new(
+                "low",
+                Allowed::Vector,
+                "m",
+                Default::Absent,
+                "The lowest corner of the part that `strip.png` shows, with `high`; by itself all that bodies reach, as in films.",
+            ),
+            Field::new("high", Allowed::Vector, "m", Default::Absent, "The highest corner of that part."),
+            Field::new(
+                "azimuth",
+                Allowed::Number { least: Bound::Closed(-360.0), greatest: Bound::Closed(360.0) },
+                "°",
+                Default::Absent,
+                "In space: where the camera stands around the y axis, from z towards x; by itself 32.",
+            ),
+            Field::new(
+                "elevation",
+                Allowed::Number { least: Bound::Closed(-89.0), greatest: Bound::Closed(89.0) },
+                "°",
+                Default::Absent,
+                "In space: how far above the horizon the camera stands; by itself 20.",
             ),
         ],
     ),

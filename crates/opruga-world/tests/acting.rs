@@ -46,6 +46,8 @@ fn scene(commands: Vec<CommandBlueprint<2>>) -> Blueprint<2> {
         name: "acting".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 1,
         time: Time { seconds: 2.0, frame: 1.0 / 60.0, substeps: 16 },
         surroundings: Surroundings {

@@ -109,6 +109,8 @@ fn scene<const D: usize>(
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 48 },
         surroundings: Surroundings {

@@ -42,6 +42,8 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 1.0 / 60.0, substeps: 40 },
         surroundings: Surroundings {

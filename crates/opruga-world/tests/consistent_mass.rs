@@ -34,6 +34,8 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 0.01, substeps: 4 },
         surroundings: Surroundings {

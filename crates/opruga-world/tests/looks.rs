@@ -40,6 +40,8 @@ fn rings(count: usize, substeps: u32) -> Blueprint<2> {
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: f64::from(substeps) / 1920.0, substeps },
         surroundings: Surroundings {

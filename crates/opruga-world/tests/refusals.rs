@@ -46,6 +46,8 @@ fn scene(bodies: Vec<BodyBlueprint<2>>, colliders: Vec<ColliderBlueprint>) -> Bl
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 0.01, substeps: 10 },
         surroundings: Surroundings {

@@ -83,5 +83,16 @@ pub fn find(name: &str) -> Option<&'static str> {
 
 /// The title of a scene: the line `title = "…"` of its text.
 pub fn title(text: &str) -> &str {
-    text.lines().find_map(|l| l.strip_prefix("title = \"")?.strip_suffix('"')).unwrap_or("")
+    line(text, "title")
+}
+
+/// Whose drawings, maps or surfaces a scene shows, and under which licence: the line `credit = "…"` of its text.
+pub fn credit(text: &str) -> &str {
+    line(text, "credit")
+}
+
+/// The text of a line `name = "…"`; empty where there is none.
+fn line<'t>(text: &'t str, name: &str) -> &'t str {
+    let value = |l: &'t str| l.strip_prefix(name)?.strip_prefix(" = \"")?.strip_suffix('"');
+    text.lines().find_map(value).unwrap_or("")
 }

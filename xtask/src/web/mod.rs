@@ -70,7 +70,7 @@ fn page() -> Result<PathBuf, String> {
     let program = compiler::compile(&root()?)?;
     let made = bindings::make(&program)?;
     let folder = folder()?;
-    pages::lay_out(&root()?.join("crates/opruga-studio/web"), &made, &folder)?;
+    pages::lay_out(&root()?, &made, &folder)?;
     Ok(folder)
 }
 

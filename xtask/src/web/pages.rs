@@ -11,7 +11,8 @@ const MOST_BYTES: usize = 4_000_000;
 ///
 /// # Errors
 /// What cannot be written, and a page that is too large.
-pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), String> {
+pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), String> {
+    let (sources, shapes) = (root.join("crates/opruga-studio/web"), root.join("scenes/shapes"));
     let packed = packed(&made.program)?;
     // Files of one version have one name, so that no browser mixes versions.
     let version = format!("{:016x}", fingerprint(&[&packed, &made.script]));
@@ -24,11 +25,13 @@ pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), 
     let page = source("index.html")?;
     let page = page.replace("{{packed}}", &names.0).replace("{{glue}}", &names.1);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
-    let kept = ["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
+    let credits = credits(&shapes)?;
+    let mut kept = vec!["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
+    kept.extend(credits.iter().map(|(name, _)| name.as_str()));
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
     let worker = source("worker.js")?.replace("{{version}}", &version);
     let worker = worker.replace("{{files}}", &serde_json::json!(kept).to_string());
-    let files = [
+    let mut files = vec![
         ("index.html", page.into_bytes()),
         ("worker.js", worker.into_bytes()),
         ("icon.svg", source("icon.svg")?.into_bytes()),
@@ -36,6 +39,7 @@ pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), 
         (&names.1, made.script.clone()),
         (&names.0, packed),
     ];
+    files.extend(credits.iter().map(|(name, text)| (name.as_str(), text.clone())));
     if folder.exists() {
         std::fs::remove_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }
@@ -57,6 +61,24 @@ pub(super) fn lay_out(sources: &Path, made: &Made, folder: &Path) -> Result<(), 
         return Err(format!("the page takes {all} bytes on its way; allowed: {MOST_BYTES}"));
     }
     Ok(())
+}
+
+/// Where the shapes of the scenes come from, and the licences of those who made them: name and text of every such file.
+///
+/// # Errors
+/// What cannot be read.
+fn credits(shapes: &Path) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let failed = |e: std::io::Error| format!("{}: {e}", shapes.display());
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(shapes).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if ["CREDITS", "LICENSE", "README"].iter().any(|kind| name.starts_with(kind)) {
+            found.push((name, std::fs::read(entry.path()).map_err(failed)?));
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
 fn packed(bytes: &[u8]) -> Result<Vec<u8>, String> {

@@ -74,6 +74,9 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         Some("js") => "text/javascript",
         Some("svg") => "image/svg+xml",
         Some("webmanifest") => "application/manifest+json",
+        // The credits, and licences without an ending.
+        Some("md" | "txt") => "text/plain; charset=utf-8",
+        Some(whole) if whole == name => "text/plain; charset=utf-8",
         _ => "application/octet-stream",
     };
     let length = bytes.len();

@@ -99,6 +99,8 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         name: format!("{bodies} x {vertices}"),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1.0, frame: 16.0 / 1000.0, substeps: 16 },
         surroundings: Surroundings {

@@ -3,7 +3,10 @@
 use super::Projection;
 use crate::canvas::{Canvas, paint};
 use crate::picture::AreaPicture;
-use tiny_skia::{Path, PathBuilder};
+use tiny_skia::{Paint, Path, PathBuilder};
+
+/// The width in pixels of the line around a painted area.
+const HAIRLINE: f32 = 0.5;
 
 /// The lines around an area as one path.
 pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> {
@@ -34,11 +37,45 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
     builder.finish()
 }
 
+/// What an area covers: its triangles, all in one sense. Where a body is folded, the lines around the area run over one
+/// another and would leave a hole; its triangles lie twofold there.
+fn covered(area: &AreaPicture, projection: &Projection) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for triangle in &area.triangles {
+        let corners = triangle.map(|point| area.positions[point as usize]);
+        if corners.iter().flatten().any(|x| !x.is_finite()) {
+            continue;
+        }
+        let [a, mut b, mut c] = corners.map(|corner| projection.pixel(corner));
+        if (b[0] - a[0]) * (c[1] - a[1]) < (c[0] - a[0]) * (b[1] - a[1]) {
+            (b, c) = (c, b);
+        }
+        builder.move_to(a[0], a[1]);
+        builder.line_to(b[0], b[1]);
+        builder.line_to(c[0], c[1]);
+        builder.close();
+    }
+    builder.finish()
+}
+
+/// Fills an area with a paint.
+pub(super) fn fill(canvas: &mut Canvas, area: &AreaPicture, projection: &Projection, paint: &Paint) {
+    match covered(area, projection) {
+        Some(covered) => canvas.fill_all(&covered, paint),
+        None => path(area, projection).iter().for_each(|path| canvas.fill(path, paint)),
+    }
+}
+
 /// Fills the areas that have a colour of their own, one over another.
 pub(super) fn draw(canvas: &mut Canvas, areas: &[AreaPicture], projection: &Projection) {
     for area in areas {
-        if let (Some([red, green, blue, opacity]), Some(path)) = (area.colour, path(area, projection)) {
-            canvas.fill(&path, &paint([red, green, blue], f64::from(opacity) / 255.0));
+        if let Some([red, green, blue, opacity]) = area.colour {
+            let paint = paint([red, green, blue], f64::from(opacity) / 255.0);
+            fill(canvas, area, projection, &paint);
+            // What is squeezed to nothing is still there: a thin line holds the ends of a stem together.
+            if let (255, Some(lines)) = (opacity, path(area, projection)) {
+                canvas.stroke(&lines, HAIRLINE, &paint);
+            }
         }
     }
 }

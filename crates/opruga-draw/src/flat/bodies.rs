@@ -4,7 +4,7 @@ use super::Projection;
 use super::loops::{Loop, chain, parts};
 use super::{areas, shade};
 use crate::canvas::{Canvas, paint};
-use crate::colour::{BODIES, ColourMap, INK, darker, mix};
+use crate::colour::{BODIES, ColourMap, INK, SOFT_INK, darker, mix};
 use crate::picture::{BodyPicture, Facets, Picture};
 use crate::view::View;
 use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
@@ -61,7 +61,9 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
             continue;
         }
         let base = body.colour.unwrap_or(body_colour(index, picture.bodies.len()));
-        let size = (high[0] - low[0]).max(high[1] - low[1]);
+        let seen = (high[0] - low[0]).max(high[1] - low[1]);
+        // A body that is squeezed or stretched is drawn as before.
+        let size = body.extent.map_or(seen, |extent| (extent * projection.scale) as f32);
         Drawing { body, pixels: &pixels, low, high, size, unit, base, scalars: &scalars, projection }.draw(canvas);
     }
 }
@@ -83,7 +85,7 @@ struct Drawing<'a> {
     low: [f32; 2],
     /// The right and lower ends of the body in pixels.
     high: [f32; 2],
-    /// The larger side of the body in pixels.
+    /// The larger side of the body at the start in pixels.
     size: f32,
     /// The size of lines.
     unit: f32,
@@ -99,6 +101,7 @@ impl Drawing<'_> {
     /// Draws the body.
     fn draw(&self, canvas: &mut Canvas) {
         let body = self.body;
+        self.rest(canvas);
         let coloured = !body.scalar.is_empty();
         let loops = match &body.facets {
             Facets::Edges(edges) => chain(edges),
@@ -145,12 +148,26 @@ impl Drawing<'_> {
         self.nodes(canvas);
     }
 
+    /// Draws where the body once lay.
+    fn rest(&self, canvas: &mut Canvas) {
+        let rest = &self.body.rest;
+        for chain in chain(&rest.segments) {
+            let mut points: Vec<[f32; 2]> =
+                chain.nodes.iter().map(|node| self.projection.pixel(rest.positions[*node as usize])).collect();
+            points.extend(chain.closed.then(|| points[0]));
+            if let Some(path) = crate::canvas::path_of(&points, false) {
+                let dashes = [5.0 * self.unit, 3.5 * self.unit];
+                canvas.stroke_dashed(&path, 1.1 * self.unit, &dashes, &paint(SOFT_INK, 0.8));
+            }
+        }
+    }
+
     /// Draws the areas that the body carries: the colours of its nodes within those that have none of their own.
     fn carried(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
         for area in self.body.areas.iter().filter(|area| area.colour.is_none()) {
             let Some(path) = areas::path(area, self.projection) else { continue };
             if self.body.scalar.is_empty() {
-                canvas.fill(&path, &paint(self.base, 1.0));
+                areas::fill(canvas, area, self.projection, &paint(self.base, 1.0));
             } else {
                 self.fill_within(canvas, cells, Some(&path));
             }
@@ -227,11 +244,17 @@ impl Drawing<'_> {
         if spacing < 7.0 {
             return;
         }
+        let (colour, opacity) = if self.is_light() { (INK, 0.16) } else { ([255; 3], 0.38) };
         let mut edges: Vec<[u32; 2]> =
             cells.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.dedup();
-        self.lines(canvas, &edges, 0.6 * self.unit, [255; 3], 0.38);
+        self.lines(canvas, &edges, 0.6 * self.unit, colour, opacity);
+    }
+
+    /// Whether its colours begin with a light one, over which lines must be dark.
+    fn is_light(&self) -> bool {
+        !self.body.scalar.is_empty() && self.scalars.map.is_light_below()
     }
 
     /// Draws springs, where they are long enough to be seen.
@@ -243,7 +266,14 @@ impl Drawing<'_> {
         let spacing = self.size / (segments.len() as f32).sqrt();
         let width = (0.09 * spacing).clamp(0.35, 1.3) * self.unit;
         if self.body.scalar.is_empty() || filled {
-            self.lines(canvas, segments, width, darker(self.base), if filled { 0.45 } else { 1.0 });
+            let colour = if filled && self.is_light() { INK } else { darker(self.base) };
+            let opacity = match filled {
+                false => 1.0,
+                // These lines lie on those of the cells.
+                true if self.is_light() => 0.2,
+                true => 0.45,
+            };
+            self.lines(canvas, segments, width, colour, opacity);
             return;
         }
         for &[a, b] in segments {

@@ -14,7 +14,7 @@ use crate::picture::{ArrowKind, ArrowPicture, Facets, Picture};
 use crate::view::View;
 
 /// The free border between what must be seen and the frame, as a share of the larger side.
-const BORDER: f64 = 0.04;
+pub(crate) const BORDER: f64 = 0.04;
 
 /// How points of the plane become pixels of the scene.
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +144,83 @@ mod tests {
         broken.ends = vec![4, 7];
         let body = BodyPicture { positions: positions.clone(), areas: vec![broken], ..Default::default() };
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
+    }
+
+    /// An area whose lower half is folded up over its upper half covers what it covered, without the hole that the even-odd rule
+    /// leaves where its line runs over itself.
+    #[test]
+    fn a_folded_drawing_has_no_holes() {
+        let positions =
+            vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0], [2.0, 1.5, 0.0], [0.0, 1.5, 0.0]];
+        let area = AreaPicture {
+            colour: Some([0, 90, 200, 255]),
+            positions: positions.clone(),
+            ends: vec![6],
+            // The upper part between 1, 2, 3 and 0, and the part folded over it, turned round.
+            triangles: vec![[0, 1, 2], [0, 2, 3], [0, 5, 4], [0, 4, 1]],
+        };
+        let ring = [0, 3, 2, 1, 4, 5].map(|point: usize| positions[point]).to_vec();
+        let order = [0_u32, 3, 2, 1, 4, 5];
+        let place = |point: u32| order.iter().position(|other| *other == point).expect("a point") as u32;
+        let triangles = area.triangles.iter().map(|t| t.map(place)).collect();
+        let area = AreaPicture { positions: ring, triangles, ..area };
+        let body = BodyPicture { positions, areas: vec![area.clone()], ..Default::default() };
+        let picture = Picture { bodies: vec![body], ..Default::default() };
+        picture.check().expect("it fits together");
+        let view = View::fit([&picture]).expect("a view");
+        let seen = |picture: &Picture| {
+            let (image, scale) = scene(picture, &view, [255; 3], [200, 200], 1.0).expect("an image");
+            image.pixel(100, (100.0 + scale * 0.25) as u32)
+        };
+        assert_eq!(seen(&picture), [0, 90, 200]);
+        let mut by_lines = picture.clone();
+        by_lines.bodies[0].areas[0].triangles.clear();
+        assert_eq!(seen(&by_lines), [255; 3], "the line alone leaves a hole, which is why triangles are filled");
+    }
+
+    /// Whether the cells of a body are drawn is decided once in a run: a body that is squeezed shows those that it showed.
+    #[test]
+    fn the_lattice_is_drawn_in_all_pictures_of_a_run_or_in_none() {
+        let side = 24;
+        let at = |k: usize| (k % (side + 1), k / (side + 1));
+        let nodes = (side + 1) * (side + 1);
+        let square = |x: usize, y: usize| (y * (side + 1) + x) as u32;
+        let cells: Vec<[u32; 3]> = (0..side * side)
+            .flat_map(|k| {
+                let (x, y) = (k % side, k / side);
+                let [a, b, c, d] = [square(x, y), square(x + 1, y), square(x + 1, y + 1), square(x, y + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        let body = |stretch: f64| BodyPicture {
+            positions: (0..nodes).map(|k| [at(k).0 as f64 * stretch, at(k).1 as f64 / stretch, 0.0]).collect(),
+            scalar: vec![0.5; nodes],
+            cells: cells.clone(),
+            extent: Some(side as f64),
+            ..Default::default()
+        };
+        let picture = |stretch: f64| Picture {
+            bodies: vec![body(stretch)],
+            legend: Some(Legend { range: Some([0.0, 1.0]), ..Legend::default() }),
+            ..Default::default()
+        };
+        let shown = |size: u32| {
+            let view = View::fit([&picture(1.0), &picture(2.0)]).expect("a view");
+            [1.0, 1.5, 2.0].map(|stretch| {
+                let (image, _) = scene(&picture(stretch), &view, [255; 3], [size, size], 1.0).expect("an image");
+                let mut colours: Vec<[u8; 3]> =
+                    (0..size * size).map(|k| image.pixel(k % size, k / size)).filter(|c| *c != [255; 3]).collect();
+                colours.sort_unstable();
+                colours.dedup();
+                // One colour and the soft edge of the body, or lines over it.
+                colours.len() > 2
+            })
+        };
+        for size in [120, 250, 300, 350, 400, 450, 500, 600] {
+            let shown = shown(size);
+            assert!(shown.iter().all(|lines| *lines == shown[0]), "{size}: {shown:?}");
+        }
+        assert!(shown(600)[0] && !shown(120)[0]);
     }
 
     /// Names lie all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.

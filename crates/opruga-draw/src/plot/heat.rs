@@ -4,7 +4,8 @@ use super::scale::Scale;
 use super::svg::{SIZE, Svg, TICK_SIZE, axis_text, document, hex, tick_count, width_of};
 use super::{HeatMap, HeatPanel};
 use crate::colour::{ColourMap, INK, SOFT_INK};
-use crate::ticks::format_value;
+use crate::ticks::format_tick;
+use std::collections::BTreeMap;
 
 /// The size of the letters within cells.
 const CELL_SIZE: f64 = 11.0;
@@ -24,6 +25,7 @@ pub(super) fn write(map: &HeatMap) -> String {
     if !map.title.is_empty() {
         svg.text(&map.title, [left, 25.0], 16.0, "start", INK, r#" font-weight="600""#);
     }
+    let first = y + 28.0;
     for (index, panel) in map.panels.iter().enumerate() {
         svg.text(&axis_text(&panel.scale), [left, y + 18.0], SIZE, "start", INK, "");
         y += 28.0;
@@ -36,6 +38,11 @@ pub(super) fn write(map: &HeatMap) -> String {
         }
     }
     svg.text(&map.x_label, [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
+    // All maps have the same rows: one title for them all, no longer than they are high.
+    let middle = 0.5 * (first + y);
+    let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
+    let size = SIZE * ((y - first) / width_of(&map.y_label, SIZE).max(1.0)).min(1.0);
+    svg.text(&map.y_label, [16.0, middle], size, "middle", INK, &turn);
     y += 56.0;
     let marks = [
         (map.panels.iter().any(|panel| !panel.failed.is_empty()), "× the run has failed"),
@@ -69,11 +76,40 @@ fn mark(panel: &HeatPanel, at: [usize; 2]) -> Option<&'static str> {
     }
 }
 
+/// What stands in the cells: numbers with three digits, and more where cells of other colours would bear the same.
+fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Option<String>)> {
+    let cells: Vec<([usize; 2], Option<f64>)> = places(map).map(|at| (at, value(panel, at))).collect();
+    let largest = cells.iter().filter_map(|cell| cell.1).fold(0.0, |most: f64, value| most.max(value.abs()));
+    let step = |of: f64, digits: i32| 10_f64.powi((of.log10() + 1e-9).floor() as i32 + 1 - digits);
+    let written = |digits: i32| -> Vec<Option<String>> {
+        let text = |value: f64| match (scale.logarithmic, value == 0.0 || largest == 0.0) {
+            (_, true) => "0".to_string(),
+            (true, _) => format_tick(value, step(value.abs(), digits)),
+            (false, _) => format_tick(value, step(largest, digits)),
+        };
+        cells.iter().map(|cell| cell.1.map(text)).collect()
+    };
+    let tells = |texts: &[Option<String>]| {
+        let mut seen: BTreeMap<&str, [u8; 3]> = BTreeMap::new();
+        cells.iter().zip(texts).filter_map(|(cell, text)| Some((cell.1?, text.as_deref()?))).all(|(value, text)| {
+            let colour = scale.place(value).map_or(NOTHING, |place| ColourMap::Viridis.colour(place));
+            *seen.entry(text).or_insert(colour) == colour || alike(seen[text], colour)
+        })
+    };
+    let texts = (3..9).map(written).find(|texts| tells(texts)).unwrap_or_else(|| written(9));
+    cells.into_iter().map(|cell| cell.0).zip(texts).collect()
+}
+
+/// Whether the eye hardly tells two colours apart.
+fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
+    a.iter().zip(&b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>() < 24
+}
+
 /// Draws the cells, the labels of the rows and the colour bar.
 fn draw_panel(svg: &mut Svg, map: &HeatMap, panel: &HeatPanel, area: [f64; 4], cell: [f64; 2]) {
     let [left, top, right, bottom] = area;
     let scale = Scale::fit(&panel.scale, places(map).filter_map(|at| value(panel, at)), 0.0);
-    let texts: Vec<_> = places(map).map(|at| (at, value(panel, at).map(format_value))).collect();
+    let texts = texts(map, panel, &scale);
     let widest = texts.iter().flat_map(|(_, text)| text).map(|text| width_of(text, CELL_SIZE)).fold(0.0, f64::max);
     let readable = widest + 4.0 < cell[0] && cell[1] > 15.0;
     for (at, text) in texts {
@@ -93,9 +129,6 @@ fn draw_panel(svg: &mut Svg, map: &HeatMap, panel: &HeatPanel, area: [f64; 4], c
         let middle = bottom - (row as f64 + 0.5) * cell[1];
         svg.text(label, [left - 9.0, middle + 4.2], TICK_SIZE, "end", INK, "");
     }
-    let middle = 0.5 * (top + bottom);
-    let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
-    svg.text(&map.y_label, [16.0, middle], SIZE, "middle", INK, &turn);
     if places(map).any(|at| value(panel, at).is_some()) {
         colour_bar(svg, &scale, [right + 14.0, top, right + 30.0, bottom]);
     }
@@ -192,6 +225,35 @@ mod tests {
         let mut whole = map();
         whole.panels[0] = HeatPanel { values: vec![vec![1.0; 3]; 2], failed: Vec::new(), ..whole.panels[0].clone() };
         assert!(!whole.to_svg().expect("a map").contains("failed"));
+    }
+
+    /// The texts within cells.
+    fn cell_texts(map: &HeatMap) -> Vec<String> {
+        let scale = Scale::fit(&map.panels[0].scale, places(map).filter_map(|at| value(&map.panels[0], at)), 0.0);
+        texts(map, &map.panels[0], &scale).into_iter().filter_map(|(_, text)| text).collect()
+    }
+
+    #[test]
+    fn cells_of_other_colours_bear_other_numbers() {
+        let mut close = map();
+        close.panels[0].values = vec![vec![2.5001, 2.5002, 2.5003], vec![2.5004, 2.5005, 2.5006]];
+        close.panels[0].failed.clear();
+        assert_eq!(cell_texts(&close), ["2.5001", "2.5002", "2.5003", "2.5004", "2.5005", "2.5006"]);
+        close.panels[0].values = vec![vec![2.5; 3]; 2];
+        assert_eq!(cell_texts(&close), ["2.50"; 6], "one colour, and no digits that say nothing");
+        close.panels[0].values = vec![vec![1e-3, 1e-2, 0.1], vec![1.0, 10.0, 123.4]];
+        close.panels[0].scale.logarithmic = true;
+        assert_eq!(cell_texts(&close)[5], "123");
+        assert!(cell_texts(&close)[0].starts_with("0.001"));
+    }
+
+    #[test]
+    fn all_maps_together_have_one_title_of_their_rows() {
+        let mut five = map();
+        five.y_label = "a long word that is higher than one map".into();
+        five.panels = vec![five.panels[0].clone(); 5];
+        let text = five.to_svg().expect("a map");
+        assert_eq!(text.matches("a long word").count(), 1);
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod shade;
 mod shapes;
 
 use crate::canvas::Canvas;
-use crate::colour::{BODIES, ColourMap, FRAME, OBSTACLE_EDGE, darker, mix};
+use crate::colour::{BODIES, ColourMap, FRAME, OBSTACLE_EDGE, SOFT_INK, darker, mix};
 use crate::error::DrawError;
 use crate::image::Image;
 use crate::marks::draw_marks;
@@ -178,6 +178,10 @@ impl Painter<'_> {
 
     /// Draws a body.
     fn body(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
+        for ends in &body.rest.segments {
+            let ends = ends.map(|node| body.rest.positions[node as usize]);
+            self.line(screen, ends, 1.0 * self.unit, SOFT_INK);
+        }
         let base = body.colour.unwrap_or(base);
         let range = self.view.range(self.picture);
         let places: Vec<f32> = body.scalar.iter().map(|&scalar| View::place(range, scalar) as f32).collect();
@@ -214,5 +218,56 @@ fn triangles(body: &BodyPicture) -> &[[u32; 3]] {
     match &body.facets {
         Facets::Triangles(triangles) => triangles,
         Facets::Edges(_) => &body.cells,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every face of a box has one colour up to its edges: the light of its neighbours does not run over.
+    #[test]
+    fn the_edges_of_a_box_are_sharp() {
+        // Two triangles a face, and four squares a face: nodes at edges, corners and within.
+        for cells in [1_usize, 2] {
+            let found =
+                shapes::shape(&ColliderPicture::Box { min: [0.0; 3], max: [1.0; 3], inside: false }).expect("a box");
+            let (mut positions, mut triangles): (Vec<[f64; 3]>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
+            let node = |p: [f64; 3], positions: &mut Vec<[f64; 3]>| {
+                positions.iter().position(|other| *other == p).unwrap_or_else(|| {
+                    positions.push(p);
+                    positions.len() - 1
+                }) as u32
+            };
+            for triangle in &found.triangles {
+                let [a, b, c] = triangle.map(|k| found.positions[k as usize]);
+                let half = |p: [f64; 3], q: [f64; 3]| -> [f64; 3] { std::array::from_fn(|d| 0.5 * (p[d] + q[d])) };
+                let parts = if cells == 1 {
+                    vec![[a, b, c]]
+                } else {
+                    let [ab, bc, ca] = [half(a, b), half(b, c), half(c, a)];
+                    vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+                };
+                triangles.extend(parts.into_iter().map(|part| part.map(|p| node(p, &mut positions))));
+            }
+            let body = BodyPicture {
+                positions,
+                facets: Facets::Triangles(triangles),
+                colour: Some([200; 3]),
+                ..BodyPicture::default()
+            };
+            let picture = Picture { dimension: 3, bodies: vec![body], ..Picture::default() };
+            let view = View::fit([&picture]).expect("a view");
+            let (image, _) = scene(&picture, &view, [255; 3], [200, 200], 1.0).expect("an image");
+            let mut counts = std::collections::BTreeMap::new();
+            for k in 0..200 * 200 {
+                *counts.entry(image.pixel(k % 200, k / 200)).or_insert(0) += 1;
+            }
+            counts.remove(&[255; 3]);
+            let (all, large): (u32, u32) =
+                counts.values().fold((0, 0), |(all, large), n| (all + n, large + if *n > 300 { *n } else { 0 }));
+            // Gloss varies a little over a face seen in perspective; the rest are the pixels of the edges.
+            assert!(large > all * 9 / 10, "{cells}: {large} of {all}");
+        }
     }
 }

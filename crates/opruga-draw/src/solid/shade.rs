@@ -8,7 +8,9 @@ use crate::colour::ColourMap;
 const SMALL: f32 = 40.0;
 
 /// The cosine of the angle between faces beyond which an edge is sharp.
-const SHARP: f64 = 0.55;
+const SHARP: f64 = 0.77;
+/// The cosine of the angle between a face and the mean of the faces at its corner up to which no edge there is sharp.
+const BLUNT: f64 = 0.94;
 
 /// The light of a scene, in the directions of the camera.
 pub(crate) struct Light {
@@ -90,14 +92,23 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
         }
     }
     normals.iter_mut().for_each(|normal| *normal = unit(*normal));
+    let around = Around::new(positions.len(), triangles);
     for (triangle, &face) in triangles.iter().zip(&faces) {
         let [Some(a), Some(b), Some(c)] = triangle.map(|node| seen[node as usize]) else { continue };
         let face = unit(face);
         let towards = between(positions[triangle[0] as usize], camera.place);
         let sign = if dot(face, towards) < 0.0 { -1.0 } else { 1.0 };
         let corners = triangle.map(|node| {
-            let normal = normals[node as usize];
-            let chosen = if smooth && dot(normal, face) > SHARP { normal } else { face };
+            let chosen = match normals[node as usize] {
+                _ if !smooth => face,
+                normal if dot(normal, face) > BLUNT => normal,
+                // The light runs evenly over the faces on this side of the edge, and breaks at the edge.
+                _ => unit(around.faces(node).fold([0.0; 3], |sum: [f64; 3], other| {
+                    let other = faces[other as usize];
+                    let beside = dot(unit(other), face) > SHARP;
+                    if beside { std::array::from_fn(|axis| sum[axis] + other[axis]) } else { sum }
+                })),
+            };
             camera.turn(chosen).map(|value| (sign * value) as f32)
         });
         let seen = [a, b, c];
@@ -110,6 +121,40 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
                 |weights: [f32; 3]| light.on([0, 1, 2].map(|axis| total(weights, corners.map(|normal| normal[axis]))));
             paint(screen, seen, triangle, colouring, shine);
         }
+    }
+}
+
+/// The triangles at every node.
+struct Around {
+    /// Where those of a node begin in the list; one more than there are nodes.
+    starts: Vec<u32>,
+    /// The triangles, node by node.
+    triangles: Vec<u32>,
+}
+
+impl Around {
+    /// Looks for them.
+    fn new(nodes: usize, triangles: &[[u32; 3]]) -> Around {
+        let mut starts = vec![0_u32; nodes + 1];
+        triangles.iter().flatten().for_each(|node| starts[*node as usize + 1] += 1);
+        for node in 0..nodes {
+            starts[node + 1] += starts[node];
+        }
+        let mut free = starts.clone();
+        let mut list = vec![0; 3 * triangles.len()];
+        for (number, triangle) in triangles.iter().enumerate() {
+            for &node in triangle {
+                list[free[node as usize] as usize] = number as u32;
+                free[node as usize] += 1;
+            }
+        }
+        Around { starts, triangles: list }
+    }
+
+    /// Those at a node.
+    fn faces(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
+        let (from, to) = (self.starts[node as usize], self.starts[node as usize + 1]);
+        self.triangles[from as usize..to as usize].iter().copied()
     }
 }
 

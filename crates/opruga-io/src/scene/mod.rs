@@ -25,11 +25,11 @@ pub(crate) use cost::Cost;
 use opruga_core::spec::Values;
 use opruga_math::words::number;
 use opruga_world::blueprint::{
-    AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Surroundings, Time,
+    AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
-use reader::Reader;
+use reader::{Reader, join};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -238,6 +238,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let before = reader.count();
     let time = time(reader, root);
     let surroundings = surroundings(reader, root);
+    let picture = picture(reader, root);
     let integrator = reader.integrator(root, "");
     let founded = reader.count() == before && root.get("time").is_some();
     let known = reader.catalogue.colliders.clone();
@@ -261,6 +262,8 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         name: scene_name(reader.source.file),
         title: top.text("title").unwrap_or("").to_string(),
         length_unit: top.text("length_unit").unwrap_or("m").to_string(),
+        credit: top.text("credit").unwrap_or("").to_string(),
+        picture,
         seed: top.integer("seed").unwrap_or(1) as u64,
         time,
         surroundings,
@@ -370,6 +373,47 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
         largest_force: values.number("largest_force"),
         largest_velocity: values.number("largest_velocity"),
         largest_distance: values.number("largest_distance"),
+    }
+}
+
+/// `[picture]`.
+fn picture<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Pictured<D> {
+    let Some(node) = root.get("picture") else { return Pictured::default() };
+    let values = reader.fields(node, "picture", &schema::PICTURE, None);
+    let given = |name: &str| node.get(name).is_some();
+    let sound = ["low", "high"].iter().all(|name| values.get(name).is_some());
+    let region = match (given("low"), given("high")) {
+        (false, false) => None,
+        (true, true) => sound.then(|| [values.vector("low"), values.vector("high")]),
+        (low, _) => {
+            let (one, other) = if low { ("low", "high") } else { ("high", "low") };
+            let text = format!("`{one}` is one corner of a box, and the other one, `{other}`, is missing");
+            let error = SceneError::new("scene.missing", text).path(join("picture", other));
+            reader.report(place_of(node, one), error.hint("both corners, or neither: then all that is seen is shown"));
+            None
+        }
+    };
+    if let Some([low, high]) = region
+        && !(0..D).all(|axis| low[axis] < high[axis])
+    {
+        let error = SceneError::new("scene.range", "the box that pictures show has no inside")
+            .path("picture.high")
+            .value(format!("{high:?}"))
+            .allowed(format!("on every axis more than `low` = {low:?}"));
+        reader.report(place_of(node, "high"), error);
+    }
+    let angles = ["azimuth", "elevation"];
+    if let Some(name) = angles.into_iter().find(|name| D == 2 && given(name)) {
+        let error = SceneError::new("scene.dimension", format!("`{name}` turns the camera of a scene in space"))
+            .path(join("picture", name))
+            .allowed("in scenes with `dimension = 3`");
+        reader.report(place_of(node, name), error);
+    }
+    Pictured {
+        panels: values.integer("panels").map(|panels| panels as u32),
+        region,
+        azimuth: values.number("azimuth"),
+        elevation: values.number("elevation"),
     }
 }
 

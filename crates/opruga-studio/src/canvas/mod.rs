@@ -182,6 +182,7 @@ impl Canvas {
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
         self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), language);
+        plane::credit(&look);
         if other.is_none() {
             plane::legend(&look, self.tools, language);
         }

@@ -438,3 +438,16 @@ pub(crate) fn legend(look: &Look<'_>, tools: Option<Rect>, language: Language) {
         painter.text(spot, Align2::LEFT_CENTER, format_value(tick), font.clone(), paper.ink);
     }
 }
+
+/// Writes at the lower right whose drawings, maps or surfaces are seen, and under which licence.
+pub(crate) fn credit(look: &Look<'_>) {
+    let (rect, credit) = (look.rect, &look.shown.picture.credit);
+    if !credit.is_empty() {
+        // Beside the bar of lengths, on as many lines as that takes.
+        let room = (0.6 * rect.width()).max(120.0);
+        let font = FontId::proportional(10.0);
+        let galley = look.painter.layout(credit.clone(), font, look.paper.soft, room);
+        let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0);
+        look.painter.galley(spot, galley, look.paper.soft);
+    }
+}

@@ -298,6 +298,7 @@ pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &
             let name = match map {
                 ColourMap::Viridis => words.viridis(),
                 ColourMap::Cividis => words.cividis(),
+                ColourMap::Embers => words.embers(),
                 ColourMap::Grey => words.grey(),
                 ColourMap::Diverging => words.diverging(),
             };

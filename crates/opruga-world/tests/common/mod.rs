@@ -32,6 +32,8 @@ pub(crate) fn solid<const D: usize>(
         name: "test".into(),
         title: String::new(),
         length_unit: "m".into(),
+        credit: String::new(),
+        picture: Default::default(),
         seed: 0,
         time: Time { seconds: 1e3, frame: 1.0 / 60.0, substeps: 1 },
         surroundings: Surroundings {

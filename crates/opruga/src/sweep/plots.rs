@@ -119,18 +119,37 @@ impl Plots<'_> {
                 failed,
             });
         }
-        let short = |values: Vec<String>| values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
+        let [x_label, y_label] = [[x, y], [y, x]].map(|[axis, other]| short_path(&axis.path, &other.path));
         HeatMap {
             title: self.sweep.name.clone(),
-            x_label: x.path.clone(),
-            x: short(columns),
-            y_label: y.path.clone(),
-            y: short(rows),
+            x_label,
+            x: short_values(columns),
+            y_label,
+            y: short_values(rows),
             panels,
             ..HeatMap::default()
         }
         .to_svg()
     }
+}
+
+/// The last two words of a path, and those before a number; the whole path where the other one ends in the same words.
+fn short_path(path: &str, other: &str) -> String {
+    let words: Vec<&str> = path.split('.').collect();
+    let mut kept = words.len().min(2);
+    while kept < words.len() && words[words.len() - kept].parse::<u64>().is_ok() {
+        kept += 1;
+    }
+    let short = words[words.len() - kept..].join(".");
+    let alike = other == short || other.ends_with(&format!(".{short}"));
+    if alike { path.to_string() } else { short }
+}
+
+/// Values with three digits, unless two of them would look the same.
+fn short_values(values: Vec<String>) -> Vec<String> {
+    let short: Vec<String> = values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
+    let told_apart = short.iter().collect::<std::collections::BTreeSet<_>>().len() == short.len();
+    if told_apart { short } else { values }
 }
 
 /// A range of numbers that holds one more.
@@ -141,4 +160,26 @@ fn wider((low, high): (f64, f64), x: f64) -> (f64, f64) {
 /// A linear axis; the words of a name are told apart by spaces.
 fn axis_of(name: &str, unit: &str) -> opruga_draw::Axis {
     opruga_draw::Axis::linear(name.replace('_', " "), unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{short_path, short_values};
+
+    #[test]
+    fn titles_of_axes_are_short_and_tell_the_parameters_apart() {
+        let (mass, gas) = ("body.ball.mass", "body.ball.models.pressure.nRT");
+        assert_eq!([short_path(mass, gas), short_path(gas, mass)], ["ball.mass", "pressure.nRT"]);
+        assert_eq!(short_path("collider.0.restitution", mass), "collider.0.restitution");
+        let (left, right) = ("body.left.models.pressure.nRT", "body.right.models.pressure.nRT");
+        assert_eq!([short_path(left, right), short_path(right, left)], [left, right]);
+        assert_eq!(short_path("mass", gas), "mass");
+    }
+
+    #[test]
+    fn values_that_differ_look_different() {
+        let listed = |values: &[&str]| values.iter().map(|value| value.to_string()).collect::<Vec<String>>();
+        assert_eq!(short_values(listed(&["0.123456", "0.5"])), ["0.123", "0.5"]);
+        assert_eq!(short_values(listed(&["2.5001", "2.5002"])), ["2.5001", "2.5002"]);
+    }
 }

@@ -2,14 +2,22 @@
 // Pictures are no physics: a last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
+mod quantity;
+mod rest;
+
 use crate::World;
 use crate::blueprint::{BodyBlueprint, PinBlueprint};
 use crate::collide::Picture as Placed;
-use crate::core::potential::{Account, CellState};
+use crate::core::potential::Account;
 use crate::draw::{
-    AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, ColourMap, Facets, Legend, Picture, PullPicture,
+    AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Picture, PullPicture, RestPicture,
+    Sight,
 };
 use crate::mesh::{EdgeSet, Mesh, Skin, triangle_parts};
+pub use quantity::Quantity;
+use quantity::{push_quantity, strain};
+pub use rest::rest_of;
+use rest::{is_shown, rest_lines};
 
 /// The most arrows of a body in a plane and in space, where those at the back are hidden.
 const MOST_ARROWS: [usize; 2] = [40, 130];
@@ -23,6 +31,9 @@ pub struct Scenery {
     title: String,
     y_down: bool,
     length_unit: String,
+    credit: String,
+    sight: Sight,
+    panels: Option<u32>,
     /// What the colours tell where nobody asks for something else.
     quantity: Quantity,
     bodies: Vec<Fixed>,
@@ -40,6 +51,10 @@ struct Fixed {
     nodes_drawn: bool,
     /// The mean length of its edges at rest [m].
     node_spacing: f64,
+    /// Its larger side at rest [m].
+    extent: f64,
+    /// Where it lay at the start, where that is shown.
+    rest: RestPicture,
     label: String,
     /// The depth of a body in the plane [m].
     thickness: f64,
@@ -49,65 +64,6 @@ struct Fixed {
     skin: Option<Skin>,
     /// The springs, where they are drawn whatever else is to be seen.
     springs: Option<Vec<[u32; 2]>>,
-}
-
-/// What the colours of the bodies tell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quantity {
-    /// The mean elongation of the edges at each node [%].
-    #[default]
-    Strain,
-    /// The force of the models that store energy, without gas, on each node [N].
-    ElasticForce,
-    /// The pressure of the gas [Pa]: that of the chamber which a node bounds, or of the only one; bodies without gas have
-    /// no colour.
-    Pressure,
-    /// The speed of each node [m/s].
-    Speed,
-    /// The von Mises stress of finite elements, the mean of the cells at each node [Pa]; bodies without have no colour.
-    VonMises,
-    /// The volume of finite elements over that at rest, the mean of the cells at each node.
-    VolumeRatio,
-    /// Nothing: bodies have a colour each, drawings their own.
-    Plain,
-}
-
-impl Quantity {
-    /// All of them, in the order of menus.
-    pub const ALL: [Quantity; 7] = [
-        Quantity::Strain,
-        Quantity::ElasticForce,
-        Quantity::Pressure,
-        Quantity::Speed,
-        Quantity::VonMises,
-        Quantity::VolumeRatio,
-        Quantity::Plain,
-    ];
-
-    /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
-    /// all are made of finite elements, else strain.
-    fn of<const D: usize>(bodies: &[BodyBlueprint<D>]) -> Quantity {
-        let mut areas = bodies.iter().filter_map(|body| body.mesh.skin.as_ref()).flat_map(|skin| &skin.areas);
-        if areas.any(|area| area.colour.is_some()) {
-            return Quantity::Plain;
-        }
-        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.kind() == "fem");
-        if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
-    }
-
-    /// Name and unit for legends; none where there is nothing to tell.
-    fn legend(self) -> Option<Legend> {
-        let (label, unit) = match self {
-            Quantity::Strain => ("strain", "%"),
-            Quantity::ElasticForce => ("elastic force", "N"),
-            Quantity::Pressure => ("pressure", "Pa"),
-            Quantity::Speed => ("speed", "m/s"),
-            Quantity::VonMises => ("von Mises stress", "Pa"),
-            Quantity::VolumeRatio => ("volume over that at rest", ""),
-            Quantity::Plain => return None,
-        };
-        Some(Legend { label: label.into(), unit: unit.into(), range: None, map: ColourMap::default() })
-    }
 }
 
 /// What changes from picture to picture, kept small.
@@ -137,7 +93,7 @@ fn three<const D: usize>(x: [f64; D]) -> [f64; 3] {
 impl Scenery {
     /// Looks at the bodies of a world, and at those that its commands will add.
     pub fn new<const D: usize>(world: &World<D>) -> Scenery {
-        let present = &world.blueprint().bodies;
+        let (present, pictured) = (&world.blueprint().bodies, world.blueprint().picture);
         let many = present.len() > 64;
         // A body alone is told by the title, and copies have no names that say anything.
         let named = (2..=8).contains(&present.len()) && present.iter().all(|b| !b.name.contains('['));
@@ -165,14 +121,28 @@ impl Scenery {
             }
             cells.extend(mesh.cells.quadratic_triangles.iter().flat_map(triangle_parts));
             let edges_length: f64 = edges.iter().map(length).sum();
+            let side = |axis: usize| {
+                let places = || mesh.positions.iter().map(move |position| position[axis]);
+                places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+            };
+            let facets = if D == 2 {
+                Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())
+            } else {
+                Facets::Triangles(surface)
+            };
+            let integrator = blueprint.integrator.as_ref().unwrap_or(&world.blueprint().integrator);
+            let rest = if is_shown(blueprint, integrator.kind()) {
+                let at = |x: &[f64; D]| three::<D>(core::array::from_fn(|d| x[d] + blueprint.translation[d]));
+                rest_lines(&facets, mesh.positions.iter().map(at).collect())
+            } else {
+                RestPicture::default()
+            };
             Fixed {
+                extent: (0..D).map(side).fold(0.0, f64::max),
+                rest,
                 node_spacing: edges_length / edges.len().max(1) as f64,
                 nodes: mesh.nodes(),
-                facets: if D == 2 {
-                    Facets::Edges(mesh.facets.iter().map(|f| [f[0], f[1]]).collect())
-                } else {
-                    Facets::Triangles(surface)
-                },
+                facets,
                 segments: if many || D == 3 && !mesh.facets.is_empty() { mesh.wires.clone() } else { edges.clone() },
                 cells: if D == 2 { cells } else { Vec::new() },
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
@@ -191,6 +161,13 @@ impl Scenery {
             bodies: present.iter().chain(world.coming_bodies()).map(fixed).collect(),
             y_down: y_down(world),
             length_unit: world.blueprint().length_unit.clone(),
+            credit: world.blueprint().credit.clone(),
+            sight: Sight {
+                region: pictured.region.map(|corners| corners.map(three)),
+                azimuth: pictured.azimuth,
+                elevation: pictured.elevation,
+            },
+            panels: pictured.panels,
             quantity: Quantity::of(present),
         }
     }
@@ -202,6 +179,11 @@ impl Scenery {
             // A body that no model can carry is told when it comes.
             fixed.springs = world.springs(body).ok();
         }
+    }
+
+    /// How many moments a film strip shows, where the scene says so.
+    pub fn panels(&self) -> Option<usize> {
+        self.panels.map(|panels| panels as usize)
     }
 
     /// Whether y counts downwards.
@@ -297,6 +279,8 @@ impl Scenery {
                 colour: None,
                 nodes_drawn: (fixed.nodes_drawn && areas.is_empty()) || fixed.springs.is_some(),
                 node_spacing: fixed.springs.is_none().then_some(fixed.node_spacing),
+                extent: fixed.springs.is_none().then_some(fixed.extent),
+                rest: fixed.rest.clone(),
                 areas,
                 pinned: fixed.pinned.clone(),
                 label: fixed.label.clone(),
@@ -306,6 +290,8 @@ impl Scenery {
             dimension: self.dimension,
             time: moment.time,
             title: self.title.clone(),
+            credit: self.credit.clone(),
+            sight: self.sight,
             bodies,
             colliders: moment.colliders.clone(),
             arrows: moment.arrows.clone(),
@@ -315,56 +301,6 @@ impl Scenery {
             legend: moment.quantity.legend(),
         }
     }
-}
-
-/// Adds a quantity at every node of a body.
-fn push_quantity<const D: usize>(
-    world: &mut World<D>,
-    body: usize,
-    nodes: usize,
-    quantity: Quantity,
-    scalars: &mut Vec<f32>,
-) {
-    let size = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>().sqrt() as f32;
-    match quantity {
-        Quantity::Strain | Quantity::Plain => {}
-        Quantity::Speed => scalars.extend((0..nodes as u32).map(|node| size(world.velocity(body, node)))),
-        Quantity::VonMises => push_means(world, body, nodes, CellState::von_mises, scalars),
-        Quantity::VolumeRatio => push_means(world, body, nodes, |state| state.volume_ratio, scalars),
-        Quantity::ElasticForce => {
-            let forces = world.node_forces(body, Some(Account::Elastic));
-            scalars.extend((0..nodes).map(|node| forces.get(node).map_or(f32::NAN, |force| size(*force))));
-        }
-        Quantity::Pressure => {
-            let readings = world.readings(body);
-            let pressure = readings.iter().find(|(name, _)| name == "pressure").map_or(f64::NAN, |(_, p)| *p);
-            let first = scalars.len();
-            scalars.extend(std::iter::repeat_n(pressure as f32, nodes));
-            for (node, pressure) in world.node_pressures(body) {
-                scalars[first + node as usize] = pressure as f32;
-            }
-        }
-    }
-}
-
-/// Adds the mean of a number of the cells at every node of a body; not a number where a node has none.
-fn push_means<const D: usize>(
-    world: &World<D>,
-    body: usize,
-    nodes: usize,
-    number: impl Fn(&CellState) -> f64,
-    scalars: &mut Vec<f32>,
-) {
-    let cells = &world.blueprint().bodies[body].mesh.cells;
-    let of_cell: Vec<&[u32]> = cells.iter().map(|(_, _, nodes)| nodes).collect();
-    let (mut sum, mut count) = (vec![0.0; nodes], vec![0.0; nodes]);
-    for state in world.cell_states(body) {
-        for node in of_cell[state.cell as usize] {
-            sum[*node as usize] += number(&state);
-            count[*node as usize] += 1.0;
-        }
-    }
-    scalars.extend(sum.iter().zip(&count).map(|(sum, count)| (sum / count) as f32));
 }
 
 /// The skin that a body carries, coloured as the nodes that carry it.
@@ -505,20 +441,4 @@ fn surfaces(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
         }
     }
     out
-}
-
-/// Mean elongation of the edges at each node [%].
-fn strain(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
-    let mut sum = vec![0.0; fixed.nodes];
-    let mut count = vec![0.0; fixed.nodes];
-    for ([a, b], rest) in &fixed.edges {
-        let (p, q) = (positions[*a as usize], positions[*b as usize]);
-        let length = p.iter().zip(&q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
-        let stretch = if *rest > 0.0 { 100.0 * (length / rest - 1.0) } else { 0.0 };
-        for node in [*a as usize, *b as usize] {
-            sum[node] += stretch;
-            count[node] += 1.0;
-        }
-    }
-    sum.iter().zip(&count).map(|(s, c)| if *c > 0.0 { s / c } else { 0.0 }).collect()
 }

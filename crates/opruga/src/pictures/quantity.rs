@@ -1,0 +1,135 @@
+//! What the colours of bodies tell, and its value at every node.
+
+use super::Fixed;
+use crate::World;
+use crate::blueprint::BodyBlueprint;
+use crate::core::potential::{Account, CellState};
+use crate::draw::{ColourMap, Legend};
+
+/// What the colours of the bodies tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quantity {
+    /// The mean elongation of the edges at each node [%].
+    #[default]
+    Strain,
+    /// The force of the models that store energy, without gas, on each node [N].
+    ElasticForce,
+    /// The pressure of the gas [Pa]: that of the chamber which a node bounds, or of the only one; bodies without gas have
+    /// no colour.
+    Pressure,
+    /// The speed of each node [m/s].
+    Speed,
+    /// The von Mises stress of finite elements, the mean of the cells at each node [Pa]; bodies without have no colour.
+    VonMises,
+    /// The volume of finite elements over that at rest, the mean of the cells at each node.
+    VolumeRatio,
+    /// Nothing: bodies have a colour each, drawings their own.
+    Plain,
+}
+
+impl Quantity {
+    /// All of them, in the order of menus.
+    pub const ALL: [Quantity; 7] = [
+        Quantity::Strain,
+        Quantity::ElasticForce,
+        Quantity::Pressure,
+        Quantity::Speed,
+        Quantity::VonMises,
+        Quantity::VolumeRatio,
+        Quantity::Plain,
+    ];
+
+    /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
+    /// all are made of finite elements, else strain.
+    pub(super) fn of<const D: usize>(bodies: &[BodyBlueprint<D>]) -> Quantity {
+        let mut areas = bodies.iter().filter_map(|body| body.mesh.skin.as_ref()).flat_map(|skin| &skin.areas);
+        if areas.any(|area| area.colour.is_some()) {
+            return Quantity::Plain;
+        }
+        let solid = |body: &BodyBlueprint<D>| body.models.iter().any(|model| model.kind() == "fem");
+        if !bodies.is_empty() && bodies.iter().all(solid) { Quantity::VonMises } else { Quantity::Strain }
+    }
+
+    /// Name and unit for legends; none where there is nothing to tell.
+    pub(super) fn legend(self) -> Option<Legend> {
+        let (label, unit) = match self {
+            Quantity::Strain => ("strain", "%"),
+            Quantity::ElasticForce => ("elastic force", "N"),
+            Quantity::Pressure => ("pressure", "Pa"),
+            Quantity::Speed => ("speed", "m/s"),
+            Quantity::VonMises => ("von Mises stress", "Pa"),
+            Quantity::VolumeRatio => ("volume over that at rest", ""),
+            Quantity::Plain => return None,
+        };
+        // Most of a body is at little stress, and a body in the light must be light for that to be seen.
+        let stress = matches!(self, Quantity::VonMises | Quantity::ElasticForce);
+        let map = if stress { ColourMap::Embers } else { ColourMap::default() };
+        Some(Legend { label: label.into(), unit: unit.into(), range: None, map })
+    }
+}
+
+/// Adds a quantity at every node of a body.
+pub(super) fn push_quantity<const D: usize>(
+    world: &mut World<D>,
+    body: usize,
+    nodes: usize,
+    quantity: Quantity,
+    scalars: &mut Vec<f32>,
+) {
+    let size = |v: [f64; D]| v.iter().map(|c| c * c).sum::<f64>().sqrt() as f32;
+    match quantity {
+        Quantity::Strain | Quantity::Plain => {}
+        Quantity::Speed => scalars.extend((0..nodes as u32).map(|node| size(world.velocity(body, node)))),
+        Quantity::VonMises => push_means(world, body, nodes, CellState::von_mises, scalars),
+        Quantity::VolumeRatio => push_means(world, body, nodes, |state| state.volume_ratio, scalars),
+        Quantity::ElasticForce => {
+            let forces = world.node_forces(body, Some(Account::Elastic));
+            scalars.extend((0..nodes).map(|node| forces.get(node).map_or(f32::NAN, |force| size(*force))));
+        }
+        Quantity::Pressure => {
+            let readings = world.readings(body);
+            let pressure = readings.iter().find(|(name, _)| name == "pressure").map_or(f64::NAN, |(_, p)| *p);
+            let first = scalars.len();
+            scalars.extend(std::iter::repeat_n(pressure as f32, nodes));
+            for (node, pressure) in world.node_pressures(body) {
+                scalars[first + node as usize] = pressure as f32;
+            }
+        }
+    }
+}
+
+/// Adds the mean of a number of the cells at every node of a body; not a number where a node has none.
+fn push_means<const D: usize>(
+    world: &World<D>,
+    body: usize,
+    nodes: usize,
+    number: impl Fn(&CellState) -> f64,
+    scalars: &mut Vec<f32>,
+) {
+    let cells = &world.blueprint().bodies[body].mesh.cells;
+    let of_cell: Vec<&[u32]> = cells.iter().map(|(_, _, nodes)| nodes).collect();
+    let (mut sum, mut count) = (vec![0.0; nodes], vec![0.0; nodes]);
+    for state in world.cell_states(body) {
+        for node in of_cell[state.cell as usize] {
+            sum[*node as usize] += number(&state);
+            count[*node as usize] += 1.0;
+        }
+    }
+    scalars.extend(sum.iter().zip(&count).map(|(sum, count)| (sum / count) as f32));
+}
+
+/// Mean elongation of the edges at each node [%].
+pub(super) fn strain(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
+    let mut sum = vec![0.0; fixed.nodes];
+    let mut count = vec![0.0; fixed.nodes];
+    for ([a, b], rest) in &fixed.edges {
+        let (p, q) = (positions[*a as usize], positions[*b as usize]);
+        let length = p.iter().zip(&q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
+        let stretch = if *rest > 0.0 { 100.0 * (length / rest - 1.0) } else { 0.0 };
+        for node in [*a as usize, *b as usize] {
+            sum[node] += stretch;
+            count[node] += 1.0;
+        }
+    }
+    sum.iter().zip(&count).map(|(s, c)| if *c > 0.0 { s / c } else { 0.0 }).collect()
+}

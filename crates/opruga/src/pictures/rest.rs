@@ -1,0 +1,54 @@
+//! Where bodies lay before they were deformed, as lines.
+
+use crate::blueprint::BodyBlueprint;
+use crate::draw::{BodyPicture, Facets, RestPicture};
+use std::collections::BTreeMap;
+
+/// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
+const SHARP: f64 = 0.8;
+
+/// Whether pictures of a body show where it lay at the start: it is held, and what it is made of resists being deformed, so that
+/// it bends around there; in statics, any body.
+pub(super) fn is_shown<const D: usize>(body: &BodyBlueprint<D>, integrator: &str) -> bool {
+    let held = body.pins.iter().any(|pin| pin.motion.is_empty());
+    let solid = body.models.iter().any(|model| model.kind() == "fem");
+    body.mesh.skin.is_none() && (integrator == "equilibrium" || held && solid)
+}
+
+/// A body as it lies in a picture, as lines: its outline, or where its surface has edges.
+pub fn rest_of(body: &BodyPicture) -> RestPicture {
+    rest_lines(&body.facets, body.positions.clone())
+}
+
+/// The same of facets and nodes.
+pub(super) fn rest_lines(facets: &Facets, positions: Vec<[f64; 3]>) -> RestPicture {
+    let segments = match facets {
+        Facets::Edges(edges) => edges.clone(),
+        Facets::Triangles(triangles) => sharp_edges(triangles, &positions),
+    };
+    RestPicture { positions, segments }
+}
+
+/// Edges of one triangle alone, and those where two meet at an angle.
+fn sharp_edges(triangles: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[u32; 2]> {
+    let normal = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|k| positions[k as usize]);
+        let (u, v): ([f64; 3], [f64; 3]) =
+            (core::array::from_fn(|d| b[d] - a[d]), core::array::from_fn(|d| c[d] - a[d]));
+        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        n.map(|x| x / length)
+    };
+    let mut edges: BTreeMap<[u32; 2], Vec<[f64; 3]>> = BTreeMap::new();
+    for triangle in triangles {
+        for k in 0..3 {
+            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+            edges.entry([a.min(b), a.max(b)]).or_default().push(normal(triangle));
+        }
+    }
+    let sharp = |normals: &[[f64; 3]]| match normals {
+        [a, b] => (0..3).map(|d| a[d] * b[d]).sum::<f64>() < SHARP,
+        _ => true,
+    };
+    edges.into_iter().filter(|(_, normals)| sharp(normals)).map(|(edge, _)| edge).collect()
+}
