@@ -74,6 +74,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
         known.iter().filter(|task| wanted.is_empty() || wanted.iter().any(|name| is_called(task, name))).collect();
     let opruga = program(root)?;
     let drawn = opruga.parent().and_then(Path::parent).ok_or("the program lies in no folder")?.join("gallery");
+    std::fs::create_dir_all(&drawn).map_err(|e| format!("{}: {e}", drawn.display()))?;
     let (queue, differing, failed) = (Mutex::new(chosen.iter()), Mutex::new(Vec::new()), Mutex::new(Vec::new()));
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
