@@ -76,6 +76,30 @@ fn a_run_that_is_killed_goes_on_from_a_whole_checkpoint() {
     assert_eq!(names, ["checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
 }
 
+/// A run that is killed long before its first checkpoint leaves the head of its table; the table of an earlier run stays as long
+/// as that run's checkpoint does.
+#[test]
+fn a_run_has_the_head_of_its_table_from_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let arguments = ["run", "pressures", "--seconds", "1e6", "--no-pictures", "--out", "o"];
+    let killed = |more: &[&str], ready: &dyn Fn() -> bool| {
+        let mut child = program(folder, &[&arguments[..], more].concat()).spawn().expect("the program runs");
+        until("it begins", ready);
+        child.kill().expect("it runs");
+        child.wait().expect("it ends");
+    };
+    let table = || std::fs::read_to_string(folder.join("o/diagnostics.csv")).unwrap_or_default();
+    killed(&[], &|| table().contains('\n'));
+    let text = table();
+    assert!(text.starts_with("time,kinetic,") && text.lines().nth(1).is_some_and(|row| row.starts_with('0')), "{text}");
+    summary(folder, &["run", "pressures", "--seconds", "0.2", "--out", "o", "--force"]);
+    let before = contents(&folder.join("o"));
+    killed(&["--force", "--record", "r"], &|| folder.join("r").exists());
+    let after = contents(&folder.join("o"));
+    assert!(before.iter().all(|file| after.contains(file)), "the earlier run is whole");
+}
+
 /// What a run was called with, it is resumed with: its end, its changes of the scene, and what it was allowed.
 #[test]
 fn a_killed_run_is_resumed_as_it_was_called() {

@@ -21,7 +21,10 @@ const CHECKPOINTS: u64 = 120;
 const SWEEPS: u64 = 80;
 
 /// The hashes and states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
-struct Undisturbed(Mutex<(World<2>, Vec<(u64, Vec<u8>)>)>);
+struct Undisturbed(Mutex<(World<2>, Vec<Frame>)>);
+
+/// The hash and the state of a frame.
+type Frame = (u64, Vec<u8>);
 
 impl Undisturbed {
     fn new() -> Undisturbed {

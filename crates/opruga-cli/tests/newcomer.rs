@@ -490,3 +490,20 @@ fn pictures_of_an_earlier_run_go_with_it() {
     assert!(gif.contains(&"video.gif".into()) && !gif.contains(&"video.mp4".into()), "{gif:?}");
     assert_eq!(names(&["--no-pictures"]), ["checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
 }
+
+/// What `run --allow-unstable` takes, `check --allow-unstable` takes too, with the same warning.
+#[test]
+fn a_step_above_the_limit_can_be_checked_as_it_is_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let call = ["check", "ball", "--set", "body.ball.models.mass_spring.stiffness=1e9", "--json"];
+    let refused = opruga(folder.path(), &call);
+    assert_eq!(code(&refused), 2);
+    assert!(said(&refused).contains("step.unstable"), "{}", said(&refused));
+    let taken = opruga(folder.path(), &[&call[..], &["--allow-unstable"]].concat());
+    assert_eq!(code(&taken), 0, "{}", said(&taken));
+    let found: Value = serde_json::from_slice(&taken.stdout).expect("JSON");
+    assert!(
+        found["warnings"].as_array().is_some_and(|all| all.iter().any(|w| w["code"] == "step.unstable")),
+        "{found}"
+    );
+}

@@ -120,6 +120,29 @@ fn a_frame_between_two_states_that_differs_is_found() {
     }
 }
 
+/// Folders around an output are made, whichever it is; where that cannot be, none is left behind.
+#[test]
+fn folders_around_outputs_are_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    summary(folder, &["run", "pressures", "--seconds=0.1", "--out=a/b/o", "--record=c/d/r"]);
+    let output = opruga(folder, &["replay", "c/d/r", "--no-pictures", "--out=e/f/g"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(folder.join("a/b/o/summary.json").exists() && folder.join("e/f/g/diagnostics.csv").exists());
+    std::fs::write(folder.join("file"), "x").expect("a file");
+    let long = format!("new/{}", "x".repeat(300));
+    for (option, path) in [("--out", "file/b/o"), ("--record", "file/d/r"), ("--out", &long)] {
+        let output = opruga(folder, &["run", "pressures", "--seconds=0.1", "--no-pictures", option, path]);
+        assert_eq!(code(&output), 4, "{}", said(&output));
+        assert!(
+            said(&output).contains("cannot be made") || said(&output).contains("error[write."),
+            "{}",
+            said(&output)
+        );
+        assert!(!folder.join("new").exists());
+    }
+}
+
 /// Bodies that come and go, pulls and parameters that are set: all of it is in the states. A run that goes on from a
 /// checkpoint records the rest.
 #[test]

@@ -32,11 +32,13 @@ const VTU: &[u8] = br#"<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece
 const MFEM: &[u8] = include_bytes!("data/meshes/mfem/beam-tet.mesh");
 const MEDIT: &[u8] = b"MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 5\n0 0 1 5\nTriangles 1\n1 3 2 9\nTetrahedra\n1\n1 2 3 4 2\nEnd\n";
 const ELE: &[u8] = b"1 4 1\n1 1 2 3 4 2.5\n";
+/// A leaf of 12 by 9 dots, dark on white.
+const PNG: &[u8] = include_bytes!("data/leaf.png");
 /// Goes with `ELE`.
 const NODE: &[u8] = b"4 3 0 1\n1 0 0 0 0\n2 1 0 0 3\n3 0 1 0 3\n4 0 0 1 -1\n";
 
 /// How many samples there are.
-const SAMPLES: usize = 22;
+const SAMPLES: usize = 25;
 
 /// Dimension, shape, name of the file, contents.
 fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
@@ -56,11 +58,13 @@ fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
         (2, outline("map", lattice), "a.json", GEOJSON),
         (2, outline("map", filled), "a.json", SMALL_MAP),
         (2, outline("map", joined), "a.json", GEOJSON),
+        (2, outline("bitmap", "spacing = 0.1, size = 1.0"), "a.png", PNG),
         (2, outline("text", "spacing = 0.2, size = 1.0, text = \"oB\""), "a.otf", FONT),
         (3, outline("surface", "weld = 1e-9"), "a.obj", OBJ),
         (3, outline("surface", "filling = \"lattice\", spacing = 0.4"), "a.ply", PLY),
         (3, outline("surface", "open = \"cap\""), "a.stl", STL),
         (3, outline("surface", "open = \"sheet\""), "a.gltf", GLTF),
+        (3, outline("surface", "weld = 1e-9"), "a.glb", &*common::cube::glb().leak()),
         (3, outline("surface", "filling = \"tetrahedra\", spacing = 0.3"), "a.obj", OBJ),
         (2, outline("mesh", mending), "a.msh", MSH_2),
         (3, outline("mesh", mending), "a.msh", MSH_4),
@@ -71,6 +75,7 @@ fn samples() -> Vec<(u8, &'static str, &'static str, &'static [u8])> {
         (3, outline("mesh", mending), "a.mesh", MFEM),
         (3, outline("mesh", mending), "a.mesh", MEDIT),
         (3, outline("mesh", mending), "a.ele", ELE),
+        (3, outline("mesh", mending), "a.node", NODE),
     ]
 }
 
@@ -97,9 +102,13 @@ fn sound<const D: usize>(mesh: &Mesh<D>) {
 /// Whether the file is read; what is read must be sound.
 fn survives(dimension: u8, shape: &str, name: &str, bytes: &[u8]) -> bool {
     let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
-    let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{name}\", {shape} }}\n");
+    // Of a pair of files the cells are what a scene names.
+    let named = name.replace(".node", ".ele");
+    let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{named}\", {shape} }}\n");
     let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
-    let files = Files::held([(name.to_string(), Arc::from(bytes)), ("a.node".to_string(), Arc::from(NODE))]);
+    let beside = [("a.node", NODE), ("a.ele", ELE)].into_iter().filter(|(file, _)| *file != name);
+    let files = beside.chain([(name, bytes)]).map(|(file, bytes)| (file.to_string(), Arc::from(bytes)));
+    let files = Files::held(files);
     match read(text.as_bytes(), "scene.toml", &catalogue(), &Options { limits, files, ..Options::default() }) {
         Ok((AnyBlueprint::Plane(b), _)) => sound(&b.bodies[0].mesh),
         Ok((AnyBlueprint::Space(b), _)) => sound(&b.bodies[0].mesh),

@@ -230,3 +230,22 @@ fn surfaces_are_remeshed_to_a_length() {
     let error = &space(&format!("{shape}, remesh = 1e-5, open = \"cap\""), files).expect_err("too many nodes")[0];
     assert!(error.code.starts_with("limit.") || error.code.starts_with("scene."), "{error}");
 }
+
+/// A size that is too coarse is refused with one that works, which is told to the digit at which it was tried.
+#[test]
+fn a_size_that_is_too_coarse_is_answered_by_one_that_works() {
+    const SPOT: &[u8] = include_bytes!("../../../scenes/shapes/spot.obj");
+    let of = |length: &str| {
+        let shape = format!("kind = \"surface\", file = \"a.obj\", size = 1.0, remesh = {length}");
+        space(&shape, &[("a.obj", SPOT)])
+    };
+    let error = &of("0.6").expect_err("legs are thinner")[0];
+    let hint = error.hint.as_deref().expect("a hint");
+    let works = hint.strip_prefix("`remesh = ").and_then(|rest| rest.strip_suffix("` works")).expect(hint);
+    let length: f64 = works.parse().expect("a number");
+    assert!(length < 0.6 && length > 0.05, "{hint}");
+    let (mesh, _) = of(works).unwrap_or_else(|errors| panic!("{works}: {}", errors[0]));
+    assert!(mesh.check().is_empty());
+    // The next coarser one that was tried does not.
+    assert!(of(&format!("{:.1e}", length / 0.9)).is_err(), "{works} is the coarsest");
+}

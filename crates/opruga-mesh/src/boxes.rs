@@ -8,10 +8,6 @@ pub(crate) type Bounds = [[f64; 3]; 2];
 
 const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
-pub(crate) fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    (0..3).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
-}
-
 /// The square of the distance of a box from a point.
 pub(crate) fn distance_to(bounds: &Bounds, point: &[f64; 3]) -> f64 {
     let mut square = 0.0;
@@ -52,17 +48,15 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// The tree over the triangles with these corners.
-    pub(crate) fn of(corners: &[[[f64; 3]; 3]]) -> Tree {
+    pub(crate) fn of(corners: impl ExactSizeIterator<Item = [[f64; 3]; 3]>) -> Tree {
         let mut whole = NOTHING;
-        let facet_boxes: Vec<Bounds> = corners
-            .iter()
-            .map(|triangle| {
-                let mut bounds = NOTHING;
-                triangle.iter().for_each(|p| join(&mut bounds, &[*p, *p]));
-                join(&mut whole, &bounds);
-                bounds
-            })
-            .collect();
+        let mut facet_boxes: Vec<Bounds> = Vec::with_capacity(corners.len());
+        for triangle in corners {
+            let mut bounds = NOTHING;
+            triangle.iter().for_each(|p| join(&mut bounds, &[*p, *p]));
+            join(&mut whole, &bounds);
+            facet_boxes.push(bounds);
+        }
         let scale: [f64; 3] = core::array::from_fn(|d| {
             let extent = whole[1][d] - whole[0][d];
             if extent > 0.0 { 1_048_575.0 / extent } else { 0.0 }

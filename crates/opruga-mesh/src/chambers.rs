@@ -1,5 +1,6 @@
 //! Closed chambers: which facets enclose one volume.
 
+use crate::buckets::{nodes_of, sorted_by_node};
 use crate::geometry::{cross, dot, lift, norm, signed_volume, subtract};
 use crate::{Mesh, MeshError};
 
@@ -42,9 +43,11 @@ fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
             uses.push(Use { ridge, facet: index as u32, forward });
         }
     }
-    uses.sort_unstable();
-    uses
+    sorted_by_node(&uses, nodes_of(facets), |entry| entry.ridge[0])
 }
+
+/// No facet.
+const NONE: u32 = u32::MAX;
 
 impl Survey {
     /// Walks the facets across their ridges.
@@ -69,16 +72,20 @@ impl Survey {
         }
 
         // Neighbours across ridges, with whether the two facets face the same way.
-        let mut links: Vec<(u32, u32, bool)> = Vec::with_capacity(uses.len());
+        let mut links = vec![[(NONE, false); D]; facets.len()];
         for pair in uses.chunk_by(|p, q| p.ridge == q.ridge).filter(|group| group.len() == 2) {
             let agree = pair[0].forward != pair[1].forward;
-            links.push((pair[0].facet, pair[1].facet, agree));
-            links.push((pair[1].facet, pair[0].facet, agree));
+            for [facet, other] in [[pair[0].facet, pair[1].facet], [pair[1].facet, pair[0].facet]] {
+                // There are as many places as ridges.
+                let own = &mut links[facet as usize];
+                if let Some(free) = own.iter().position(|link| link.0 == NONE) {
+                    own[free] = (other, agree);
+                }
+            }
         }
-        links.sort_unstable();
+        links.iter_mut().for_each(|own| own.sort_unstable());
 
         // Flood each component from its lowest facet; `against` compares with that facet.
-        const NONE: u32 = u32::MAX;
         let mut component = vec![NONE; facets.len()];
         let mut against = vec![false; facets.len()];
         let mut minority = Vec::new();
@@ -95,8 +102,7 @@ impl Survey {
             while next < members.len() {
                 let facet = members[next];
                 next += 1;
-                let from = links.partition_point(|link| link.0 < facet);
-                for &(_, other, agree) in links[from..].iter().take_while(|link| link.0 == facet) {
+                for (other, agree) in links[facet as usize].into_iter().take_while(|link| link.0 != NONE) {
                     let expected = against[facet as usize] == agree;
                     if component[other as usize] == NONE {
                         component[other as usize] = components as u32;

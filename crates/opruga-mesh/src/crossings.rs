@@ -4,7 +4,8 @@
 //! decided by the signs of determinants, exact for the coordinates as they are.
 
 use crate::Mesh;
-use crate::boxes::{Tree, overlap};
+use crate::boxes::{Bounds, Tree};
+use crate::geometry::{cross, subtract};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 /// Pairs that are listed at most.
@@ -40,40 +41,105 @@ impl Mesh<3> {
         let (low, high) = self.bounds();
         let extent = (0..3).map(|d| high[d] - low[d]).fold(0.0, |most, x| if x > most { x } else { most });
         let factor = inverse_power(extent);
-        let place = |node: u32| self.positions[node as usize].map(|x| x * factor);
-        let corners: Vec<[[f64; 3]; 3]> = self.facets.iter().map(|facet| facet.map(place)).collect();
-        let tree = Tree::of(&corners);
+        let points: Vec<[f64; 3]> = self.positions.iter().map(|x| x.map(|x| x * factor)).collect();
+        let sorted = Sorted::of(&self.facets, points);
         let mut budget = MOST_COMPARED * self.facets.len() as u64;
-        // Pairs of nodes of one level; every pair of leaves comes once.
+        // Pairs of nodes of one level that overlap; every pair of leaves comes once.
         let mut waiting = vec![[1usize; 2]];
         while let Some([node, other]) = waiting.pop() {
-            if budget == 0 || found.pairs.len() >= MOST_LISTED {
+            if budget < 4 || found.pairs.len() >= MOST_LISTED {
                 found.complete = false;
                 break;
             }
-            budget -= 1;
-            if node != other && !overlap(&tree.boxes[node], &tree.boxes[other]) {
+            if node >= sorted.leaves {
+                budget -= 1;
+                sorted.compare([node - sorted.leaves, other - sorted.leaves], &mut found.pairs);
                 continue;
             }
             let ([a, b], [c, d]) = ([2 * node, 2 * node + 1], [2 * other, 2 * other + 1]);
-            if node >= tree.leaves {
-                self.compare(&tree, &corners, [node - tree.leaves, other - tree.leaves], &mut found.pairs);
-            } else if node == other {
-                waiting.extend([[a, a], [b, b], [a, b]]);
-            } else {
-                waiting.extend([[a, c], [a, d], [b, c], [b, d]]);
-            }
+            let below = if node == other { &[[a, a], [b, b], [a, b]][..] } else { &[[a, c], [a, d], [b, c], [b, d]] };
+            budget -= below.len() as u64;
+            waiting.extend(below.iter().filter(|[a, b]| a == b || near(&sorted.boxes[*a], &sorted.boxes[*b])));
         }
         found.pairs.sort_unstable();
         found
     }
+}
+
+/// A box in half the bytes, rounded outward.
+type Small = [[f32; 3]; 2];
+
+fn small([low, high]: &Bounds) -> Small {
+    let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
+    let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+    [low.map(down), high.map(up)]
+}
+
+/// Whether two boxes overlap; without branches, since nobody can foretell it.
+fn near(a: &Small, b: &Small) -> bool {
+    (0..3).fold(true, |so_far, d| so_far & (a[0][d] <= b[1][d]) & (b[0][d] <= a[1][d]))
+}
+
+/// The facets in the order of the curve, with what is asked of them first.
+struct Sorted {
+    leaves: usize,
+    boxes: Vec<Small>,
+    facets: Vec<SortedFacet>,
+    /// Where the facets of each leaf begin, and where the last ones end.
+    begins: Vec<u32>,
+    points: Vec<[f64; 3]>,
+}
+
+struct SortedFacet {
+    bounds: Small,
+    number: u32,
+    nodes: [u32; 3],
+    /// Twice its area times its normal, rounded.
+    normal: [f64; 3],
+    /// What the normal times a difference of points may err by, for each unit of the largest part of that difference.
+    error: f64,
+}
+
+/// Rounding of a product of a normal and a difference: two differences, six products and three sums for the normal, then one
+/// difference, three products and two sums; each errs by half of 2⁻⁵², and none is larger than six products of largest parts.
+const ERROR: f64 = 64.0 * f64::EPSILON;
+
+impl Sorted {
+    fn of(facets: &[[u32; 3]], points: Vec<[f64; 3]>) -> Sorted {
+        let corners = |facet: &[u32; 3]| facet.map(|node| points[node as usize]);
+        let tree = Tree::of(facets.iter().map(corners));
+        let boxes = tree.boxes.iter().map(small).collect();
+        let (mut sorted, mut begins) = (Vec::with_capacity(facets.len()), Vec::with_capacity(tree.leaves + 1));
+        for leaf in 0..tree.leaves {
+            begins.push(sorted.len() as u32);
+            for &number in tree.facets_of(leaf) {
+                let nodes = facets[number as usize];
+                let [a, b, c] = corners(&nodes);
+                let (u, v) = (subtract(b, a), subtract(c, a));
+                sorted.push(SortedFacet {
+                    bounds: small(&tree.facet_boxes[number as usize]),
+                    number,
+                    nodes,
+                    normal: cross(u, v),
+                    error: ERROR * largest(u) * largest(v),
+                });
+            }
+        }
+        begins.push(sorted.len() as u32);
+        Sorted { leaves: tree.leaves, boxes, facets: sorted, begins, points }
+    }
+
+    fn facets_of(&self, leaf: usize) -> &[SortedFacet] {
+        &self.facets[self.begins[leaf] as usize..self.begins[leaf + 1] as usize]
+    }
 
     /// Compares the facets of two leaves, or of one with one another.
-    fn compare(&self, tree: &Tree, corners: &[[[f64; 3]; 3]], [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
-        for (place, &a) in tree.facets_of(leaf).iter().enumerate() {
-            let others = tree.facets_of(other);
-            for &b in if leaf == other { &others[place + 1..] } else { others } {
-                if overlap(&tree.facet_boxes[a as usize], &tree.facet_boxes[b as usize]) && self.meet(corners, a, b) {
+    fn compare(&self, [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
+        let others = self.facets_of(other);
+        for (place, a) in self.facets_of(leaf).iter().enumerate() {
+            for b in if leaf == other { &others[place + 1..] } else { others } {
+                if near(&a.bounds, &b.bounds) && self.meet(a, b) {
+                    let (a, b) = (a.number, b.number);
                     pairs.push(if a < b { [a, b] } else { [b, a] });
                 }
             }
@@ -81,20 +147,22 @@ impl Mesh<3> {
     }
 
     /// Whether two facets meet anywhere but at what they share.
-    fn meet(&self, corners: &[[[f64; 3]; 3]], a: u32, b: u32) -> bool {
-        let (mut first, mut second) = (self.facets[a as usize], self.facets[b as usize]);
-        let (mut p, mut q) = (corners[a as usize], corners[b as usize]);
+    fn meet(&self, a: &SortedFacet, b: &SortedFacet) -> bool {
+        let (mut first, mut second) = (a.nodes, b.nodes);
         let mut shared = 0;
         // What is shared comes first, in the same order.
         for k in 0..3 {
             if let Some(place) = second[shared..].iter().position(|node| *node == first[k]) {
                 first.swap(shared, k);
-                p.swap(shared, k);
                 second.swap(shared, shared + place);
-                q.swap(shared, shared + place);
                 shared += 1;
             }
         }
+        // What lies on one side of the other's plane, and not in it, meets that at most in what is shared.
+        if shared < 3 && (self.beside(a, &second[shared..]) || self.beside(b, &first[shared..])) {
+            return false;
+        }
+        let [p, q] = [first, second].map(|nodes| nodes.map(|node| self.points[node as usize]));
         match shared {
             0 => sides(&p).iter().any(|side| reaches(side, &q)) || sides(&q).iter().any(|side| reaches(side, &p)),
             // The sides across from the shared node: whatever is common reaches them.
@@ -103,6 +171,27 @@ impl Mesh<3> {
             _ => true,
         }
     }
+
+    /// Whether points certainly lie on one side of the plane of a facet, and not in it: where rounding leaves a doubt, the
+    /// exact signs will tell.
+    fn beside(&self, facet: &SortedFacet, nodes: &[u32]) -> bool {
+        let origin = self.points[facet.nodes[0] as usize];
+        let side = |node: u32| {
+            let offset = subtract(self.points[node as usize], origin);
+            let [x, y, z] = facet.normal;
+            let height = x * offset[0] + y * offset[1] + z * offset[2];
+            let error = facet.error * largest(offset);
+            // Below the least numbers, roundings are not as large as their parts.
+            if height.abs() > error && error > 1e-280 { height } else { 0.0 }
+        };
+        let first = side(nodes[0]);
+        let same = |node: &u32| if first > 0.0 { side(*node) > 0.0 } else { side(*node) < 0.0 };
+        first != 0.0 && nodes[1..].iter().all(same)
+    }
+}
+
+fn largest(x: [f64; 3]) -> f64 {
+    x.into_iter().map(f64::abs).fold(0.0, |most, x| if x > most { x } else { most })
 }
 
 fn sides(triangle: &[[f64; 3]; 3]) -> [[[f64; 3]; 2]; 3] {

@@ -27,6 +27,7 @@ mod adjacency;
 mod bending;
 mod boundary;
 mod boxes;
+mod buckets;
 mod chambers;
 mod check;
 mod crossings;

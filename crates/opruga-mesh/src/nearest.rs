@@ -14,7 +14,7 @@ impl Nearest {
     pub(crate) fn to(mesh: &Mesh<3>) -> Nearest {
         let corners: Vec<[[f64; 3]; 3]> =
             mesh.facets.iter().map(|facet| facet.map(|node| mesh.positions[node as usize])).collect();
-        Nearest { tree: Tree::of(&corners), corners }
+        Nearest { tree: Tree::of(corners.iter().copied()), corners }
     }
 
     /// The point of the surface nearest to a point; of several the one on the facet of lowest number.

@@ -1,5 +1,6 @@
 //! Triangles of space as they come from files: welding, orientation, closing, bodies.
 
+use crate::buckets::{nodes_of, sorted_by_node};
 use crate::chambers::Survey;
 use crate::geometry::{lift, norm, subtract, triangle_area};
 use crate::{Mesh, MeshError, signed_volume};
@@ -44,14 +45,32 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
 
 /// For every point the first one with the same coordinates; −0 is 0.
 fn same_place(positions: &[[f64; 3]]) -> Vec<u32> {
+    const FREE: u32 = u32::MAX;
     let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|node| (key(*node), *node));
-    let mut target = vec![0; positions.len()];
-    for group in order.chunk_by(|p, q| key(*p) == key(*q)) {
-        group.iter().for_each(|node| target[*node as usize] = group[0]);
-    }
-    target
+    // The first point of each place, at a slot that follows from its coordinates or the next free one: most points of a
+    // soup come several times, and neighbours soon after one another.
+    let slots = (2 * positions.len()).next_power_of_two();
+    let mut firsts = vec![FREE; slots];
+    let slot_of = |[x, y, z]: [u64; 3]| {
+        // Every step can be undone: no two coordinates are mixed up by more than chance.
+        let mix = |sum: u64, x: u64| (sum ^ x).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        (mix(mix(mix(0, x), y), z) >> 20) as usize & (slots - 1)
+    };
+    let mut place = |node: u32| {
+        let own = key(node);
+        let mut slot = slot_of(own);
+        loop {
+            match firsts[slot] {
+                FREE => {
+                    firsts[slot] = node;
+                    return node;
+                }
+                first if key(first) == own => return first,
+                _ => slot = (slot + 1) & (slots - 1),
+            }
+        }
+    };
+    (0..positions.len() as u32).map(&mut place).collect()
 }
 
 /// For every point the first one before it within a distance that joins no other, or itself.
@@ -265,7 +284,7 @@ impl Mesh<3> {
             key.sort_unstable();
             keys.push((key, index as u32));
         }
-        keys.sort_unstable();
+        let keys = sorted_by_node(&keys, nodes_of(&self.facets), |(key, _)| key[0]);
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
     }
 
@@ -276,7 +295,7 @@ impl Mesh<3> {
         for [a, b, c] in &self.facets {
             ways.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
         }
-        ways.sort_unstable();
+        let ways = sorted_by_node(&ways, nodes_of(&self.facets), |way| way[0]);
         let mut pinched = Vec::new();
         for around in ways.chunk_by(|p, q| p[0] == q[0]) {
             let mut at = around[0][1];

@@ -326,17 +326,15 @@ proptest! {
     }
 }
 
-/// Points of a straight side lie in no triangle before there is a corner: given one by one they took the square of their
-/// number.
+/// A strip whose one side has twenty thousand points. (That their number costs no more than itself is tested where they are
+/// triangulated.)
 #[test]
-fn long_straight_sides_are_filled_quickly() {
+fn long_straight_sides_are_filled() {
     let count = 20_000;
     let side = f64::from(count);
     let mut points: Vec<[f64; 2]> = (0..count).map(|k| [f64::from(k), 0.0]).collect();
     points.extend([[side, 0.0], [side, 1.0], [0.0, 1.0]]);
-    let start = std::time::Instant::now();
     let (mesh, quality) = outline::filled(&[Ring { points, part: 0 }], 1.0).expect("a strip");
-    assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
     assert!((mesh.measure().expect("an area").value() - side).abs() < 1e-6 * side);
     assert!(quality.complete && mesh.check().is_empty());
 }

@@ -7,6 +7,7 @@ mod changes;
 mod commands;
 mod compiled_once;
 pub mod error;
+mod frame_hash;
 mod inputs;
 mod island;
 pub mod ledger;

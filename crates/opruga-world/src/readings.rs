@@ -363,69 +363,8 @@ impl<const D: usize> World<D> {
         }
         hash
     }
-    pub(crate) fn frame_hash_here(&self) -> u64 {
-        let mut hash = FrameHash::default();
-        for body in (0..self.alive.len()).filter(|body| self.alive[*body]) {
-            let (island, lane) = self.place[body];
-            let system = &self.islands[island].system;
-            let stride = system.layout.stride();
-            for column in [&system.state.x, &system.state.v].into_iter().flat_map(|columns| columns.slices()) {
-                let from = system.layout.place(0, lane);
-                hash.column(&column[from..], stride, self.node_count(body));
-            }
-        }
-        hash.finish()
-    }
     pub(crate) fn heap_bytes_here(&self) -> usize {
         let shared: usize = self.workspaces.iter().map(|workspace| lock(workspace).heap_bytes()).sum();
         shared + self.islands.iter().map(Island::heap_bytes).sum::<usize>()
-    }
-}
-
-/// Eight hashes side by side, each of the numbers of its lane. Every step can be undone, so no number that differs alone is
-/// ever missed.
-struct FrameHash {
-    lanes: [u64; WIDTH],
-    numbers: u64,
-}
-
-/// An odd factor: the golden ratio in 64 bits.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-impl Default for FrameHash {
-    fn default() -> FrameHash {
-        FrameHash { lanes: core::array::from_fn(|lane| (lane as u64 + 1).wrapping_mul(GOLDEN)), numbers: 0 }
-    }
-}
-
-impl FrameHash {
-    /// Takes so many numbers, which lie so far apart.
-    fn column(&mut self, column: &[f64], stride: usize, count: usize) {
-        let mut lanes = self.lanes;
-        // The rotation brings the upper bits back to where a product spreads them.
-        let mix = |lane: u64, number: f64| (lane ^ number.to_bits()).wrapping_mul(GOLDEN).rotate_left(29);
-        if stride == 1 {
-            let (packs, rest) = column[..count].as_chunks::<WIDTH>();
-            for pack in packs {
-                for lane in 0..WIDTH {
-                    lanes[lane] = mix(lanes[lane], pack[lane]);
-                }
-            }
-            rest.iter().enumerate().for_each(|(lane, number)| lanes[lane] = mix(lanes[lane], *number));
-        } else {
-            for (node, number) in column.iter().step_by(stride).take(count).enumerate() {
-                lanes[node % WIDTH] = mix(lanes[node % WIDTH], *number);
-            }
-        }
-        self.lanes = lanes;
-        self.numbers += count as u64;
-    }
-
-    fn finish(self) -> u64 {
-        let last = |hash: u64, lane: u64| {
-            let hash = (hash ^ lane).wrapping_mul(GOLDEN);
-            hash ^ hash >> 32
-        };
-        self.lanes.into_iter().fold(self.numbers, last)
     }
 }

@@ -10,7 +10,7 @@ use opruga::World;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::math::words::counted;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::Path;
 use std::time::Instant;
 
 /// Times of the frames of one run: of this thread on the processor, and by the clock on the wall [ms].
@@ -33,7 +33,7 @@ fn of_scene<const D: usize>(
     call: &BenchRecord,
     opened: &Opened,
     blueprint: &Blueprint<D>,
-    path: &PathBuf,
+    path: &Path,
 ) -> Result<u8, Failure> {
     let Opened { source, reading, options, .. } = opened;
     let new = || source.build(blueprint.clone(), reading, options);

@@ -16,6 +16,7 @@ mod json;
 mod map;
 mod obj;
 mod ply;
+mod remeshing;
 mod rules;
 mod stl;
 mod svg;
@@ -216,7 +217,7 @@ impl Loaded {
             Content::Surface { mesh, remesh, filling } => {
                 let surface = match remesh {
                     None => (**mesh).clone(),
-                    Some(length) => triangles::remeshed(mesh, *length)?,
+                    Some(length) => remeshing::remeshed(mesh, *length)?,
                 };
                 Box::new(match filling {
                     None => surface,

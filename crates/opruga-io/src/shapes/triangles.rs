@@ -19,9 +19,6 @@ const USUAL: [f64; 2] = [1e-4, 1e2];
 /// How much larger or smaller a surface may be for another unit to explain it.
 const UNITS: f64 = 1e5;
 
-/// A surface that is remeshed may lose or win this part of its volume.
-const DRIFT: f64 = 0.25;
-
 /// What a reader found.
 #[derive(Debug, Default)]
 pub(super) struct Triangles {
@@ -224,30 +221,6 @@ fn odd_scale(mesh: &Mesh<3>) -> Option<SceneError> {
         SceneError::new("mesh.scale", format!("the surface is {} m large", number(extent))).value(extent.to_string());
     let about = about.allowed(format!("{} m to {} m, where `size` is not given", number(USUAL[0]), number(USUAL[1])));
     Some(about.hint(if explained { format!("perhaps it is in {unit}; {size}") } else { size.to_string() }))
-}
-
-/// The surface with edges of a wanted length.
-///
-/// # Errors
-/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself or lose its shape.
-pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
-    let refuse = |message: String| SceneError::new("scene.shape", message).value(length.to_string());
-    let made = mesh.remeshed(length).map_err(|e| refuse(e.to_string()))?;
-    // One that was taken as it is may go on crossing itself.
-    if !made.crossing_facets().pairs.is_empty() && mesh.crossing_facets().pairs.is_empty() {
-        let message = format!("with edges of {length} m the surface would cross itself");
-        return Err(refuse(message)
-            .allowed("a length below the finest parts of the surface")
-            .hint("take a smaller `remesh`"));
-    }
-    // What is thinner than its edges shrinks with them.
-    let kept = made.enclosed_volume() / mesh.enclosed_volume();
-    if (kept - 1.0).abs() > DRIFT {
-        let message = format!("with edges of {length} m the surface would enclose {kept:.2} of its volume");
-        let allowed = format!("a length that keeps the volume within {} %", 100.0 * DRIFT);
-        return Err(refuse(message).allowed(allowed).hint("take a smaller `remesh`"));
-    }
-    Ok(made)
 }
 
 /// Joins vertices where the scene or the format asks for it.

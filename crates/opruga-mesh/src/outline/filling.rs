@@ -3,7 +3,7 @@
 use super::{OutlineError, Ring, distance};
 use crate::{MAXIMUM_NODES, Mesh};
 use spade::handles::FixedVertexHandle;
-use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, HasPosition, Point2, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
 
 /// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
@@ -131,13 +131,13 @@ pub(super) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, Outline
 ///
 /// All points are given at once: one by one, those of a long straight side have no triangle to lie in, and each new one
 /// would be looked for along all others.
-fn constrained(
+fn constrained<V: HasPosition<Scalar = f64>>(
     rings: &[Ring],
     inside: &[[f64; 2]],
-    shrink: impl Fn([f64; 2]) -> Point2<f64>,
+    shrink: impl Fn([f64; 2]) -> V,
     failed: impl Fn(u32, [f64; 2]) -> OutlineError,
-) -> Result<(ConstrainedDelaunayTriangulation<Point2<f64>>, usize), OutlineError> {
-    let mut points: Vec<Point2<f64>> = Vec::new();
+) -> Result<(ConstrainedDelaunayTriangulation<V>, usize), OutlineError> {
+    let mut points: Vec<V> = Vec::new();
     let mut edges: Vec<[usize; 2]> = Vec::new();
     for ring in rings {
         let first = points.len();
@@ -279,4 +279,47 @@ fn quality(mesh: &Mesh<2>, complete: bool) -> Quality {
         }
     }
     quality
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ring, constrained};
+    use crate::outline::OutlineError;
+    use core::cell::Cell;
+    use spade::{HasPosition, Point2};
+
+    thread_local! {
+        /// How often the library has looked at a point.
+        static LOOKS: Cell<u64> = const { Cell::new(0) };
+    }
+
+    struct Counted(Point2<f64>);
+
+    impl HasPosition for Counted {
+        type Scalar = f64;
+        fn position(&self) -> Point2<f64> {
+            LOOKS.set(LOOKS.get() + 1);
+            self.0
+        }
+    }
+
+    /// Points of a straight side lie in no triangle before there is a corner. The library then looks at every point once for each
+    /// other, which is quick for tens of thousands, and must not become more.
+    #[test]
+    fn points_of_a_long_straight_side_are_looked_at_once_for_each_other_at_most() {
+        let looks = |count: u32| {
+            let side = f64::from(count);
+            let mut points: Vec<[f64; 2]> = (0..count).map(|k| [f64::from(k), 0.0]).collect();
+            points.extend([[side, 0.0], [side, 1.0], [0.0, 1.0]]);
+            let ring = Ring { points, part: 0 };
+            LOOKS.set(0);
+            let counted = |p: [f64; 2]| Counted(Point2::new(p[0] / side, p[1] / side));
+            constrained(&[ring], &[], counted, |_, _| OutlineError::Empty).expect("a strip");
+            LOOKS.get() as f64 / side
+        };
+        for count in [500, 2_000] {
+            let looks = looks(count);
+            assert!(looks > 1.0 && looks < 1.5 * f64::from(count), "{looks} looks at each of {count} points");
+        }
+    }
 }
