@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn an_outline_has_never_more_corners_than_are_filled_with_every_picture() {
         let of = |node: &u32| {
-            let far = 300.0 + if node % 2 == 0 { 20.0 } else { 0.0 };
+            let far = 300.0 + if node.is_multiple_of(2) { 20.0 } else { 0.0 };
             let turn = std::f32::consts::TAU * *node as f32 / 60_000.0;
             (Pos2::new(500.0, 400.0) + Vec2::angled(turn) * far, RED)
         };
