@@ -180,7 +180,7 @@ impl Language {
         }
     }
 
-    /// What a part of the program says in English; in Croatian where that is known ([`details`]), and told to be English else.
+    /// What a part of the program says in English; in Croatian where that is known, and told to be English else.
     pub fn detail(self, text: &str) -> String {
         match self {
             Language::English => text.into(),
