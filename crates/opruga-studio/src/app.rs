@@ -173,7 +173,8 @@ impl Studio {
                 ui,
                 |ui| {
                     // On a narrow window curves keep their width and are pushed along.
-                    let room = ui.available_size();
+                    // Below them is room for the bar by which they are pushed.
+                    let room = ui.available_size() - egui::vec2(0.0, 10.0);
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
                         self.plots.show(ui, &shown, words, self.canvas.selected.as_deref(), room);
                     });

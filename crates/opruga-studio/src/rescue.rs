@@ -58,13 +58,10 @@ impl Rescue {
         }
         self.kept = copied.text.as_str().into();
         let known = self.files.take().filter(|(name, files, _)| *name == copied.name && *files == copied.files);
-        let files = known.map_or_else(
-            || {
-                let held = Files::held(named_files(&copied.name, &copied.text, &copied.files));
-                (copied.name.clone(), copied.files.clone(), held)
-            },
-            |known| known,
-        );
+        let files = known.unwrap_or_else(|| {
+            let held = Files::held(named_files(&copied.name, &copied.text, &copied.files));
+            (copied.name.clone(), copied.files.clone(), held)
+        });
         let shared = Shared { name: copied.name, text: copied.text, files: files.2.clone() };
         self.files = Some(files);
         let path = self.path.clone();

@@ -347,6 +347,20 @@ fn a_window_without_size_a_crowd_and_a_phone_are_shown_without_harm() {
 }
 
 #[test]
+fn a_parameter_without_effect_cannot_be_pressed_until_it_has_one() {
+    let mut window = Window::open("ball", [1280.0, 1600.0]);
+    let sliders = |window: &Window, name: &str| -> Vec<bool> {
+        let all = window.harness.query_all_by_role_and_label(egui::Role::Slider, name);
+        all.map(|node| node.accesskit_node().is_disabled()).collect()
+    };
+    assert_eq!(sliders(&window, "gamma"), [true], "gas at one temperature knows no ratio of heat capacities");
+    let word = opruga::core::spec::Value::Text("adiabatic".into());
+    window.studio().ask(Request::Set("body.ball.models.1.process".into(), word));
+    window.until("another process", |shown| shown.bodies[0].models[1].text("process") == Some("adiabatic"));
+    assert_eq!(sliders(&window, "gamma"), [false]);
+}
+
+#[test]
 fn a_hundred_thousand_vertices_are_drawn_with_no_more_triangles_than_can_be_seen() {
     let mut window = Window::open("giant-ring", SIZE);
     assert_eq!(window.shown().picture.bodies[0].positions.len(), 100_000);

@@ -72,6 +72,15 @@ impl Flat {
                 view.high[d] += above;
                 wider = true;
             }
+            // Where it has gone along and the bodies are back, what is seen without them is let go.
+            let widest = first[1][d] - first[0][d] + 2.0 * most;
+            if wider && view.high[d] - view.low[d] > widest {
+                if above > 0.0 {
+                    view.low[d] = view.high[d] - widest;
+                } else {
+                    view.high[d] = view.low[d] + widest;
+                }
+            }
         }
         wider
     }
@@ -146,6 +155,14 @@ mod tests {
             assert!(rect.contains(right), "{x} {right:?}");
         }
         assert!(view.high[0] - view.low[0] < 4.0, "it grows for ever: {:?}", view.high);
+        // Back at the start it is as wide as before.
+        for _ in 0..3 {
+            if flat.widen(&mut view, &first, &shown(0.0), rect) {
+                flat.fit(&view, rect, None);
+            }
+        }
+        assert!(rect.contains(flat.to_screen(rect, [-0.5, 0.5, 0.0], false)), "it is seen again");
+        assert!(view.high[0] - view.low[0] <= 5.0 * (first[1][0] - first[0][0]) + 1e-9, "{:?}", view.high);
         // Two bodies that fly apart find no room in it: it stays.
         let mut apart = shown(0.0);
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];

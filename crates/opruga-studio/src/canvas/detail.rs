@@ -110,6 +110,23 @@ impl Detail {
 /// Corners up to which a surface is made of triangles anew with every picture.
 const MOST_CORNERS: usize = 5_000;
 
+/// Nodes nearer to one another on the screen than this are one in a large outline [points].
+const JOINED: f32 = 0.3;
+
+/// The nodes of a closed line that lie apart on the screen: the first and cheapest look at a large outline.
+pub(crate) fn apart(line: &[u32], at: &[Pos2]) -> Vec<u32> {
+    let mut kept: Vec<u32> = Vec::new();
+    let mut last: Option<Pos2> = None;
+    for node in line {
+        let here = at[*node as usize];
+        if last.is_none_or(|last| (here - last).length_sq() > JOINED * JOINED) {
+            kept.push(*node);
+            last = Some(here);
+        }
+    }
+    kept
+}
+
 /// The closed lines of a large outline as far as they are seen, with no more corners than can be filled for every picture; `of` is
 /// where a node is on the screen, and its colour.
 pub(crate) fn corners(
@@ -219,9 +236,19 @@ mod tests {
     }
 
     #[test]
+    fn nodes_that_lie_on_one_another_on_the_screen_are_one_and_the_first_is_always_there() {
+        let at: Vec<Pos2> = circle(100_000, 50.0).into_iter().map(|(at, _)| at).collect();
+        let line: Vec<u32> = (0..100_000).collect();
+        let kept = apart(&line, &at);
+        assert!((500..1_100).contains(&kept.len()), "{}", kept.len());
+        assert_eq!(kept[0], 0);
+        assert_eq!(apart(&line, &vec![Pos2::ZERO; 100_000]), [0]);
+    }
+
+    #[test]
     fn an_outline_has_never_more_corners_than_are_filled_with_every_picture() {
         let of = |node: &u32| {
-            let far = 300.0 + if node % 2 == 0 { 20.0 } else { 0.0 };
+            let far = 300.0 + if node.is_multiple_of(2) { 20.0 } else { 0.0 };
             let turn = std::f32::consts::TAU * *node as f32 / 60_000.0;
             (Pos2::new(500.0, 400.0) + Vec2::angled(turn) * far, RED)
         };

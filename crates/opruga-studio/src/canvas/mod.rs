@@ -213,6 +213,10 @@ impl Canvas {
         } else {
             let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
             plane::paint(look, &self.flat, kept, selected);
+            // Both sides are seen alike.
+            if !beside {
+                plane::scale_bar(look, &self.flat);
+            }
         }
     }
 

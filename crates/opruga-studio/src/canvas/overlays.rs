@@ -84,6 +84,8 @@ impl Canvas {
             && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
+            // Where the scene itself pulls, its force is to be read.
+            && shown.pulls.is_empty()
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
             // What is far out of sight cannot be dragged.

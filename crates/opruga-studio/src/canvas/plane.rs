@@ -2,7 +2,7 @@
 
 use super::brush::Brush;
 use super::camera::Flat;
-use super::detail::{Detail, corners};
+use super::detail::{Detail, apart, corners};
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, fill};
 use crate::shown::Shown;
@@ -99,7 +99,6 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
         label(painter, &body.label, &spots, paper);
     }
     arrows(painter, shown, flat, &project);
-    scale_bar(painter, flat, rect, paper, &picture.length_unit);
 }
 
 /// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
@@ -132,10 +131,15 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let outline = outlines.of(place, body);
     let (triangles, strength) =
         if body.cells.is_empty() { (&outline.triangles, FILLED) } else { (&body.cells, FILLED_CELLS) };
+    let near: Vec<Vec<u32>> = match outline.large {
+        true => outline.closed.iter().map(|line| apart(line, at)).collect(),
+        false => Vec::new(),
+    };
+    let closed = if outline.large { &near } else { &outline.closed };
     if outline.large {
         // So many points of a surface are not told apart: those are filled that are.
         let detail = Detail { near: 1.0, beside: 0.35, colour: 24, screen: rect };
-        let lines = corners(&outline.closed, detail, |node| (at[*node as usize], colours[*node as usize]), seen);
+        let lines = corners(closed, detail, |node| (at[*node as usize], colours[*node as usize]), seen);
         let mut triangles = fill(body, &lines);
         numbers.resize(at.len(), 0);
         lines.iter().flatten().zip(0..).for_each(|(node, number)| numbers[*node as usize] = number);
@@ -158,7 +162,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         }
     }
     let width = if wide { 3.2 } else { 2.2 };
-    for line in &outline.closed {
+    for line in closed {
         brush.ring(line.iter().map(of), width);
     }
     for [a, b] in &outline.open {
@@ -207,7 +211,9 @@ fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool)
 }
 
 /// How long a side of these squares is; over everything, as floors often reach to the corner where it is.
-fn scale_bar(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, unit: &str) {
+pub(crate) fn scale_bar(look: &Look<'_>, flat: &Flat) {
+    let Look { painter, rect, paper, .. } = *look;
+    let unit = &look.shown.picture.length_unit;
     let length = square(flat);
     let from = Pos2::new(rect.left() + 14.0, rect.bottom() - 14.0);
     let to = from + Vec2::new((length * flat.scale) as f32, 0.0);

@@ -1,8 +1,8 @@
 //! One parameter: its slider, unit and sentence, made from what its model says of it.
 
 use crate::words::{Language, Part};
-use egui::{ComboBox, DragValue, RichText, Slider, SliderClamping, Ui};
-use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Value};
+use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
+use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Value, Values};
 use std::collections::BTreeMap;
 
 /// A field of a kind in the panel of a scene of so many dimensions, in a language.
@@ -20,6 +20,8 @@ pub struct Place<'a> {
     pub dimension: usize,
     /// The language of the interface.
     pub words: Language,
+    /// The values of all fields of the kind: some have no say among the others.
+    pub values: Option<&'a Values>,
 }
 
 /// What is being set: while a slider is held it shows what the hand wants and not what came back.
@@ -79,8 +81,12 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>)
     let unit = if field.unit.is_empty() { String::new() } else { format!(" [{}]", field.unit) };
     let name = words.field(part, kind, field.name);
     let label = RichText::new(format!("{name}{unit}")).size(12.0);
-    let about = words.sentence(part, kind, field, place.dimension);
-    ui.push_id(path, |ui| match (&field.range, now) {
+    let mut about = words.sentence(part, kind, field, place.dimension);
+    let silent = place.values.and_then(|values| field.without_effect(values, place.dimension));
+    if let Some(condition) = silent {
+        about = format!("{about}\n{}", words.effect_only(part, kind, condition));
+    }
+    let shown = |ui: &mut Ui| match (&field.range, now) {
         (_, None) => ui.horizontal(|ui| absent(ui, place, &name, &unit, &about)).inner,
         (_, Some(Value::Number(x))) => number(ui, hand, path, field, label, &about, x, false).map(Value::Number),
         (_, Some(Value::Integer(x))) => {
@@ -88,13 +94,19 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>)
         }
         (range, Some(now)) => {
             ui.horizontal(|ui| {
-                let name = ui.label(label).on_hover_text(about).id;
+                let name = tell(ui.label(label), &about).id;
                 other(ui, words, name, range, &now)
             })
             .inner
         }
-    })
-    .inner
+    };
+    // What would do nothing is seen, and why, but cannot be pressed.
+    ui.push_id(path, |ui| ui.add_enabled_ui(silent.is_none(), shown).inner).inner
+}
+
+/// Says something of a control, whether it can be pressed or not.
+fn tell(response: Response, about: &str) -> Response {
+    response.on_hover_text(about).on_disabled_hover_text(about)
 }
 
 /// A field about which the scene is silent: a button that gives it a value, or its name where a scene alone can.
@@ -102,11 +114,11 @@ fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) ->
     let start = starting(place.kind, place.field);
     if start.is_none() {
         let about = format!("{about}\n{}", place.words.in_the_scene());
-        ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()).on_hover_text(about);
+        tell(ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()), &about);
         return None;
     }
     let button = egui::Button::new(RichText::new(format!("+ {name}{unit}")).size(12.0)).small();
-    if ui.add(button).on_hover_text(about).clicked() { start } else { None }
+    if tell(ui.add(button), about).clicked() { start } else { None }
 }
 
 /// A slider below its name.
@@ -121,7 +133,7 @@ fn number(
     now: f64,
     whole: bool,
 ) -> Option<f64> {
-    let name = ui.label(label).on_hover_text(about).id;
+    let name = tell(ui.label(label), about).id;
     let (low, high, open) = ends(field, now, whole);
     // An open end stays where it was when the slider was first seen, unless the value has gone beyond it.
     let high = if open {

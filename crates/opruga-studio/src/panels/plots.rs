@@ -4,7 +4,7 @@ use crate::differences::Difference;
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
-use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
+use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints};
 use opruga::core::potential::Reading;
 use opruga::draw::{OKABE_ITO, format_value, nice_ticks};
 
@@ -172,6 +172,9 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
                 ui.label(RichText::new(*name).size(11.0).color(ink(number)));
             }
         });
+        // Short words, which may stand close to one another.
+        let seconds = AxisHints::new_x().label_spacing(24.0..=32.0);
+        let seconds = seconds.formatter(|mark, _| format!("{} s", format_value(mark.value)));
         let plot = Plot::new(id)
             .width(size.x)
             .height((size.y - (ui.cursor().top() - top) - 12.0).max(40.0))
@@ -181,7 +184,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
             .allow_boxed_zoom(false)
             .x_grid_spacer(|input| marks(input, 3))
             .y_grid_spacer(|input| marks(input, 4))
-            .x_axis_formatter(|mark, _| format!("{} s", format_value(mark.value)))
+            .custom_x_axes(vec![seconds])
             .y_axis_formatter(|mark, _| format_value(mark.value))
             .y_axis_min_width(30.0);
         let owned: Vec<(String, Vec<[f64; 2]>)> = lines.into_iter().map(|(n, l)| (n.to_string(), l)).collect();

@@ -95,7 +95,15 @@ impl Properties {
                     for field in spec.map_or(&[][..], |spec| spec.fields) {
                         let path = &format!("collider.{number}.{}", field.name);
                         let dimension = kinds.dimension;
-                        let place = Place { path, part: Part::Obstacle, kind, field, dimension, words };
+                        let place = Place {
+                            path,
+                            part: Part::Obstacle,
+                            kind,
+                            field,
+                            dimension,
+                            words,
+                            values: Some(&obstacle.values),
+                        };
                         self.set(ui, place, obstacle.values.get(field.name), asks);
                     }
                 });
@@ -139,7 +147,15 @@ impl Properties {
                 for field in spec.fields {
                     let path = &format!("body.{}.models.{number}.{}", body.name, field.name);
                     let dimension = kinds.dimension;
-                    let place = Place { path, part: Part::Model, kind: spec.kind, field, dimension, words };
+                    let place = Place {
+                        path,
+                        part: Part::Model,
+                        kind: spec.kind,
+                        field,
+                        dimension,
+                        words,
+                        values: Some(model),
+                    };
                     self.set(ui, place, model.get(field.name), asks);
                 }
                 self.another_model(ui, words, body, number, kinds, asks);
@@ -248,7 +264,8 @@ impl Properties {
                 None => format!("integrator.{}", field.name),
             };
             let dimension = kinds.dimension;
-            let place = Place { path, part: Part::Integrator, kind: spec.kind, field, dimension, words };
+            let place =
+                Place { path, part: Part::Integrator, kind: spec.kind, field, dimension, words, values: Some(values) };
             self.set(ui, place, values.get(field.name), asks);
         }
     }
@@ -262,7 +279,8 @@ impl Properties {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
                 let path = &format!("shape.{}.{}", body.name, field.name);
                 let now = shape.get(field.name);
-                let place = Place { path, part: Part::Shape, kind: spec.kind, field, dimension, words };
+                let place =
+                    Place { path, part: Part::Shape, kind: spec.kind, field, dimension, words, values: Some(shape) };
                 let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
                 let Some(value) = parameter::show(ui, &mut self.hand, place, now) else { continue };
                 if slider && ui.input(|i| i.pointer.any_down()) {

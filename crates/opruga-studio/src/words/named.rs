@@ -3,7 +3,7 @@
 //! added it, is called as in the scene file, and its English sentence is marked as such.
 
 use super::{Language, croatian, details};
-use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Spec};
+use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec};
 
 /// What a kind is a kind of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +107,25 @@ impl Language {
         format!("{sentence}\n{allowed}; {}: {default}", self.unsaid())
     }
 
+    /// What must hold for a field to have an effect.
+    pub fn effect_only(self, part: Part, of: &str, condition: &Condition) -> String {
+        if self == Language::English {
+            return format!("Has an effect only {condition}.");
+        }
+        let field = |name: &str| self.field(part, of, name);
+        let condition = match *condition {
+            Condition::Dimension(dimension) => format!("u {dimension}D"),
+            Condition::Word(name, words) => {
+                let words: Vec<String> = words.iter().map(|word| self.choice(word)).collect();
+                format!("gdje je „{}” {}", field(name), words.join(" ili "))
+            }
+            Condition::Given(name) => format!("uz „{}”", field(name)),
+            Condition::NotGiven(name) => format!("bez „{}”", field(name)),
+            Condition::NotZero(name) => format!("gdje „{}” nije 0", field(name)),
+        };
+        format!("Djeluje samo {condition}.")
+    }
+
     /// The name of a word that a field may take.
     pub fn choice(self, word: &str) -> String {
         let known = croatian::CHOICES.iter().find(|(known, _)| self == Language::Croatian && *known == word);
@@ -161,7 +180,7 @@ impl Language {
         }
     }
 
-    /// What a part of the program says in English; in Croatian where that is known ([`details`]), and told to be English else.
+    /// What a part of the program says in English; in Croatian where that is known, and told to be English else.
     pub fn detail(self, text: &str) -> String {
         match self {
             Language::English => text.into(),

@@ -29,6 +29,7 @@ const CODES: &[(&str, &str)] = &[
     ("scene.more", "ima još pogrešaka"),
     ("scene.depth", "tablice su preduboko ugniježđene"),
     ("scene.conflict", "dva zadatka isključuju jedan drugi"),
+    ("scene.no_effect", "polje ovdje ne djeluje"),
     ("set", "zadana zamjena ne može"),
     ("time.frame", "trajanje sličice ne može"),
     ("command.never", "naredba nikad ne počinje"),
@@ -101,8 +102,7 @@ mod tests {
         let wrong = ball.replace("mass = 1.0", "mass = -1.0").replace("radius = 0.5", "raduis = 0.5");
         let refused = Session::open("ball", &wrong, Files::default(), Options::default()).expect_err("it is wrong");
         let told = croatian(&refused.to_string()).expect("it is known");
-        for part in ["greška[scene.range]: vrijednost izvan dopuštenog", "greška[scene.unknown_field]: nepoznato polje"]
-        {
+        for part in ["greška[scene.range]: `mass` je -1.0", "greška[scene.unknown_field]: nema polja `raduis`"] {
             assert!(told.contains(part), "{part}: {told}");
         }
         assert!(told.contains("-1.0") && told.contains("dopušteno: ") && told.contains("savjet: "), "{told}");
