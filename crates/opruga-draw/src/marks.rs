@@ -70,7 +70,7 @@ pub(crate) fn draw_marks(
         let points: Vec<[f32; 2]> = places.filter(|place| in_sight(*place)).filter_map(project).collect();
         // Marks that would lie on one another are one, and where supports would stand in a row there are dots.
         let supports = marks_apart(&points, 12.0 * unit);
-        let row = supports.len() > 3 && marks_apart(&supports, SUPPORT_ROOM * unit).len() < supports.len();
+        let row = marks_apart(&supports, SUPPORT_ROOM * unit).len() < supports.len();
         if body.pinned.len() <= SUPPORTS && !row {
             supports.into_iter().for_each(|point| support(canvas, point, unit));
         } else {

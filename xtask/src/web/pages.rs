@@ -26,8 +26,8 @@ pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), Str
     let page = page.replace("{{packed}}", &names.0).replace("{{glue}}", &names.1);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
     let credits = credits(&shapes)?;
-    let mut kept = vec!["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
-    kept.extend(credits.iter().map(|(name, _)| name.as_str()));
+    // Credits are not among them: some servers make pages of such texts, and a file that is missing would hinder the others.
+    let kept = ["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
     let worker = source("worker.js")?.replace("{{version}}", &version);
     let worker = worker.replace("{{files}}", &serde_json::json!(kept).to_string());
