@@ -66,7 +66,7 @@ impl<const D: usize> System<D> {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
         let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
-        let mut heaviness = Some(Weight { mass: &self.mass, gravity: self.gravity });
+        let mut heaviness = Some(Weight { mass: self.weighing.as_ref().unwrap_or(&self.mass), gravity: self.gravity });
         let mut power = [0.0; WIDTH];
         if !self.members.first().is_some_and(|m| m.potential.begins_tiles()) {
             let mut tile = Tile {

@@ -28,6 +28,7 @@
 //! Energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod box_matrices;
 mod boxes;
 mod contraction;
 mod elements;
