@@ -6,7 +6,7 @@
 //!
 //! and then, since β depends on F and g, by these; the corners come last.
 
-use super::boxes::{Frame, Kept, Modes, Resistance, Rest, cofactor_along, on_amplitudes, response, strain};
+use super::boxes::{Frame, Kept, Modes, Resistance, Rest, carried, cofactor_along, on_amplitudes, response, strain};
 use super::elements::Shape;
 use super::hourglass::{FIELDS, MOST_MODES, MOST_STRESSES, PAIRS, TERMS, fields, modes, pairs};
 use super::law::read_matrix;
@@ -100,15 +100,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         let (turns, size, points) = (self.group.turns, modes::<D, N>() * D, self.group.points);
         let exact = self.of == Of::Energy(Definiteness::Exact);
         let strains = rest.strains(own.c);
-        // ∂F_q/∂β but for the functions.
-        let mut along = strains;
-        let mut traces = [R::zero(); PAIRS];
-        for pair in 0..pairs::<D>() {
-            traces[pair] = matrix::trace(&strains[pair]);
-            if turns {
-                along[pair] = matrix::product(&kept.f, &strains[pair]);
-            }
-        }
+        let (along, traces) = carried(turns, &kept.f, &strains);
         let mut sums = Sums {
             ff: no_tangent(),
             fb: [matrix::zeros(); MOST_STRESSES],

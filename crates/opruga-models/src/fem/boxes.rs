@@ -15,7 +15,7 @@
 
 use super::elements::Shape;
 use super::hourglass::{
-    FIELDS, MOST_MODES, MOST_STRESSES, PAIRS, TERMS, fields, modes, pairs, stiffness_numbers, stored,
+    FIELDS, MOST_MODES, MOST_STRESSES, PAIR, PAIRS, SIGNS, TERMS, fields, modes, pairs, stiffness_numbers, stored,
 };
 use super::law::{PARAMETERS, read_matrix, write_matrix};
 use super::section::{Group, NUMBERS};
@@ -102,7 +102,7 @@ impl<R: Register, const D: usize, const N: usize> Rest<R, D, N> {
     pub(super) fn functions(&self, q: usize) -> [R; FIELDS] {
         let mut out = [R::zero(); FIELDS];
         for k in 0..fields::<D>() {
-            out[k] = R::splat(super::hourglass::sign(q, k)) - self.means[k];
+            out[k] = R::splat(SIGNS[q][k]) - self.means[k];
         }
         out
     }
@@ -112,7 +112,7 @@ impl<R: Register, const D: usize, const N: usize> Rest<R, D, N> {
         let half = R::splat(0.5);
         let mut out = [matrix::zeros::<R, D>(); PAIRS];
         for pair in 0..pairs::<D>() {
-            let (a, b) = super::hourglass::PAIR[pair];
+            let (a, b) = PAIR[pair];
             for i in 0..D {
                 for j in 0..D {
                     out[pair][i][j] = half * (self.axes[i][a] * self.axes[j][b] + self.axes[i][b] * self.axes[j][a]);
@@ -207,27 +207,62 @@ pub(super) fn on_amplitudes<R: Register, const D: usize, const N: usize>(
     out
 }
 
-/// ε at a point.
+/// What ε at a point has of the strain of each pair of axes.
+#[inline(always)]
+fn along_pairs<R: Lane, const D: usize, const N: usize>(beta: &Stresses<R>, functions: &[R; FIELDS]) -> [R; PAIRS] {
+    let mut along = [R::zero(); PAIRS];
+    for s in 0..modes::<D, N>() * D {
+        let (pair, field) = TERMS[s];
+        along[pair] += beta[s] * functions[field];
+    }
+    along
+}
+
+/// ε at a point, or F ε of F times the strains.
 #[inline(always)]
 pub(super) fn strain<R: Lane, const D: usize, const N: usize>(
     beta: &Stresses<R>,
     functions: &[R; FIELDS],
     strains: &[Matrix<R, D>; PAIRS],
 ) -> Matrix<R, D> {
-    let mut along = [R::zero(); PAIRS];
-    for s in 0..modes::<D, N>() * D {
-        let (pair, field) = TERMS[s];
-        along[pair] += beta[s] * functions[field];
-    }
+    let along = along_pairs::<R, D, N>(beta, functions);
     let mut out = matrix::zeros::<R, D>();
     for pair in 0..pairs::<D>() {
-        for i in 0..D {
-            for j in 0..D {
-                out[i][j] += along[pair] * strains[pair][i][j];
-            }
-        }
+        out = matrix::plus(&out, along[pair], &strains[pair]);
     }
     out
+}
+
+/// tr ε at a point of the traces of the strains.
+#[inline(always)]
+fn swelling<R: Lane, const D: usize, const N: usize>(
+    beta: &Stresses<R>,
+    functions: &[R; FIELDS],
+    traces: &[R; PAIRS],
+) -> R {
+    let along = along_pairs::<R, D, N>(beta, functions);
+    let mut out = R::zero();
+    for pair in 0..pairs::<D>() {
+        out += along[pair] * traces[pair];
+    }
+    out
+}
+
+/// ∂F_q/∂β but for the functions, F D or D, and the traces of D.
+#[inline(always)]
+pub(super) fn carried<R: Lane, const D: usize>(
+    turns: bool,
+    f: &Matrix<R, D>,
+    strains: &[Matrix<R, D>; PAIRS],
+) -> ([Matrix<R, D>; PAIRS], [R; PAIRS]) {
+    let (mut out, mut traces) = (*strains, [R::zero(); PAIRS]);
+    for pair in 0..pairs::<D>() {
+        traces[pair] = matrix::trace(&strains[pair]);
+        if turns {
+            out[pair] = matrix::product(f, &strains[pair]);
+        }
+    }
+    (out, traces)
 }
 
 /// The change of cof F with F along Z; the same with F and Z exchanged.
@@ -343,13 +378,6 @@ fn mean<R: Register, const D: usize, const N: usize>(
     (f, g)
 }
 
-/// A (1 + ε) of a law that knows of rotations, else A + ε.
-#[inline(always)]
-fn strained<R: Lane, const D: usize>(turns: bool, a: &Matrix<R, D>, strain: &Matrix<R, D>) -> Matrix<R, D> {
-    let by = if turns { matrix::product(a, strain) } else { *strain };
-    matrix::plus(a, R::one(), &by)
-}
-
 /// Deformation gradients at the points: Gauss's, and behind them the mean one where the law is asked there.
 pub(super) struct Deform<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
@@ -385,10 +413,12 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Deform<'_, E, D, N
                 }
                 let kept = Kept { f, g, beta: factors::<P::Part, D, N>(&self.group, pack, part, &q) };
                 kept.write::<N>(&mut self.kept[k * KEPT * WIDTH..], part);
+                let (along, _) = carried(turns, &f, &strains);
                 for point in 0..points {
                     let mut own = f;
                     if point < N {
-                        own = strained(turns, &f, &strain::<_, D, N>(&kept.beta, &rest.functions(point), &strains));
+                        let by = strain::<_, D, N>(&kept.beta, &rest.functions(point), &along);
+                        own = matrix::plus(&f, P::Part::one(), &by);
                     }
                     write_matrix(&mut self.gradient[(k * points + point) * D * D * WIDTH..], part, &own);
                 }
@@ -519,45 +549,46 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                 let own = Resistance::<P::Part>::read::<D, N>(&self.group, pack, part);
                 let strains = rest.strains(own.c);
                 let Kept { f, g, beta } = Kept::<P::Part, D>::read::<N>(&self.kept[k * KEPT * WIDTH..], part);
-                // ∂U/∂F and ∂U/∂β.
+                let (along, traces) = carried(turns, &f, &strains);
+                // ∂U/∂F but for ε, and Σ V f P and Σ V f p of the stresses and of the pressure beyond them.
                 let mut on_f = matrix::zeros::<P::Part, D>();
-                let mut on_beta = [P::Part::zero(); MOST_STRESSES];
+                let mut stresses = [matrix::zeros::<P::Part, D>(); FIELDS];
+                let mut pressures = [P::Part::zero(); FIELDS];
                 let (mut energy, mut lost) = (P::Part::zero(), P::Part::zero());
                 for q in 0..N {
                     let point = k * points + q;
                     let (functions, weight) = (rest.functions(q), rest.measures[q]);
                     let stress = read_matrix::<P::Part, D>(&self.stress[point * D * D * WIDTH..], part);
                     let stress = matrix::scaled(&stress, weight);
-                    let now = strain::<_, D, N>(&beta, &functions, &strains);
-                    let swells = matrix::trace(&now);
+                    let swells = swelling::<_, D, N>(&beta, &functions, &traces);
                     let mut pressure = own.beyond * weight * swells;
                     energy +=
                         weight * P::Part::load(&self.density[point * WIDTH + offset..]) + half * pressure * swells;
                     if let Some(rates) = &self.rates {
                         let kept = Kept::<P::Part, D>::read::<N>(&rates.kept[k * KEPT * WIDTH..], part);
-                        let rate = matrix::trace(&strain::<_, D, N>(&kept.beta, &functions, &strains));
+                        let rate = swelling::<_, D, N>(&kept.beta, &functions, &traces);
                         let time = P::Part::load(&rates.times[point * WIDTH + offset..]);
                         let drag = time * own.beyond * weight * rate;
                         pressure += drag;
                         lost += weight * P::Part::load(&rates.power[point * WIDTH + offset..]) + drag * rate;
                     }
-                    // On F and on ε.
                     on_f = matrix::plus(&on_f, P::Part::one(), &stress);
-                    let mut on_strain = stress;
-                    if turns {
-                        on_f = matrix::plus(&on_f, P::Part::one(), &matrix::product(&stress, &now));
-                        on_strain = matrix::transposed_product(&f, &stress);
+                    for field in 0..fields::<D>() {
+                        stresses[field] = matrix::plus(&stresses[field], functions[field], &stress);
+                        pressures[field] += functions[field] * pressure;
                     }
-                    for i in 0..D {
-                        on_strain[i][i] += pressure;
-                    }
-                    let mut along = [P::Part::zero(); PAIRS];
+                }
+                let mut on_beta = [P::Part::zero(); MOST_STRESSES];
+                let mut by_strain = [matrix::zeros::<P::Part, D>(); PAIRS];
+                for s in 0..count * D {
+                    let (pair, field) = TERMS[s];
+                    on_beta[s] = matrix::inner(&stresses[field], &along[pair]) + pressures[field] * traces[pair];
+                    by_strain[pair] = matrix::plus(&by_strain[pair], beta[s], &stresses[field]);
+                }
+                if turns {
                     for pair in 0..pairs::<D>() {
-                        along[pair] = matrix::inner(&on_strain, &strains[pair]);
-                    }
-                    for s in 0..count * D {
-                        let (pair, field) = TERMS[s];
-                        on_beta[s] += along[pair] * functions[field];
+                        let turned = matrix::product(&by_strain[pair], &strains[pair]);
+                        on_f = matrix::plus(&on_f, P::Part::one(), &turned);
                     }
                 }
                 if points > N {

@@ -61,16 +61,24 @@ pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize
     size * size + 2 + modes::<D, N>()
 }
 
-/// A function of an assumed stress at Gauss's point of a corner, but for its mean.
-#[inline(always)]
-pub(super) const fn sign(corner: usize, field: usize) -> f64 {
-    let (axes, mut out, mut k) = (FIELD[field], 1.0, 0);
-    while k < axes.len() {
-        out *= CORNERS[corner][axes[k]];
-        k += 1;
+/// The functions of the assumed stresses at Gauss's points of the corners, but for their means.
+pub(super) const SIGNS: [[f64; FIELDS]; 8] = {
+    let mut out = [[1.0; FIELDS]; 8];
+    let mut corner = 0;
+    while corner < 8 {
+        let mut field = 0;
+        while field < FIELDS {
+            let (axes, mut k) = (FIELD[field], 0);
+            while k < axes.len() {
+                out[corner][field] *= CORNERS[corner][axes[k]];
+                k += 1;
+            }
+            field += 1;
+        }
+        corner += 1;
     }
     out
-}
+};
 
 /// The axes whose coordinates an hourglass function multiplies.
 const fn axes<const D: usize>(mode: usize) -> &'static [usize] {
@@ -160,7 +168,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         }
         let mut means = [0.0; FIELDS];
         for (field, mean) in means.iter_mut().enumerate().take(fields::<D>()) {
-            *mean = (0..N).map(|q| measures[q] * sign(q, field)).sum::<f64>() / measure;
+            *mean = (0..N).map(|q| measures[q] * SIGNS[q][field]).sum::<f64>() / measure;
         }
         let mut tensors = [[[0.0; D]; D]; MOST_STRESSES];
         let mut values = [[0.0; N]; MOST_STRESSES];
@@ -171,7 +179,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
                     tensors[s][i][j] = 0.5 * (jacobian[i][a] * jacobian[j][b] + jacobian[i][b] * jacobian[j][a]);
                 }
             }
-            values[s] = core::array::from_fn(|q| sign(q, *field) - means[*field]);
+            values[s] = core::array::from_fn(|q| SIGNS[q][*field] - means[*field]);
         }
         let mut guards = [0.0; MOST_MODES];
         for (mode, guard) in guards.iter_mut().enumerate().take(modes) {
