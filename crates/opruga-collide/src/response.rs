@@ -122,6 +122,10 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     // Out along the normal; without friction the motion along the surface is left as it is, to the bit.
     let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
     let mut v = add(&node.v, &scaled(&node.normal, change));
+    // Half of the velocity that the force has given. Where another contact has acted before in this step, that has counted it.
+    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
+    let given = scaled(&node.force, S::select(weighs, half * node.h / node.mass, zero));
+    let mut loss_friction = zero;
     if law.friction > 0.0 {
         // Coulomb: the tangential change is at most µ times the normal one, and stops the sliding at most.
         let slide = lanes!(S, d => u[d] - un * node.normal[d]);
@@ -130,6 +134,8 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
         let keep = S::select(pace.less_or_equal(most), zero, S::one() - most / pace);
         let slide_after = scaled(&slide, keep);
         v = lanes!(S, d => (node.obstacle[d] + slide_after[d]) + back * node.normal[d]);
+        let mean = half * (S::one() + keep) * pace * pace - dot(&given, &slide);
+        loss_friction = S::select(closing, node.mass * (S::one() - keep) * mean, zero);
 
         // A node that rests or slides goes where the new velocity takes it from where it was, and then onto the surface:
         // the tangential part of the free step is undone, so that what sticks does not creep. If another contact has put
@@ -145,22 +151,16 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     }
     v = choose(closing, &v, &node.v);
 
-    // Where another contact has acted before in this step, it has counted what the force did.
-    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
-    let kick = S::select(weighs, node.h / node.mass, zero);
-    let start = subtract(&node.v, &scaled(&node.force, kick));
-    let mean = scaled(&add(&start, &v), half);
     let gained = subtract(&v, &node.v);
-    let along = dot(&gained, &node.normal);
-    let pace = subtract(&mean, &node.obstacle);
-    let pace_out = dot(&pace, &node.normal);
+    // The mean of the velocities before and after the step.
+    let mean = subtract(&scaled(&add(&node.v, &v), half), &given);
     let moved =
         choose(zero.less(node.held), &subtract(&node.x, &x), &add(&subtract(&node.from, &x), &scaled(&mean, node.h)));
     Parting {
         x,
         v,
-        loss_contact: -(node.mass * along * pace_out),
-        loss_friction: -(node.mass * (dot(&gained, &pace) - along * pace_out)),
+        loss_contact: node.mass * change * (half * (speed - back) + dot(&given, &node.normal)),
+        loss_friction,
         work: node.mass * dot(&gained, &node.obstacle),
         correction: dot(&node.force, &moved),
     }

@@ -2,7 +2,7 @@
 //!
 //! The dimension shows in two fields alone: a spin and a rotation are a number in 2D and a vector along the axis in 3D.
 
-use opruga_core::spec::{Allowed, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Condition, Default, Field, Spec};
 
 const NO: Default = Default::Boolean(false);
 const ZERO: Default = Default::Number(0.0);
@@ -20,11 +20,11 @@ macro_rules! collider {
                 $($own,)+
                 Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
-                Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider."),
+                Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
                 Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),
                 Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
                 Field::new("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
-                Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape."),
+                Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape.").applies(&[Condition::Given("spin")]),
             ],
         };
     };

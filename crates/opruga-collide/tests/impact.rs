@@ -60,7 +60,7 @@ fn one_pass<const D: usize>(
     let change = energy(&cv) - start;
     let entered = sum(&work) - sum(&contact) - sum(&friction);
     assert!((change - entered).abs() < 1e-12 * (1.0 + start), "{change} {entered}");
-    assert!(contact.iter().chain(&friction).all(|l| *l >= -1e-15 * (1.0 + start)), "nothing but rounding is given");
+    assert!(contact.iter().chain(&friction).all(|l| *l >= 0.0));
     (cx, cv, change)
 }
 

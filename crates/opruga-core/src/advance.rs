@@ -66,26 +66,18 @@ impl<const D: usize> System<D> {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
         let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
-        let mut heaviness = Some(Weight { mass: self.weighing.as_ref().unwrap_or(&self.mass), gravity: self.gravity });
         let mut power = [0.0; WIDTH];
+        let mut tile = Tile {
+            range: range.clone(),
+            force: force.each_mut().map(|f| &mut **f),
+            power: &mut power,
+            weight: Some(Weight { mass: self.weighing.as_ref().unwrap_or(&self.mass), gravity: self.gravity }),
+            slots: &mut self.slots,
+        };
         if !self.members.first().is_some_and(|m| m.potential.begins_tiles()) {
-            let mut tile = Tile {
-                range: range.clone(),
-                force: force.each_mut().map(|f| &mut **f),
-                power: &mut power,
-                weight: heaviness.take(),
-                slots: &mut self.slots,
-            };
             tile.settle(self.simd);
         }
         for member in &self.members {
-            let mut tile = Tile {
-                range: range.clone(),
-                force: force.each_mut().map(|f| &mut **f),
-                power: &mut power,
-                weight: heaviness.take(),
-                slots: &mut self.slots,
-            };
             member.potential.add_force(self.simd, &view, &member.scratch, &mut tile);
             let views = member.potential.views();
             if views.damping || member.potential.account() == Account::User {
@@ -94,8 +86,8 @@ impl<const D: usize> System<D> {
                     _ => &mut self.work.damping,
                 };
                 for l in 0..WIDTH {
-                    account[l] += weight * power[l];
-                    power[l] = 0.0;
+                    account[l] += weight * tile.power[l];
+                    tile.power[l] = 0.0;
                 }
             }
         }

@@ -103,7 +103,7 @@ fn row(out: &mut String, field: &Field, note: &str) {
         field.unit,
         escape(&allowed(&field.range)),
         default(field),
-        escape(field.documentation)
+        escape(&field.full_documentation())
     );
 }
 

@@ -123,7 +123,7 @@ fn structured(child: &Child, catalogue: &Catalogue) -> Value {
 fn plain(field: &Field) -> Value {
     let mut schema = allowed(&field.range);
     let unit = if field.unit.is_empty() { String::new() } else { format!(" [{}]", field.unit) };
-    schema["description"] = format!("{}{unit}", field.documentation).into();
+    schema["description"] = format!("{}{unit}", field.full_documentation()).into();
     match field.default {
         Default::Number(x) => schema["default"] = x.into(),
         Default::Integer(x) => schema["default"] = x.into(),

@@ -8,7 +8,7 @@ mod actions;
 
 pub use actions::{COMMANDS, LOADS, PROBE};
 
-use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// One table of a scene: its plain fields and its structured ones.
 #[derive(Clone, Copy, Debug)]
@@ -243,7 +243,8 @@ pub const BODY: Section = Section {
                 "",
                 Default::Integer(6),
                 "Into how many `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four corners), which alternate from one to the next and favour no direction.",
-            ),
+            )
+            .applies(&[Condition::Dimension(3), Condition::Given("simplices")]),
             Field::new(
                 "order",
                 Allowed::Integer { least: 1, greatest: 2 },

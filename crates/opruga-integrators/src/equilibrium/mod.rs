@@ -42,7 +42,7 @@ use crate::implicit::step::{MOST_HALVINGS, commit, report, same_bits_everywhere}
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::potential::{Reading, Views};
-use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
+use opruga_core::spec::{Allowed, Condition, Default, Field, Spec, Values};
 use opruga_core::system::{Stage, System};
 use opruga_math::words::number;
 use opruga_solve::blocks::nodes;
@@ -64,7 +64,8 @@ is on; `load_factor` in diagnostics.csv is the part that is on.",
             "",
             Default::Integer(1),
             "In how many parts the weight and the loads are put on in the first step.",
-        ),
+        )
+        .applies(&[Condition::NotGiven("arc_length")]),
         Field::new(
             "arc_length",
             Allowed::POSITIVE,

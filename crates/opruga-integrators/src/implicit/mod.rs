@@ -33,12 +33,13 @@
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is put onto the surface
 //! within the iteration, all others follow as the elasticity wants, and the force of the constraint comes out of the
-//! balance. A node is released when that force pulls; it sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n
+//! balance. In statics, where nothing else keeps a body that falls from falling through, a correction ends where it meets one. A node is released when that force pulls; it sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n
 //! and slips against a friction of µ f_n beyond. This is the primal–dual active set, a semi-smooth Newton method
 //! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few more iterations. Friction goes by the
 //! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
+mod approach;
 pub(crate) mod contact;
 mod contact_derivatives;
 mod growth;

@@ -1,5 +1,6 @@
 //! Newton's method on the balance of forces of a stage.
 
+use super::approach::part_without_inertia;
 use super::contact::{Contacting, Verdict};
 use super::contact_derivatives::Sight;
 use super::line_search::{line_search, potential, slope_along};
@@ -43,9 +44,6 @@ pub(crate) struct Solved {
     pub(crate) correction: f64,
     pub(crate) converged: bool,
 }
-
-/// The longest correction of a node in statics, in extents of the body.
-const LONGEST: f64 = 0.5;
 
 /// Which derivatives a direction is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,9 +148,9 @@ pub(crate) fn solve<const D: usize>(
 
         let plain = longest(&room.step, D);
         solved.correction = plain;
-        if balance.sigma == 0.0 && plain > LONGEST * room.extent {
+        if balance.sigma == 0.0 {
             // Without inertia a soft direction leads far.
-            let part = LONGEST * room.extent / plain;
+            let part = part_without_inertia(system, room, balance, plain);
             room.step.iter_mut().for_each(|s| *s *= part);
             solved.correction *= part;
             slope *= part;

@@ -58,15 +58,22 @@ pub(crate) const TOLERANCE: Field = Field::new(
     Default::Number(1e-9),
     "The iteration ends when no node is corrected by more than this part of the body's extent.",
 );
+/// Who may solve, in words.
+macro_rules! solvers {
+    () => {
+        "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
+processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
+the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes."
+    };
+}
+
 /// The linear solver.
 pub(crate) const LINEAR_SOLVER: Field = Field::new(
     "linear_solver",
     Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
     "",
     Default::Text("auto"),
-    "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
-processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
-the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes.",
+    solvers!(),
 );
 /// What to do without convergence.
 pub(crate) const OTHERWISE: Field = Field::new(
@@ -87,27 +94,21 @@ pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
     "Iterations of Newton's method at most, for every part of the load.",
 );
 /// The linear solver of statics.
-pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field::new(
-    "linear_solver",
-    Allowed::Choice(&["auto", "conjugate_gradients", "matrix_free", "cholesky"]),
-    "",
-    Default::Text("auto"),
-    "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
-processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
-the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes. Without inertia the equations of a slender body \
-take conjugate gradients many products, most of all without a matrix. `arc_length` factors a matrix, and is refused with \
-\"matrix_free\".",
-);
+pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field {
+    documentation: concat!(
+        solvers!(),
+        " Without inertia the equations of a slender body take conjugate gradients many products, most of all without a matrix. \
+`arc_length` factors a matrix, and is refused with \"matrix_free\"."
+    ),
+    ..LINEAR_SOLVER
+};
 /// What to do without convergence in statics.
-pub(crate) const OTHERWISE_OF_STATICS: Field = Field::new(
-    "when_not_converged",
-    Allowed::Choice(&["error", "halve", "accept"]),
-    "",
-    Default::Text("error"),
-    "What happens where no balance is found: an error that leaves the state as it was, two steps of half the load and half the \
+pub(crate) const OTHERWISE_OF_STATICS: Field = Field {
+    documentation: "What happens where no balance is found: an error that leaves the state as it was, two steps of half the load and half the \
 way of what is held (these again, up to 1/256), or a state that counts all the same and is counted in a warning. With \
 `arc_length` the way along the curve is halved in any case.",
-);
+    ..OTHERWISE
+};
 
 /// The fields of a rule that steps through time, or of statics: its own, and those that say how equations are solved.
 macro_rules! fields {

@@ -227,7 +227,20 @@ impl<'a> Reader<'a> {
             }
         }
         self.missing(node, path, section);
+        self.without_effect(node, path, section.spec, &values);
         values
+    }
+
+    /// Tells of fields that are written and have no say among the others.
+    fn without_effect(&mut self, node: &Node, path: &str, spec: &'static Spec, values: &Values) {
+        for entry in node.entries() {
+            let Some(field) = spec.fields.iter().find(|field| field.name == entry.key) else { continue };
+            let Some(condition) = field.without_effect(values, self.dimension) else { continue };
+            let message = format!("`{}` has no effect here; it has one only {condition}", field.name);
+            let about =
+                SceneError::new("scene.no_effect", message).path(join(path, field.name)).value(entry.value.shown());
+            self.notice(entry.place, about);
+        }
     }
 
     /// Reports all missing fields of a table at once.

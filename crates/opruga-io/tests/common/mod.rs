@@ -9,7 +9,7 @@ use opruga_io::{Catalogue, Notice, SceneError};
 use opruga_world::blueprint::{AnyBlueprint, Blueprint};
 
 const fn field(name: &'static str, range: Allowed, unit: &'static str, default: Default) -> Field {
-    Field { name, range, unit, default, documentation: "For tests." }
+    Field::new(name, range, unit, default, "For tests.")
 }
 
 const fn spec(kind: &'static str, dimensions: &'static [usize], fields: &'static [Field]) -> Spec {

@@ -1,7 +1,7 @@
 //! Parameters of finite elements.
 
 use super::materials::NAMES;
-use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// The parameters of `fem`.
 pub const SPEC: Spec = Spec {
@@ -65,15 +65,17 @@ cell: waves are then too fast where lumped masses make them too slow. For implic
             Allowed::Choice(&["strain", "stress"]),
             "",
             Default::Text("strain"),
-            "In 2D: whether nothing moves across the plane, or no stress acts across it.",
-        ),
+            "Whether nothing moves across the plane, or no stress acts across it.",
+        )
+        .applies(&[Condition::Dimension(2)]),
         Field::new(
             "mooney_share",
             Allowed::FRACTION,
             "",
             Default::Number(0.2),
-            "For `mooney_rivlin` C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
-        ),
+            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
+        )
+        .applies(&[Condition::Word("material", &["mooney_rivlin"])]),
         Field::new(
             "cells",
             Allowed::Text,

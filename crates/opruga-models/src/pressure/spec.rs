@@ -1,6 +1,6 @@
 //! Parameters of the gas.
 
-use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// The parameters of `pressure`.
 pub const SPEC: Spec = Spec {
@@ -62,7 +62,8 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             "",
             Default::Number(1.4),
             "Ratio of heat capacities γ of an adiabatic gas.",
-        ),
+        )
+        .applies(&[Condition::Word("process", &["adiabatic"])]),
         Field::new(
             "ramp",
             Allowed::NOT_NEGATIVE,

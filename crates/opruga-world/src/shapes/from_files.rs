@@ -1,7 +1,7 @@
 //! Shapes that are read from files: drawings, maps, texts, pictures, surfaces, meshes.
 
 use super::CENTER;
-use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
+use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 const SPACING: Field = Field::new(
     "spacing",
@@ -31,8 +31,9 @@ pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     Allowed::POSITIVE,
     "m",
     Default::Absent,
-    "For fillings: the side of the cubes of their lattice, before `scale`; nodes lie at corners and middles.",
-);
+    "The side of the cubes of their lattice, before `scale`; nodes lie at corners and middles.",
+)
+.applies(&[Condition::Word("filling", &["lattice", "tetrahedra"])]);
 const OVERLAP: Field = Field::new(
     "overlap",
     Allowed::Choice(&["refuse", "union", "even_odd"]),
