@@ -98,7 +98,7 @@ impl<const D: usize> System<D> {
             range: range.clone(),
             force: force.each_mut().map(|f| &mut **f),
             power: &mut power,
-            weight: Some(Weight { mass: &self.mass, gravity: self.gravity }),
+            weight: Some(Weight { mass: self.weighing.as_ref().unwrap_or(&self.mass), gravity: self.gravity }),
             slots: &mut self.slots,
         };
         if !self.members.first().is_some_and(|m| m.begins_tiles) {

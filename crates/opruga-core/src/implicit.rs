@@ -71,7 +71,7 @@ impl<const D: usize> System<D> {
             for d in 0..D {
                 height += self.gravity[d] * view.x[d][place];
             }
-            parts[place % WIDTH] -= self.mass.at(place) * height;
+            parts[place % WIDTH] -= self.weighing().at(place) * height;
         }
         sum + sum_in_fixed_order(&parts)
     }
@@ -101,7 +101,7 @@ impl<const D: usize> System<D> {
         for tile in 0..self.plan.len() {
             let (range, buffer) = (self.plan.range(tile), self.plan.buffer(tile));
             let mut force = self.forces.each_mut().map(|f| &mut f[buffer..buffer + range.len() + WIDTH]);
-            let weight = Some(Weight { mass: &self.mass, gravity: self.gravity });
+            let weight = Some(Weight { mass: self.weighing.as_ref().unwrap_or(&self.mass), gravity: self.gravity });
             let mut power = [0.0; WIDTH];
             let force_of_tile = force.each_mut().map(|f| &mut **f);
             let slots = &mut self.slots;

@@ -1,7 +1,7 @@
 //! What a consistent mass matrix has more than lumped masses.
 //!
 //! M = diag(m) + D: the same number of every pair of nodes for all axes. The sum of all numbers of D is zero, so the mass of
-//! a body is that of its nodes. Weight stays that of the nodes.
+//! a body is that of its nodes; each weighs by the sum of its row.
 
 use opruga_math::{WIDTH, sum_in_fixed_order};
 

@@ -103,6 +103,8 @@ pub struct System<const D: usize> {
     pub inverse_mass: Parameter,
     /// What a consistent mass matrix adds to the masses of the nodes; none: masses are lumped.
     pub inertia: Option<Inertia>,
+    /// The masses of the shape functions [kg], ∫ρNₐ, by which nodes weigh where the mass matrix is consistent; none: `mass`.
+    pub(crate) weighing: Option<Parameter>,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
     /// The models.
@@ -161,6 +163,7 @@ impl<const D: usize> System<D> {
             mass,
             inverse_mass: one_mass,
             inertia: None,
+            weighing: None,
             gravity: [0.0; D],
             members: Vec::new(),
             pins: Vec::new(),
@@ -179,12 +182,22 @@ impl<const D: usize> System<D> {
             slots: Column::default(),
         }
     }
+    /// The masses by which the nodes weigh [kg]: their own, or with a consistent mass matrix ∫ρNₐ.
+    pub fn weighing(&self) -> &Parameter {
+        self.weighing.as_ref().unwrap_or(&self.mass)
+    }
     /// Adds a model.
     pub fn add(&mut self, potential: Box<dyn Potential<D>>) {
         let coupled = potential.inertia();
         if !coupled.is_empty() {
             let before = self.inertia.take().unwrap_or_else(|| Inertia::new(self.nodes, Vec::new()));
-            self.inertia = Some(before.with(coupled.to_vec()));
+            let inertia = before.with(coupled.to_vec());
+            // Row sums, so that a body falls as one: M a = M 1 g.
+            self.weighing = Some(Parameter::from_items(self.layout, self.nodes, |node, body| {
+                let more: f64 = inertia.row(node).map(|(_, mass)| mass).sum();
+                self.mass.at(self.layout.place(node, body)) + more
+            }));
+            self.inertia = Some(inertia);
         }
         let memory = potential.initial_memory();
         let scratch = Column::zeros(potential.scratch_len());

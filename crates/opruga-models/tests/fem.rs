@@ -85,6 +85,20 @@ fn every_material_on_every_element_in_space() {
     }
 }
 
+/// Linear simplices whose nodes resist their volume, which ties more nodes to one another than those of a cell.
+#[test]
+fn every_material_with_volumes_of_nodes() {
+    for material in NAMES {
+        let of = |ratio: f64, damping: f64| values!(fem, material: *material, youngs_modulus: 900.0, poissons_ratio: ratio, damping: damping, locking: "nodal_volume");
+        let values = [of(0.48, 0.02), of(0.4, 0.0)];
+        let options = Options { states: 1, noise: 0.05, ..options(material) };
+        let plane = irregular([2, 2]).into_simplices().unwrap();
+        conformance(&format!("{material}, triangles"), &Fem, &values, &plane, &options).assert();
+        let space = irregular([2, 1, 1]).into_simplices().unwrap();
+        conformance(&format!("{material}, tetrahedra"), &Fem, &values, &space, &options).assert();
+    }
+}
+
 /// Inside out: energies are finite and derivatives agree, and a clamped tangent has no negative eigenvalue there.
 #[test]
 fn bodies_turned_inside_out() {

@@ -198,18 +198,21 @@ impl<const D: usize> Work for Look<'_, D> {
         let x = Strip::<D>::new(&system.state.x.slices(), 0, packed);
         let v = Strip::<D>::new(&system.state.v.slices(), 0, packed);
         let masses = system.mass.strip(0, packed);
+        let heft = system.weighing().strip(0, packed);
         let (mut all, mut kinetic, mut finite) = (P::zero(), P::zero(), P::zero());
         let (mut weight, mut linear, mut angular) = ([P::zero(); D], [P::zero(); D], [P::zero(); 3]);
         let (mut low, mut high) = ([P::splat(f64::INFINITY); D], [P::splat(f64::NEG_INFINITY); D]);
         let (mut slow, mut fast) = (low, high);
         for k in (0..packed).step_by(WIDTH) {
             let mut mass: P = masses.load(k);
+            let mut weighs: P = heft.load(k);
             let mut position: [P; D] = lanes!(P, d => x.load(d, k));
             let mut velocity: [P; D] = lanes!(P, d => v.load(d, k));
             if k + WIDTH > end {
                 // Behind the last node: no mass, and the place of the first node of the pack.
                 let real = P::first(end - k);
                 mass = P::select(real, mass, P::zero());
+                weighs = P::select(real, weighs, P::zero());
                 for d in 0..D {
                     position[d] = P::select(real, position[d], P::splat(position[d].to_array()[0]));
                     velocity[d] = P::select(real, velocity[d], P::splat(velocity[d].to_array()[0]));
@@ -219,7 +222,7 @@ impl<const D: usize> Work for Look<'_, D> {
             for d in 0..D {
                 let momentum = mass * velocity[d];
                 square += velocity[d] * momentum;
-                weight[d] += mass * position[d];
+                weight[d] += weighs * position[d];
                 linear[d] += momentum;
                 low[d] = position[d].smaller(low[d]);
                 high[d] = position[d].larger(high[d]);

@@ -139,6 +139,30 @@ fn every_cell_has_one_material() {
     assert!(refusal(&["", ""]).contains("would add up"));
 }
 
+/// The weight of a body of consistent masses is that of its shape functions: it falls
+/// as one.
+#[test]
+fn a_body_of_consistent_masses_falls_without_being_deformed() {
+    let mesh =
+        Mesh::<2>::grid([0.0; 2], [0.4, 1.0], [1, 3]).unwrap().into_simplices().unwrap().into_quadratic().unwrap();
+    let mut blueprint = body(mesh.clone(), "consistent", "newmark");
+    let spec = Registry::<2>::default().integrator("newmark").expect("an integrator").spec();
+    blueprint.integrator.set(spec, "tolerance", Value::Number(1e-12), 2).expect("a field");
+    blueprint.surroundings.gravity = [0.0, -9.81];
+    let mut world = world(blueprint);
+    for _ in 0..20 {
+        world.frame().unwrap();
+    }
+    let fall = 0.5 * 9.81 * world.time() * world.time();
+    for (node, x) in mesh.positions.iter().enumerate() {
+        let now = world.position(0, node as u32);
+        for d in 0..2 {
+            let expected = if d == 1 { x[d] - fall } else { x[d] };
+            assert!((now[d] - expected).abs() < 1e-9, "{node}: {now:?}");
+        }
+    }
+}
+
 /// A bar let go in its first mode is back after the period that this mode says; average acceleration keeps the energy.
 #[test]
 fn steps_follow_the_frequencies_of_the_same_masses() {

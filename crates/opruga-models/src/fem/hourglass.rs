@@ -1,14 +1,14 @@
 //! How quadrilaterals and hexahedra resist the motions that their mean deformation does not see.
 //!
 //! The displacement of a cell of N corners is affine but for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ are
-//! those of vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). What they cost at small strain is taken
-//! from an assumed stress: with fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane, Pian and Tong
-//! 1986 in space; here without their mean) and the compliance of Hooke's law,
+//! those of vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). The strain that they are taken to make at
+//! small strain is that of an assumed stress: of fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane,
+//! Pian and Tong 1986 in space; here without their mean) and the compliance of Hooke's law,
 //!
-//! K = Lᵀ H⁻¹ L,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s.
+//! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
-//! Among the fields no combination is a pressure alone, so K stays finite as ν → 0.5, and H⁻¹ knows what free sides do: a
-//! box bends with E in plane stress and E/(1 − ν²) in plane strain.
+//! whose energy is ½ g·Lᵀ H⁻¹ L g. Among the fields no combination is a pressure alone, so it stays finite as ν → 0.5, and H⁻¹
+//! knows what free sides do: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the strain of that.
 
 use super::elements::{CORNERS, Shape};
 use super::section::rest_gradient;
@@ -16,35 +16,69 @@ use super::section::rest_gradient;
 /// Hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
 
-/// Amplitudes of a hexahedron: modes times axes.
-const MOST: usize = 12;
+/// Assumed stresses of a hexahedron: as many as amplitudes, modes times axes.
+pub(super) const MOST_STRESSES: usize = 12;
+
+/// Functions of the assumed stresses of a hexahedron.
+pub(super) const FIELDS: usize = 6;
+
+/// Pairs of axes of a hexahedron.
+pub(super) const PAIRS: usize = 6;
+
+/// The pairs of axes of a cell, whose symmetric products the assumed stresses are; shear has none in the plane.
+pub(super) const PAIR: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+
+/// The axes whose coordinates a function of an assumed stress multiplies.
+const FIELD: [&[usize]; FIELDS] = [&[0], &[1], &[2], &[1, 2], &[2, 0], &[0, 1]];
+
+/// The assumed stresses: pairs of axes and functions. The first two are those of the plane.
+pub(super) const TERMS: [(usize, usize); MOST_STRESSES] =
+    [(0, 1), (1, 0), (0, 2), (1, 2), (2, 0), (2, 1), (0, 3), (1, 4), (2, 5), (3, 2), (4, 0), (5, 1)];
 
 /// Hourglass modes of a cell of N corners.
 pub(super) const fn modes<const D: usize, const N: usize>() -> usize {
     N - 1 - D
 }
 
-/// Numbers of the stiffness of a cell: k₀, and the upper triangle of the rest row by row.
-pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
-    let size = modes::<D, N>() * D;
-    1 + size * (size + 1) / 2
+/// Functions of the assumed stresses.
+pub(super) const fn fields<const D: usize>() -> usize {
+    if D == 2 { 2 } else { FIELDS }
 }
 
-/// The assumed stresses: two axes of the cell, and the axes whose coordinates are multiplied.
-const STRESSES: [(usize, usize, &[usize]); MOST] = [
-    (0, 0, &[1]),
-    (1, 1, &[0]),
-    (0, 0, &[2]),
-    (1, 1, &[2]),
-    (2, 2, &[0]),
-    (2, 2, &[1]),
-    (0, 0, &[1, 2]),
-    (1, 1, &[2, 0]),
-    (2, 2, &[0, 1]),
-    (0, 1, &[2]),
-    (1, 2, &[0]),
-    (2, 0, &[1]),
-];
+/// Pairs of axes in the assumed stresses.
+pub(super) const fn pairs<const D: usize>() -> usize {
+    if D == 2 { 2 } else { PAIRS }
+}
+
+/// Numbers of the geometry of a cell: the shares of its corners, the measures of its points, the means of the functions, its axes.
+pub(super) const fn stored<const D: usize, const N: usize>() -> usize {
+    N * (N - 1) + N + fields::<D>() + D * D
+}
+
+/// Numbers of the material of a cell: X row by row, c, λ − λ′, and kₐ.
+pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
+    let size = modes::<D, N>() * D;
+    size * size + 2 + modes::<D, N>()
+}
+
+/// The functions of the assumed stresses at Gauss's points of the corners, but for their means.
+pub(super) const SIGNS: [[f64; FIELDS]; 8] = {
+    let mut out = [[1.0; FIELDS]; 8];
+    let mut corner = 0;
+    while corner < 8 {
+        let mut field = 0;
+        while field < FIELDS {
+            let (axes, mut k) = (FIELD[field], 0);
+            while k < axes.len() {
+                out[corner][field] *= CORNERS[corner][axes[k]];
+                k += 1;
+            }
+            field += 1;
+        }
+        corner += 1;
+    }
+    out
+};
 
 /// The axes whose coordinates an hourglass function multiplies.
 const fn axes<const D: usize>(mode: usize) -> &'static [usize] {
@@ -66,15 +100,21 @@ fn product(corner: usize, axes: &[usize]) -> f64 {
 /// A cell at rest.
 #[derive(Debug)]
 pub(super) struct Rest<const D: usize, const N: usize> {
-    /// Its measure [m³].
-    pub(super) measure: f64,
     /// For every corner its share in the mean of ∂x/∂X (D columns [1/m]) and in the hourglass amplitudes.
     pub(super) weights: [[f64; N]; N],
+    /// The measures of Gauss's points [m³].
+    pub(super) measures: [f64; N],
+    /// The means of the functions of the assumed stresses.
+    pub(super) means: [f64; FIELDS],
+    /// Columns: the axes ∂X/∂ξ in the middle [m].
+    pub(super) axes: [[f64; D]; D],
+    /// What kₐ is of μ [m]: the measure over the squares of the axes that the hourglass function multiplies.
+    pub(super) guards: [f64; MOST_MODES],
     /// L.
-    work: [[f64; MOST]; MOST],
+    work: [[f64; MOST_STRESSES]; MOST_STRESSES],
     /// ∫ s : s and ∫ tr s tr s.
-    inner: [[f64; MOST]; MOST],
-    trace: [[f64; MOST]; MOST],
+    inner: [[f64; MOST_STRESSES]; MOST_STRESSES],
+    trace: [[f64; MOST_STRESSES]; MOST_STRESSES],
 }
 
 impl<const D: usize, const N: usize> Rest<D, N> {
@@ -126,31 +166,36 @@ impl<const D: usize, const N: usize> Rest<D, N> {
                 jacobian[i][k] = (0..N).map(|a| corners[a][i] * at_middle[a][k]).sum();
             }
         }
-        let mut tensors = [[[0.0; D]; D]; MOST];
-        let mut fields = [[0.0; N]; MOST];
-        for (s, (a, b, axes)) in STRESSES.iter().enumerate().take(size) {
+        let mut means = [0.0; FIELDS];
+        for (field, mean) in means.iter_mut().enumerate().take(fields::<D>()) {
+            *mean = (0..N).map(|q| measures[q] * SIGNS[q][field]).sum::<f64>() / measure;
+        }
+        let mut tensors = [[[0.0; D]; D]; MOST_STRESSES];
+        let mut values = [[0.0; N]; MOST_STRESSES];
+        for (s, (pair, field)) in TERMS.iter().enumerate().take(size) {
+            let (a, b) = PAIR[*pair];
             for i in 0..D {
                 for j in 0..D {
-                    tensors[s][i][j] = 0.5 * (jacobian[i][*a] * jacobian[j][*b] + jacobian[i][*b] * jacobian[j][*a]);
+                    tensors[s][i][j] = 0.5 * (jacobian[i][a] * jacobian[j][b] + jacobian[i][b] * jacobian[j][a]);
                 }
             }
-            let mean = (0..N).map(|q| measures[q] * product(q, axes)).sum::<f64>() / measure;
-            fields[s] = core::array::from_fn(|q| product(q, axes) - mean);
+            values[s] = core::array::from_fn(|q| SIGNS[q][*field] - means[*field]);
         }
-        let mut rest = Rest {
-            measure,
-            weights,
-            work: [[0.0; MOST]; MOST],
-            inner: [[0.0; MOST]; MOST],
-            trace: [[0.0; MOST]; MOST],
-        };
+        let mut guards = [0.0; MOST_MODES];
+        for (mode, guard) in guards.iter_mut().enumerate().take(modes) {
+            let square = |axis: usize| (0..D).map(|i| jacobian[i][axis] * jacobian[i][axis]).sum::<f64>();
+            *guard = measure / axes::<D>(mode).iter().map(|axis| square(*axis)).sum::<f64>();
+        }
+        let none = [[0.0; MOST_STRESSES]; MOST_STRESSES];
+        let (work, inner, trace) = (none, none, none);
+        let mut rest = Rest { weights, measures, means, axes: jacobian, guards, work, inner, trace };
         for s in 0..size {
             for mode in 0..modes {
                 // ∫ f ∂h/∂X of the field f of the stress.
                 let mut mean = [0.0; D];
                 for q in 0..N {
                     for a in 0..N {
-                        let share = measures[q] * fields[s][q] * product(a, axes::<D>(mode));
+                        let share = measures[q] * values[s][q] * product(a, axes::<D>(mode));
                         for j in 0..D {
                             mean[j] += share * slopes[q][a][j];
                         }
@@ -161,7 +206,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
                 }
             }
             for t in 0..size {
-                let both: f64 = (0..N).map(|q| measures[q] * fields[s][q] * fields[t][q]).sum();
+                let both: f64 = (0..N).map(|q| measures[q] * values[s][q] * values[t][q]).sum();
                 let trace = |s: usize| (0..D).map(|i| tensors[s][i][i]).sum::<f64>();
                 let inner: f64 =
                     tensors[s].as_flattened().iter().zip(tensors[t].as_flattened()).map(|(a, b)| a * b).sum();
@@ -172,48 +217,30 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         rest
     }
 
-    /// The stiffness of a law whose strain is (s − c tr s 1)/2μ [N/m]: k₀ and, packed, the rest.
-    ///
-    /// k₀ is a lower bound of the eigenvalues, ‖K⁻²‖^(−1/2): what is the same in all directions needs not turn with the cell.
-    pub(super) fn stiffness(&self, mu: f64, c: f64, out: &mut Vec<f64>) {
+    /// X = H⁻¹ L of a law whose strain is (s − c tr s 1)/2μ, where β is over 2μ, row by row.
+    pub(super) fn response(&self, c: f64) -> Vec<f64> {
         let size = modes::<D, N>() * D;
-        // H = A Aᵀ, and A⁻¹ L.
-        let mut factor = [[0.0; MOST]; MOST];
-        let mut half = self.work;
+        // H = A Aᵀ.
+        let mut factor = [[0.0; MOST_STRESSES]; MOST_STRESSES];
+        let mut out = self.work;
         for i in 0..size {
             for j in 0..=i {
                 let inner: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
                 let rest = self.inner[i][j] - c * self.trace[i][j] - inner;
                 factor[i][j] = if i == j { rest.sqrt() } else { rest / factor[j][j] };
             }
-            for column in 0..size {
-                let done: f64 = (0..i).map(|k| factor[i][k] * half[k][column]).sum();
-                half[i][column] = (self.work[i][column] - done) / factor[i][i];
+        }
+        for column in 0..size {
+            for i in 0..size {
+                let done: f64 = (0..i).map(|k| factor[i][k] * out[k][column]).sum();
+                out[i][column] = (out[i][column] - done) / factor[i][i];
+            }
+            for i in (0..size).rev() {
+                let done: f64 = (i + 1..size).map(|k| factor[k][i] * out[k][column]).sum();
+                out[i][column] = (out[i][column] - done) / factor[i][i];
             }
         }
-        let mut whole = vec![vec![0.0; 2 * size]; size];
-        for (r, row) in whole.iter_mut().enumerate() {
-            for s in 0..size {
-                row[s] = 2.0 * mu * (0..size).map(|k| half[k][r] * half[k][s]).sum::<f64>();
-            }
-            row[size + r] = 1.0;
-        }
-        let stiffness: Vec<f64> = whole.iter().flat_map(|row| row[..size].to_vec()).collect();
-        eliminate(&mut whole);
-        let mut square = 0.0;
-        for r in 0..size {
-            for s in 0..size {
-                let twice: f64 = (0..size).map(|k| whole[r][size + k] * whole[k][size + s]).sum();
-                square += twice * twice;
-            }
-        }
-        let least = 1.0 / square.sqrt().sqrt();
-        out.push(least);
-        for r in 0..size {
-            for s in r..size {
-                out.push(stiffness[r * size + s] - if r == s { least } else { 0.0 });
-            }
-        }
+        out[..size].iter().flat_map(|row| row[..size].to_vec()).collect()
     }
 }
 
@@ -242,17 +269,11 @@ mod tests {
     use super::super::elements::{Hexahedron, Quadrilateral};
     use super::*;
 
-    fn full(packed: &[f64], size: usize) -> Vec<Vec<f64>> {
-        let mut out = vec![vec![0.0; size]; size];
-        let mut next = 1;
-        for r in 0..size {
-            for s in r..size {
-                let own = packed[next] + if r == s { packed[0] } else { 0.0 };
-                (out[r][s], out[s][r]) = (own, own);
-                next += 1;
-            }
-        }
-        out
+    /// 2μ Lᵀ H⁻¹ L.
+    fn stiffness<const D: usize, const N: usize>(rest: &Rest<D, N>, mu: f64, c: f64) -> Vec<Vec<f64>> {
+        let (size, response) = (modes::<D, N>() * D, rest.response(c));
+        let entry = |r: usize, t: usize| (0..size).map(|s| rest.work[s][r] * response[s * size + t]).sum::<f64>();
+        (0..size).map(|r| (0..size).map(|t| 2.0 * mu * entry(r, t)).collect()).collect()
     }
 
     /// A box of a × b that bends to the curvature κ has the energy E I κ²/2 per length, I = t b³/12: u = (κ x y, …).
@@ -264,9 +285,7 @@ mod tests {
         for ratio in [0.0, 0.3, 0.4999] {
             let young = 2.0 * mu * (1.0 + ratio);
             for (c, modulus) in [(ratio, young / (1.0 - ratio * ratio)), (ratio / (1.0 + ratio), young)] {
-                let mut packed = Vec::new();
-                rest.stiffness(mu, c, &mut packed);
-                let stiffness = full(&packed, 2);
+                let stiffness = stiffness(&rest, mu, c);
                 // κ x y with x = aξ/2, y = bη/2: the amplitude κ a b/4.
                 let amplitude: f64 = 0.25 * a * b;
                 let energy = 0.5 * stiffness[0][0] * amplitude * amplitude;
@@ -283,9 +302,7 @@ mod tests {
         let (sides, mu, ratio) = ([0.7, 0.4, 0.2], 3.0, 0.4999);
         let corners: [[f64; 3]; 8] = core::array::from_fn(|k| core::array::from_fn(|d| 0.5 * sides[d] * CORNERS[k][d]));
         let rest = Rest::new::<Hexahedron>(&corners, 1.0);
-        let mut packed = Vec::new();
-        rest.stiffness(mu, ratio / (1.0 + ratio), &mut packed);
-        let stiffness = full(&packed, 12);
+        let stiffness = stiffness(&rest, mu, ratio / (1.0 + ratio));
         let young = 2.0 * mu * (1.0 + ratio);
         let [a, b, c] = sides;
         // u_x = κ x z: mode 1, axis 0; u_y = −νκ y z: mode 0, axis 1.
@@ -320,10 +337,14 @@ mod tests {
                     assert!((own - f64::from(u8::from(d == mode))).abs() < 1e-13);
                 }
             }
-            let mut packed = Vec::new();
-            rest.stiffness(1.0, 0.4999 / 1.4999, &mut packed);
-            assert_eq!(packed.len(), stiffness_numbers::<3, 8>());
-            assert!(packed[0] > 0.03, "{}", packed[0]);
+            // The sum of the inverses of the eigenvalues, each of which is so small at most.
+            let mut rows = stiffness(&rest, 1.0, 0.4999 / 1.4999);
+            for (r, row) in rows.iter_mut().enumerate() {
+                row.extend((0..12).map(|k| f64::from(u8::from(k == r))));
+            }
+            eliminate(&mut rows);
+            let inverse: f64 = (0..12).map(|k| rows[k][12 + k]).sum();
+            assert!(inverse > 0.0 && inverse < 400.0, "{inverse}");
         }
     }
 }

@@ -7,13 +7,13 @@
 //!
 //! | cell | points | locks |
 //! |---|---|---|
-//! | triangle, tetrahedron | 1 | in bending; near incompressibility: refused above ν = 0.45 |
-//! | quadrilateral, hexahedron | the mean of F, and the stiffness of bending and twisting | no |
+//! | triangle, tetrahedron | 1 | in bending; near incompressibility unless volumes are those of nodes (file `nodal_volume`): refused above ν = 0.45 |
+//! | quadrilateral, hexahedron | 4, 8, and the mean above ν = 1/3 | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Quadrilaterals and hexahedra give the law their mean deformation gradient (Flanagan and Belytschko 1981, so that patches of
-//! any cells are exact). What that does not see, bending and twisting of a cell, has the stiffness that assumed stresses give
-//! it at small strain (Pian and Sumihara 1984, Pian and Tong 1986), turned with the cell: see the files `hourglass` and
+//! Quadrilaterals and hexahedra have a mean deformation gradient (Flanagan and Belytschko 1981, so that patches of any cells are
+//! exact). How they bend and twist besides is the strain that assumed stresses have at small strain (Pian and Sumihara 1984, Pian
+//! and Tong 1986), carried along by the mean, and the law is asked at Gauss's points with that: see the files `hourglass` and
 //! `boxes`. A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
 //! **Materials** are functions of F in a file each ([`materials`]): [`materials::Linear`], [`materials::StVenantKirchhoff`],
@@ -24,10 +24,11 @@
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
-//! Limits: the stiffness of bending cells does not change with their stretch but by A²; it matters less with every finer mesh.
-//! Energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws.
+//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. Boxes bend
+//! at small strain as Hooke's law of their E and ν lets them; how much a bent cell swells across is taken from there in all states.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod box_matrices;
 mod boxes;
 mod contraction;
 mod elements;
@@ -36,6 +37,7 @@ mod law;
 mod mass;
 pub mod material;
 pub mod materials;
+mod nodal_volume;
 mod numbers;
 mod pass;
 mod plane_stress;
@@ -45,8 +47,10 @@ mod work;
 
 pub use spec::SPEC;
 
+use boxes::beyond;
 use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Shape, Tetrahedron, Triangle};
 use law::Law;
+use nodal_volume::NodalVolumes;
 use numbers::Numbers;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{CellState, Definiteness, Ingredients, Model, Potential, Sink, Views};
@@ -79,6 +83,8 @@ pub struct Solid<const D: usize> {
     sums: Sums,
     /// What the consistent mass matrix has more than the lumped masses.
     inertia: Vec<(u32, u32, f64)>,
+    /// What resists the volumes of nodes.
+    volumes: Option<NodalVolumes<D>>,
     damped: bool,
 }
 
@@ -90,6 +96,7 @@ fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
 struct Built<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     inertia: Vec<(u32, u32, f64)>,
+    volumes: Option<NodalVolumes<D>>,
 }
 
 /// What is the same for all cells while a solid is built.
@@ -141,6 +148,11 @@ impl<'a, const D: usize> Builder<'a, D> {
         found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))
     }
 
+    /// What holds for linear simplices near incompressibility.
+    fn locking(&self) -> &str {
+        self.ingredients.values[0].text("locking").unwrap_or("refuse")
+    }
+
     /// The section of one kind of cells, the first of which has the number `first` in the mesh.
     fn add<E: Shape<D, N>, const N: usize>(
         &self,
@@ -166,20 +178,38 @@ impl<'a, const D: usize> Builder<'a, D> {
                 mass::entries::<E, D, N>(&cell.nodes, &rest, density[cell.number as usize], &mut built.inertia);
             }
         }
-        if E::SIMPLEX && !self.stress {
+        let law = law();
+        let nodal = E::SIMPLEX && self.locking() == "nodal_volume";
+        if nodal {
+            let lame = |cell: u32, body: usize| {
+                let [mu, lambda, ..] = self.numbers.of(cell, body);
+                [mu, lambda]
+            };
+            let list = cells.iter().map(|cell| (cell.number, cell.nodes));
+            let (layout, thickness) = (self.ingredients.layout, if D == 2 { self.ingredients.thickness } else { 1.0 });
+            let volumes = NodalVolumes::new(layout, law.turns(), positions, thickness, list, &lame);
+            built.volumes = Some(volumes);
+        } else if E::SIMPLEX && !self.stress {
             let kind = if D == 2 { "triangles" } else { "tetrahedra" };
             self.numbers.refuse_what_locks(&mut cells.iter().map(|cell| cell.number), kind)?;
         }
         let plan = Plan {
             layout: self.ingredients.layout,
-            law: law(),
+            law,
             law_in_space: law_in_space.map(|law| law()),
             positions,
             thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
             plane_stress: self.stress,
             damped: self.numbers.damped,
         };
-        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &|cell, body| self.numbers.of(cell, body))));
+        let numbers = |cell: u32, body: usize| {
+            let mut numbers = self.numbers.of(cell, body);
+            if nodal {
+                numbers[1] -= beyond(numbers[0], numbers[1]);
+            }
+            numbers
+        };
+        built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &numbers)));
         Ok(())
     }
 
@@ -211,8 +241,17 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    fn finish(self, built: Built<D>) -> Box<Solid<D>> {
-        let Built { parts, inertia } = built;
+    fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {
+        let Built { parts, inertia, volumes } = built;
+        if self.locking() == "nodal_volume" && (self.stress || volumes.is_none()) {
+            let message = if self.stress {
+                "`locking` is `nodal_volume`; allowed in plane stress: `refuse` or `accept`, since nothing locks where the thickness is free"
+            } else {
+                "`locking` is `nodal_volume`, but the cells are no linear triangles or tetrahedra; allowed for others: `refuse` or \
+                 `accept`, since they do not lock"
+            };
+            return Err(refuse("model.locking", message));
+        }
         let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
         let (mut shares, mut starts) = (Vec::new(), Vec::new());
         let mut start = FORCES;
@@ -225,7 +264,8 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, damped: self.numbers.damped })
+        let damped = self.numbers.damped;
+        Ok(Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped }))
     }
 }
 
@@ -259,13 +299,13 @@ impl Model<2> for FemModel {
         let (law, space) =
             if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
         builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
         let mut first = cells.triangles.len();
         builder.add::<Quadrilateral, 4>(&mut built, &cells.quadrilaterals, first, law, space)?;
         first += cells.quadrilaterals.len();
         builder.add::<QuadraticTriangle, 6>(&mut built, &cells.quadratic_triangles, first, law, space)?;
-        Ok(builder.finish(built))
+        Ok(builder.finish(built)?)
     }
 }
 
@@ -277,13 +317,13 @@ impl Model<3> for FemModel {
         let builder = Builder::new(ingredients)?;
         let law = builder.entry()?.space;
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new() };
+        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
         builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;
         let mut first = cells.tetrahedra.len();
         builder.add::<Hexahedron, 8>(&mut built, &cells.hexahedra, first, law, None)?;
         first += cells.hexahedra.len();
         builder.add::<QuadraticTetrahedron, 10>(&mut built, &cells.quadratic_tetrahedra, first, law, None)?;
-        Ok(builder.finish(built))
+        Ok(builder.finish(built)?)
     }
 }
 
@@ -356,11 +396,12 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     /// Energies and powers, and what every share leaves.
     fn scratch_len(&self) -> usize {
-        self.shares.last().map_or(FORCES, |task| task.start + task.length)
+        self.cells_len() + self.volumes.as_ref().map_or(0, NodalVolumes::scratch_len)
     }
     /// Evaluates every element once: energies, powers and the forces of all nodes.
     fn prepare(&self, simd: Simd, view: &View<D>, _memory: &[f64], scratch: &mut [f64]) -> Result<(), StepError> {
-        let (sums, rest) = scratch.split_at_mut(FORCES);
+        let (cells, of_volumes) = scratch.split_at_mut(self.cells_len());
+        let (sums, rest) = cells.split_at_mut(FORCES);
         let refused: Mutex<Option<(usize, StepError)>> = Mutex::new(None);
         each_part(view.threads, rest, &self.starts, |number, scratch| {
             let part = &self.parts[self.shares[number].part];
@@ -378,6 +419,11 @@ impl<const D: usize> Potential<D> for Solid<D> {
         for task in &self.shares {
             let own = &rest[task.start - FORCES..][..FORCES];
             for (sum, own) in sums.iter_mut().zip(own) {
+                *sum += own;
+            }
+        }
+        if let Some(volumes) = &self.volumes {
+            for (sum, own) in sums.iter_mut().zip(volumes.evaluate(view, of_volumes)) {
                 *sum += own;
             }
         }
@@ -434,6 +480,16 @@ impl<const D: usize> Potential<D> for Solid<D> {
                 }
             }
         }
+        if let Some(volumes) = &self.volumes {
+            let stride = self.layout.stride();
+            let scratch = &scratch[self.cells_len()..];
+            for place in range.start..range.end.min(self.nodes * stride) {
+                let force = volumes.force(scratch, place / stride, place % stride);
+                for d in 0..D {
+                    tile.force[d][place - range.start] += force[d];
+                }
+            }
+        }
         // The first tile reports the power of the whole body.
         if range.start == 0 {
             for l in 0..WIDTH {
@@ -448,6 +504,9 @@ impl<const D: usize> Potential<D> for Solid<D> {
         for (part, scratch) in self.parts_in(scratch) {
             part.hessian(view, scratch, keep, sink);
         }
+        if let Some(volumes) = &self.volumes {
+            volumes.hessian(view, &scratch[self.cells_len()..], keep, sink);
+        }
     }
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
         for (part, scratch) in self.parts_in(scratch) {
@@ -459,14 +518,24 @@ impl<const D: usize> Potential<D> for Solid<D> {
         for part in &self.parts {
             part.cell_states(view, body, &mut out);
         }
+        if let Some(volumes) = &self.volumes {
+            volumes.add_stresses(view, body, &mut out);
+        }
         out
     }
     fn heap_bytes(&self) -> usize {
-        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>() + self.sums.heap_bytes()
+        self.parts.iter().map(|part| part.heap_bytes()).sum::<usize>()
+            + self.sums.heap_bytes()
+            + self.volumes.as_ref().map_or(0, NodalVolumes::heap_bytes)
     }
 }
 
 impl<const D: usize> Solid<D> {
+    /// Numbers that the evaluation of the cells leaves.
+    fn cells_len(&self) -> usize {
+        self.shares.last().map_or(FORCES, |task| task.start + task.length)
+    }
+
     /// The parts, each with its scratch.
     fn parts_in<'a>(&'a self, scratch: &'a [f64]) -> impl Iterator<Item = (&'a dyn Part<D>, &'a [f64])> {
         self.shares.iter().filter(|task| task.share == 0).map(|task| (&*self.parts[task.part], &scratch[task.start..]))

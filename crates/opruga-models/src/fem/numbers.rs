@@ -89,7 +89,7 @@ impl<'a> Numbers<'a> {
             "model.locking",
             format!(
                 "`poissons_ratio` is {ratio}; allowed for linear {kind}: at most {LOCKS_ABOVE}, since they lock near \
-                 incompressibility. Give the body `order = 2`, or say `locking = \"accept\"`"
+                 incompressibility. Give the body `order = 2`, or say `locking = \"nodal_volume\"`"
             ),
         ))
     }

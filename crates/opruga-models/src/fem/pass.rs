@@ -3,7 +3,8 @@
 //! All of them look at a few packs of elements at a time: deformation gradients into a buffer, a law over the buffer, and
 //! what they are after out of it.
 
-use super::boxes::{self, AMPLITUDES, Deform, Of, Push, Rates};
+use super::box_matrices::{self, Of};
+use super::boxes::{self, Deform, DeformRates, KEPT, Push, Rates};
 use super::contraction::{Contract, ContractPrincipal};
 use super::elements::Shape;
 use super::law::{PARAMETERS, PRINCIPAL, Points};
@@ -19,12 +20,16 @@ use opruga_math::{Simd, WIDTH};
 /// Packs of points whose tangents are held at a time where elements have one point: what fits the first-level cache.
 const TANGENTS: usize = 4;
 
+/// Packs of boxes that are looked at together, at most.
+const MOST_BOXES: usize = 2;
+
 /// A pass, with the buffers that it needs.
 pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
     gradient: Room<{ MOST_PACKS * 9 * WIDTH }>,
-    amplitudes: Room<{ MOST_PACKS * AMPLITUDES * WIDTH }>,
+    /// What boxes keep.
+    kept: Room<{ MOST_BOXES * KEPT * WIDTH }>,
     numbers: Room<{ MOST_PACKS * PARAMETERS * WIDTH }>,
     times: Room<{ MOST_PACKS * WIDTH }>,
 }
@@ -42,7 +47,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             section,
             simd,
             gradient: Room([0.0; MOST_PACKS * 9 * WIDTH]),
-            amplitudes: Room([0.0; MOST_PACKS * AMPLITUDES * WIDTH]),
+            kept: Room([0.0; MOST_BOXES * KEPT * WIDTH]),
             numbers: Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
             times: Room([0.0; MOST_PACKS * WIDTH]),
         };
@@ -55,15 +60,20 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     }
 
     fn read_parameters(&mut self, group: &Group<'_>) {
-        parameters_of_points(group, &mut self.numbers.0, &mut self.times.0);
+        let (numbers, times) = (&mut self.numbers.0, &mut self.times.0);
+        if E::BOX {
+            boxes::parameters_of_points::<N>(group, numbers, times);
+        } else {
+            parameters_of_points(group, numbers, times);
+        }
     }
 
     /// Deformation gradients and parameters at the points of some packs of elements.
     fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>) {
         let (of, shape, gradient) = (*group, PhantomData, &mut self.gradient.0);
         if E::BOX {
-            let amplitudes = &mut self.amplitudes.0;
-            self.simd.run(Deform::<E, D, N> { shape, group: of, nodes, gradient, amplitudes });
+            let kept = &mut self.kept.0;
+            self.simd.run(Deform::<E, D, N> { shape, group: of, positions: nodes, gradient, kept });
         } else {
             self.simd.run(Gradients::<E, D, N> { shape, group: of, nodes, gradient });
         }
@@ -87,7 +97,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     ) -> Result<(), StepError> {
         let (section, simd) = (self.section, self.simd);
         let mut rate = Room([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut amplitude_rate = Room([0.0; MOST_PACKS * AMPLITUDES * WIDTH]);
+        let mut kept_rate = Room([0.0; MOST_BOXES * KEPT * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut power = Room([0.0; MOST_PACKS * WIDTH]);
@@ -98,8 +108,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             if section.damped {
                 let (shape, nodes, gradient, times) = (PhantomData, velocities, &mut rate.0, &self.times.0);
                 if E::BOX {
-                    let amplitudes = &mut amplitude_rate.0;
-                    simd.run(Deform::<E, D, N> { shape, group, nodes, gradient, amplitudes });
+                    let (kept, kept_rate, rate) = (&self.kept.0, &mut kept_rate.0, gradient);
+                    simd.run(DeformRates::<E, D, N> { shape, group, velocities: nodes, kept, rate, kept_rate });
                 } else {
                     simd.run(Gradients::<E, D, N> { shape, group, nodes, gradient });
                 }
@@ -108,14 +118,9 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             }
             let (shape, stress, density, force) = (PhantomData, &stress.0, &mut density.0, &mut *force);
             if E::BOX {
-                let (gradient, amplitudes) = (&self.gradient.0, &self.amplitudes.0);
-                let rates = section.damped.then_some(Rates {
-                    gradient: &rate.0,
-                    amplitudes: &amplitude_rate.0,
-                    times: &self.times.0,
-                    power: &mut power.0,
-                });
-                simd.run(Push::<E, D, N> { shape, group, gradient, amplitudes, stress, density, rates, force });
+                let (kept, times) = (&self.kept.0, &self.times.0);
+                let rates = section.damped.then_some(Rates { kept: &kept_rate.0, times, power: &mut power.0 });
+                simd.run(Push::<E, D, N> { shape, group, kept, stress, density, rates, force });
             } else {
                 let power = section.damped.then_some(&mut power.0[..]);
                 simd.run(Forces::<E, D, N> { shape, group, stress, density, power, force });
@@ -157,6 +162,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let (section, simd) = (self.section, self.simd);
         let mut tangent = Room([0.0; MOST_PACKS * 81 * WIDTH]);
         let tangent = &mut tangent.0;
+        let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut blocks = vec![0.0; N * N * D * D * WIDTH];
         for group in section.groups(share, TANGENTS) {
             let mut places = [[[0; WIDTH]; N]; TANGENTS];
@@ -184,6 +191,10 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     false
                 }
             };
+            // Boxes turn and stretch what their points are under.
+            if E::BOX && matches!(matrix, Matrix::Hessian(Definiteness::Exact)) {
+                section.law.stress(simd, points, &mut density.0, &mut stress.0);
+            }
             for pack in (0..group.packs).filter(|pack| wanted[*pack]) {
                 let (shape, blocks) = (PhantomData, &mut blocks);
                 if E::BOX {
@@ -191,17 +202,16 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         Matrix::Hessian(keep) => Of::Energy(keep),
                         Matrix::Damping => Of::Damping,
                     };
-                    let (gradient, amplitudes) = (&self.gradient.0, &self.amplitudes.0);
-                    let times = &self.times.0;
-                    simd.run(boxes::Contract::<E, D, N> {
+                    let (kept, stress, times) = (&self.kept.0, &stress.0, &self.times.0);
+                    simd.run(box_matrices::Contract::<E, D, N> {
                         shape,
                         group,
                         pack,
                         of,
-                        gradient,
-                        amplitudes,
-                        times,
+                        kept,
+                        stress,
                         tangent,
+                        times,
                         blocks,
                     });
                 } else if principal {
@@ -247,8 +257,11 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     };
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);
-                    measure += weight;
-                    now += weight * ratio;
+                    // The mean of a box is its points once more.
+                    if q < E::POINTS {
+                        measure += weight;
+                        now += weight * ratio;
+                    }
                     // ∫ P Fᵀ over the rest shape is ∫ σ over the present one.
                     for i in 0..axes {
                         for j in 0..3 {

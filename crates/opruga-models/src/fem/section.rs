@@ -11,8 +11,9 @@
 //! touches, whose forces are added up in the order of its elements, and those of a node in the order of the shares. Shares
 //! are the same for every number of threads and for both layouts, and so are the bits.
 
+use super::boxes::beyond;
 use super::elements::Shape;
-use super::hourglass::{self, stiffness_numbers};
+use super::hourglass::{self, fields, stiffness_numbers};
 use super::law::Law;
 use super::pass::{Matrices, Pass};
 use super::work::Nodes;
@@ -66,10 +67,10 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     places: Vec<u32>,
     /// For eight bodies the N rows of the share for every element.
     targets: Vec<u32>,
-    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; of boxes the shares of the corners in the mean deformation
-    /// and the hourglass amplitudes, and the measure. In packs for one body.
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; of boxes what [`hourglass::stored`] counts. In packs for one
+    /// body.
     pub(super) geometry: Column,
-    /// Hourglass stiffness of boxes.
+    /// What boxes resist bending with: what [`stiffness_numbers`] counts.
     stiffness: Column,
     /// [`NUMBERS`] packs for every pack of elements, or for all.
     parameters: Column,
@@ -202,9 +203,9 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) damped: bool,
 }
 
-/// Numbers of the geometry of a point, or of a box.
+/// Numbers of the geometry of the points of an element.
 const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
-    if E::BOX { N * (N - 1) + 1 } else { D * D + 1 }
+    if E::BOX { hourglass::stored::<D, N>() } else { E::POINTS * (D * D + 1) }
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
@@ -217,14 +218,23 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let Plan { layout, law, law_in_space, positions, thickness, plane_stress, damped } = plan;
         let lowest = |cell: &Cell<N>| cell.nodes.iter().copied().min().unwrap_or(0);
         cells.sort_by_key(|cell| (lowest(cell), cell.nodes, cell.number));
-        let points = if E::BOX { 1 } else { E::POINTS };
+        let resists_volume = |cell: &Cell<N>| {
+            let bodies = if layout == Layout::Single { 0..1 } else { 0..WIDTH };
+            bodies.into_iter().any(|body| {
+                let [mu, lambda, ..] = numbers(cell.number, body);
+                beyond(mu, lambda) > 0.0
+            })
+        };
+        // Boxes ask the law at their mean too where it resists volume much.
+        let mean = E::BOX && !plane_stress && cells.iter().any(resists_volume);
+        let points = E::POINTS + usize::from(mean);
         let stored = stored::<E, D, N>();
         let lanes = if layout == Layout::Single { WIDTH } else { 1 };
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
 
-        // As many elements in both layouts.
-        let shares = shares(&cells, packs, lanes, (SHARE / points).max(1) * WIDTH / lanes);
+        // As many elements in both layouts, whatever the material of the other bodies.
+        let shares = shares(&cells, packs, lanes, (SHARE / E::POINTS).max(1) * WIDTH / lanes);
         let mut places = vec![0; packs * N * lanes];
         let mut targets = vec![0; if layout == Layout::Batch { packs * N } else { 0 }];
         for share in &shares {
@@ -243,35 +253,33 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 }
             }
         }
-        let mut geometry = Column::zeros(packs * points * stored * lanes);
+        let mut geometry = Column::zeros(packs * stored * lanes);
         let mut parameters = Column::zeros(packs * NUMBERS * WIDTH);
         let stiffnesses = if E::BOX { stiffness_numbers::<D, N>() } else { 0 };
         let mut stiffness = Column::zeros(packs * stiffnesses * WIDTH);
-        let mut of_cell = Vec::with_capacity(stiffnesses);
         for pack in 0..packs {
             for lane in 0..lanes {
                 let this = cell(pack, lane);
                 // What fills a pack up has no measure.
                 let there = pack * lanes + lane < cells.len();
                 let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
-                let mut put = |q: usize, k: usize, value: f64| {
-                    geometry[((pack * points + q) * stored + k) * lanes + lane] = value;
-                };
+                let mut put = |k: usize, value: f64| geometry[(pack * stored + k) * lanes + lane] = value;
                 if E::BOX {
                     let rest = hourglass::Rest::new::<E>(&rest, thickness);
-                    for (a, shares) in rest.weights.iter().enumerate() {
-                        (0..N - 1).for_each(|c| put(0, a * (N - 1) + c, shares[c]));
-                    }
-                    put(0, stored - 1, if there { rest.measure } else { 0.0 });
+                    let measures = rest.measures.map(|measure| if there { measure } else { 0.0 });
+                    let shares = rest.weights.iter().flat_map(|shares| &shares[..N - 1]);
+                    let all = shares.chain(&measures).chain(&rest.means[..fields::<D>()]);
+                    all.chain(rest.axes.as_flattened()).enumerate().for_each(|(k, value)| put(k, *value));
                     let bodies = if layout == Layout::Single { 0..1 } else { 0..WIDTH };
                     for body in bodies.filter(|_| there) {
                         let [mu, lambda, ..] = numbers(this.number, body);
                         let ratio = 0.5 * lambda / (lambda + mu);
                         let across = if D == 2 && !plane_stress { ratio } else { ratio / (1.0 + ratio) };
-                        of_cell.clear();
-                        rest.stiffness(mu, across, &mut of_cell);
-                        for (k, number) in of_cell.iter().enumerate() {
-                            stiffness[(pack * stiffnesses + k) * WIDTH + lane + body] = *number;
+                        let mut of_cell = rest.response(across);
+                        of_cell.extend([across, if mean { beyond(mu, lambda) } else { 0.0 }]);
+                        of_cell.extend(rest.guards[..hourglass::modes::<D, N>()].iter().map(|guard| mu * guard));
+                        for (k, number) in of_cell.into_iter().enumerate() {
+                            stiffness[(pack * stiffnesses + k) * WIDTH + lane + body] = number;
                         }
                     }
                     continue;
@@ -280,10 +288,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                     let (inverse, determinant) = rest_gradient(&rest, &E::SLOPES[q]);
                     for j in 0..D {
                         for k in 0..D {
-                            put(q, j * D + k, inverse[j][k]);
+                            put(q * (D * D + 1) + j * D + k, inverse[j][k]);
                         }
                     }
-                    put(q, D * D, if there { E::WEIGHTS[q] * determinant * thickness } else { 0.0 });
+                    let measure = if there { E::WEIGHTS[q] * determinant * thickness } else { 0.0 };
+                    put((q + 1) * (D * D + 1) - 1, measure);
                 }
             }
             for l in 0..WIDTH {
@@ -379,11 +388,15 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         Nodes { rows: &scratch[start..start + self.copy(share)], columns: view.x }
     }
 
-    /// The measure of a point of an element [m³].
+    /// The measure of a point of an element [m³]; of the mean of a box that of the box.
     pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
         let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
-        let stored = stored::<E, D, N>();
-        self.geometry[((pack * self.points + point + 1) * stored - 1) * lanes + lane]
+        let at = |k: usize| self.geometry[(pack * stored::<E, D, N>() + k) * lanes + lane];
+        match (E::BOX, point < E::POINTS) {
+            (false, _) => at((point + 1) * (D * D + 1) - 1),
+            (true, true) => at(N * (N - 1) + point),
+            (true, false) => (0..N).map(|q| at(N * (N - 1) + q)).sum(),
+        }
     }
 
     /// The element and body of a lane of a pack.

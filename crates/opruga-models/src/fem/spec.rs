@@ -10,8 +10,9 @@ pub const SPEC: Spec = Spec {
     documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, quadrilaterals and \
 hexahedra. E and ν mean what they say at small strain in every material; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 − 2ν)). \
 Quadratic triangles and tetrahedra (`order = 2` of the body, the default) neither lock in bending nor near incompressibility. \
-Quadrilaterals and hexahedra give the law their mean deformation, and bend and twist with the stiffness of assumed stresses: exactly where they are rectangular, up to ν = 0.4999. \
-Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise. \
+Quadrilaterals and hexahedra bend and twist with the strains of assumed stresses: exactly where they are rectangular, up to ν = 0.4999. \
+Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise: \
+`nodal_volume` is the remedy. \
 In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
 Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Equations, sources and measurements: docs/finite-elements.md.",
     dimensions: &[2, 3],
@@ -100,10 +101,11 @@ cell: waves are then too fast where lumped masses make them too slow. For implic
         ),
         Field::new(
             "locking",
-            Allowed::Choice(&["refuse", "accept"]),
+            Allowed::Choice(&["refuse", "accept", "nodal_volume"]),
             "",
             Default::Text("refuse"),
-            "What holds for linear triangles and tetrahedra above ν = 0.45.",
+            "What holds for linear triangles and tetrahedra above ν = 0.45: they are refused, or accepted although they lock, or resist \
+the volumes of nodes instead of those of cells, which does not lock (for them alone, and not in plane stress).",
         ),
     ],
 };

@@ -80,6 +80,19 @@ pub(super) const CASES: &[Case] = &[
         ..LINEAR
     },
     Case {
+        name: "cook-linear-0-49-triangles",
+        quantity: "upward displacement of the pulled corner, linear, plane strain, E = 1, ν = 0.49, F = 1, volumes of nodes",
+        source: "R. D. Cook 1974; 19.48 by 32 × 32 quadratic triangles of two other programs",
+        expected: &[19.48],
+        levels: &[16.0, 32.0, 64.0],
+        check: Check::Finest,
+        measure: |lab, n| {
+            let law = "material = \"linear\", youngs_modulus = 1.0, poissons_ratio = 0.49, locking = \"nodal_volume\"";
+            cook(lab, n, Cells::Linear, law, 1.0, 60.0)
+        },
+        ..LINEAR
+    },
+    Case {
         name: "cook-large-0-3",
         source: "7.7648 by quadratic triangles of another program, μ/2 (I₁ − 3) − μ ln J + λ/2 ln² J, ν = 0.3",
         expected: &[7.7648],
@@ -117,6 +130,15 @@ pub(super) const CASES: &[Case] = &[
         levels: &[8.0, 12.0, 16.0],
         expected: &[6.9],
         measure: |lab, n| cook(lab, n, Cells::Quadratic, NEARLY, 100.0, 60.0),
+        ..LARGE
+    },
+    Case {
+        name: "cook-large-0-4999-triangles",
+        quantity: "upward displacement of the pulled corner, neo-Hookean, plane strain, E = 240.565, F = 100, volumes of nodes",
+        source: "6.9 in the limit, read off fig. 5 of J. C. Simo, F. Armero 1992 (two digits), ν = 0.4999",
+        levels: &[16.0, 32.0, 64.0],
+        expected: &[6.9],
+        measure: |lab, n| cook(lab, n, Cells::Linear, &format!("{NEARLY}, locking = \"nodal_volume\""), 100.0, 60.0),
         ..LARGE
     },
     Case {

@@ -55,7 +55,13 @@ pub(super) const CASES: &[Case] = &[
         measure: |lab, n| bar(lab, n, Cells::Boxes),
         ..BAR
     },
-    Case { name: "hanging-bar-quadratic-triangles", measure: |lab, n| bar(lab, n, Cells::Quadratic), ..BAR },
+    Case {
+        // Changed: consistent masses. By lumped ones the weight is not that of the shape functions, and the growth has an error
+        // of 0.3 % that does not go with the mesh.
+        name: "hanging-bar-quadratic-triangles",
+        measure: |lab, n| bar(lab, n, Cells::Quadratic),
+        ..BAR
+    },
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
@@ -140,8 +146,9 @@ pub(super) const CASES: &[Case] = &[
 fn bar(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = mapped([1, n as u32], cells, |x| [0.25 * x[0], x[1]])?;
     let (top, bottom) = (nodes(&mesh, |x| x[1] == 1.0), nodes(&mesh, |x| x[1] == 0.0));
+    let masses = if cells == Cells::Quadratic { "consistent" } else { "lumped" };
     let scene = Scene::statics(2, 1e-13).add("[world]\ngravity = [0.0, -9.81]").body(&mesh, &format!(
-        "density = 1000.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 125000.0, poissons_ratio = 0.0, plane = \"stress\" }}]\n\
+        "density = 1000.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 125000.0, poissons_ratio = 0.0, plane = \"stress\", mass = \"{masses}\" }}]\n\
          pin = [{{ select = {{ nodes = {top:?} }} }}]"
     ))?;
     let mut world = lab.plane(scene)?;
