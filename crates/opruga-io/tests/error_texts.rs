@@ -115,14 +115,14 @@ fn cases() -> Vec<(String, &'static str)> {
             r#"scene.toml:12:11: error[scene.conflict]: the body has `mass` and `density`
  12 | density = 3
     |           ^
-  = allowed: exactly one of mass, density, node_mass"#,
+  = allowed: exactly one of mass, density, density_of_cells, node_mass"#,
         ),
         (
             HEAD.to_string() + &BALL.replace("mass = 1.0\n", ""),
             r#"scene.toml:7:1: error[scene.missing]: the body has no mass
  7 | [[body]]
    | ^^^^^^^^
-  = allowed: exactly one of mass, density, node_mass
+  = allowed: exactly one of mass, density, density_of_cells, node_mass
   = hint: a body that never moves is `fixed = true`"#,
         ),
         (

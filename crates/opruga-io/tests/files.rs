@@ -263,7 +263,9 @@ fn output_folders() {
     again.write("final.csv", false, |w| w.write_all(b"y")).expect("replaced");
     drop(again);
 
-    assert_eq!(code(&folder.join("missing/out"), Existing::Refuse), "write.folder");
+    // Folders around it are made, but not within a file.
+    drop(OutputFolder::open(&folder.join("around/out"), Existing::Refuse).expect("made"));
+    assert_eq!(code(&out.join("final.csv/out"), Existing::Refuse), "write.folder");
     assert_eq!(code(&out.join("final.csv"), Existing::Refuse), "write.folder");
     assert_eq!(code(&folder.join("x".repeat(300)), Existing::Refuse), "write.folder");
     assert_eq!(safe_write(&folder, true, |_| Ok(())).expect_err("a folder").code, "write.failed");

@@ -217,7 +217,11 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "masa",
         "Ima li svaki čvor svoju masu, ili je masa ona funkcija oblika, ρ∫NₐNᵦ, koja povezuje čvorove ćelije: valovi su tada prebrzi gdje su s usredotočenom masom prespori. Za implicitne integratore i vlastite frekvencije.",
     ),
-    ("model.fem.locking", "zaključavanje", "Što vrijedi za linearne trokute i tetraedre iznad ν = 0,45."),
+    (
+        "model.fem.locking",
+        "zaključavanje",
+        "Što vrijedi za linearne trokute i tetraedre iznad ν = 0,45: odbijaju se, primaju iako se ukoče, ili se opiru promjeni obujma čvorova umjesto ćelija.",
+    ),
     ("model.fem.cells", "ćelije", "Skupina ćelija mreže od tog materijala; sve ćelije gdje prizor šuti."),
     // Obstacles.
     ("obstacle.*.restitution", "restitucija", "Omjer normalnih brzina nakon sudara i prije njega."),
@@ -385,6 +389,7 @@ pub(super) const CHOICES: &[(&str, &str)] = &[
     ("mercator", "Mercator"),
     ("mooney_rivlin", "Mooney–Rivlin"),
     ("neo_hookean", "neo-Hooke"),
+    ("nodal_volume", "obujam čvorova"),
     ("none", "nema"),
     ("opaque", "neprozirno"),
     ("real_time", "u stvarnom vremenu"),

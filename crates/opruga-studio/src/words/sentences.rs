@@ -27,21 +27,23 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("the mesh has no group of cells `{}`; {}", "mreža nema skupinu ćelija `{}`; ima: {}"),
     ("the group of cells `{}` is empty", "skupina ćelija `{}` je prazna"),
-    ("the cells of the mesh have no numbers `{}`; known: {}", "ćelije mreže nemaju brojeve `{}`; poznati: {}"),
+    (
+        "`{}`: the cells of the mesh have no numbers `{}`; known: {}",
+        "`{}`: ćelije mreže nemaju brojeve `{}`; poznati: {}",
+    ),
+    ("the cells of the mesh have no numbers `{}`", "ćelije mreže nemaju brojeve `{}`"),
+    ("the density of cell {} is {} kg/m³", "gustoća ćelije {} je {} kg/m³"),
     (
         "`mooney_share` is {}; allowed with `poissons_ratio` = {}: at most {} = ν/(1 − 2ν)",
         "`mooney_share` je {}; dopušteno uz `poissons_ratio` = {}: najviše {} = ν/(1 − 2ν)",
     ),
-    (
-        "Young's modulus of cell {} is {} Pa; allowed: a number > 0",
-        "Youngov modul ćelije {} je {} Pa; dopušteno: broj > 0",
-    ),
+    ("`{}` of cell {} is {}; allowed: {}", "`{}` ćelije {} je {}; dopušteno: {}"),
     ("there is no material `{}`", "nema materijala `{}`"),
     (
         "`poissons_ratio` is {}; allowed for linear {}: at most {}, since they lock near incompressibility. Give the body \
-         `order = 2`, or say `locking = \"accept\"`",
+         `order = 2`, or say `locking = \"nodal_volume\"`",
         "`poissons_ratio` je {}; dopušteno za linearne ćelije ({}): najviše {}, jer se blizu nestlačivosti ukoče. Zadaj tijelu \
-         `order = 2` ili `locking = \"accept\"`",
+         `order = 2` ili `locking = \"nodal_volume\"`",
     ),
     (
         "cell {} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out \
