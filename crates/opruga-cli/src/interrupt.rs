@@ -1,7 +1,9 @@
 //! Signals: Ctrl-C and those to end, one flag for the whole program, which work looks at between its steps.
 
+use crate::failure::Failure;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// Whether the work at hand shall stop.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -9,13 +11,23 @@ static STOP: AtomicBool = AtomicBool::new(false);
 static END: AtomicBool = AtomicBool::new(false);
 static HANDLER: Once = Once::new();
 
-/// The flag that is set when the work at hand shall stop; from the first call on, Ctrl-C and signals to end set it.
+/// How long the work at hand may take to end before the user is told that it goes on.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// The flag that is set when the work at hand shall stop; from the first call on, Ctrl-C and signals to end set it. A second one
+/// ends the program at once: files are written aside, so that those that were there are whole.
 pub(crate) fn asked_to_stop() -> &'static AtomicBool {
     HANDLER.call_once(|| {
         // Where the system gives us no handler, a signal ends the program as it always did.
         let _ = ctrlc::set_handler(|| {
-            END.store(true, Ordering::SeqCst);
+            if END.swap(true, Ordering::SeqCst) {
+                std::process::exit(i32::from(Failure::Interrupted.exit_code()));
+            }
             STOP.store(true, Ordering::SeqCst);
+            std::thread::spawn(|| {
+                std::thread::sleep(PATIENCE);
+                eprintln!("ends after the step at hand; asked once more, at once");
+            });
         });
     });
     &STOP

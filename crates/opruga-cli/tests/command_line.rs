@@ -239,6 +239,32 @@ fn an_interrupted_run_closes_its_files_and_says_so() {
     }
 }
 
+/// A frame of a million steps of 100,000 vertices goes on for minutes.
+#[cfg(unix)]
+#[test]
+fn a_second_signal_ends_a_long_step_at_once() {
+    use std::io::{BufRead as _, BufReader};
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_opruga"))
+        .args(["run", "giant-ring", "--set", "time.substeps=1000000", "--out", "o", "--no-pictures"])
+        .current_dir(folder.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    let id = child.id().to_string();
+    let interrupt = || Command::new("kill").args(["-INT", &id]).status();
+    // Its table is there once it looks at signals.
+    while !folder.path().join("o/diagnostics.csv").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    interrupt().expect("kill runs");
+    let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines().map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("asked once more")), "it says that it goes on");
+    interrupt().expect("kill runs");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert!(!lines.any(|line| line.contains("the files are closed")), "it has not waited for its step");
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error_of_writing() {
