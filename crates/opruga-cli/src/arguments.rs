@@ -367,9 +367,8 @@ pub(crate) struct Run {
     pub(crate) checkpoint_every: f64,
     /// Record the run to this file, for `opruga replay`
     ///
-    /// The file holds the scene and needs no other, and a hash of every frame. A run that is killed loses at most the frames
-    /// that it has finished within a twentieth of a second and behind the last state that was kept, and no such state.
-    /// --force replaces a file that is there.
+    /// The file holds the scene and needs no other, and a hash of every frame. A run that is killed loses no frame that it
+    /// has finished. --force replaces a file that is there.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
     /// Keep one state in so many frames of the recording; 1: all

@@ -13,8 +13,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What a kill may cost, as the documentation says [ns].
-const LOST: u64 = 50_000_000;
 /// The word that makes this test record instead, with what it needs to know.
 const CHILD: &str = "OPRUGA_TEST_RECORDS";
 
@@ -26,33 +24,27 @@ fn blueprint() -> Blueprint<2> {
     }
 }
 
-/// Records until it is killed. Of each frame three numbers go through the pipe: its own, and the times before and after it
-/// was added [ns].
+/// Records until it is killed. The number of each frame that was added goes through the pipe. Every hundredth takes long.
 fn record(path: &Path, every: u64, pause: Duration) -> ! {
     let mut world = World::new(blueprint(), Options::default()).expect("a world");
     let header = Header { name: "pressures".into(), frame: world.blueprint().time.frame, every, ..Header::default() };
     let mut tape = Tape::begin(path, false, &header, &mut world).expect("a file");
-    let start = Instant::now();
     let mut pipe = std::io::stderr();
     loop {
         world.frame().expect("a frame");
-        std::thread::sleep(pause);
-        let before = start.elapsed().as_nanos() as u64;
+        std::thread::sleep(if world.frames() % 100 == 0 { Duration::from_millis(300) } else { pause });
         tape.push(&mut world).expect("written");
-        let after = start.elapsed().as_nanos() as u64;
-        let told: Vec<u8> = [world.frames(), before, after].into_iter().flat_map(u64::to_le_bytes).collect();
-        pipe.write_all(&told).expect("told");
+        pipe.write_all(&world.frames().to_le_bytes()).expect("told");
     }
 }
 
-/// The frames that were finished, as they were told.
-fn told(bytes: &[u8]) -> Vec<[u64; 3]> {
-    let number = |bytes: &[u8]| u64::from_le_bytes(bytes.try_into().expect("eight bytes"));
-    bytes.chunks_exact(24).map(|row| [number(&row[..8]), number(&row[8..16]), number(&row[16..])]).collect()
+/// The last frame that was told as finished.
+fn last_told(bytes: &[u8]) -> Option<u64> {
+    bytes.as_chunks::<8>().0.last().map(|number| u64::from_le_bytes(*number))
 }
 
 #[test]
-fn a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state() {
+fn a_kill_costs_no_frame_that_was_finished() {
     if let Ok(call) = std::env::var(CHILD) {
         let mut words = call.split(' ');
         let mut word = || words.next().expect("a word");
@@ -61,14 +53,14 @@ fn a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state() {
     }
     let folder = std::env::temp_dir().join(format!("opruga-killed-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let (mut most, mut kept_back, mut held) = (0, 0, 0);
+    let mut most = 0;
     // States of every frame, far apart, and none but the first; quick frames and slow ones.
     let ways = [(1, 0), (32, 0), (1_000_000, 0), (1_000_000, 7_000), (4, 20_000)];
     for round in 0..20u64 {
         let (every, pause) = ways[round as usize % ways.len()];
         let path = folder.join(format!("{round}"));
         let mut child = Command::new(std::env::current_exe().expect("this test"))
-            .args(["--exact", "a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state", "--nocapture", "--quiet"])
+            .args(["--exact", "a_kill_costs_no_frame_that_was_finished", "--nocapture", "--quiet"])
             .env(CHILD, format!("{every} {pause} {}", path.display()))
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -87,18 +79,15 @@ fn a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state() {
         std::thread::sleep(Duration::from_micros(60_000 + round * 7_919_777 % 90_000));
         child.kill().expect("it is killed");
         child.wait().expect("it ends");
-        let told = told(&reader.join().expect("read").expect("read"));
+        let told = last_told(&reader.join().expect("read").expect("read"));
         let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
         assert!(matches!(recording.ending(), Ending::Open { .. }), "{:?}", recording.ending());
         let last = recording.frames().end - 1;
-        let Some([finished, before, _]) = told.last().copied() else { continue };
-        if last < finished {
-            // Of the last frame in the file: when it had been added. The first one was there at once.
-            let [_, _, safe] = told.iter().copied().find(|row| row[0] == last).unwrap_or_default();
-            assert!(before.saturating_sub(safe) <= LOST, "round {round}: {} ns are lost", before - safe);
-            assert!((finished - last) < every, "round {round}: a state of {every} frames is lost");
-            (held, kept_back) = (held.max(before - safe), kept_back.max(finished - last));
-        }
+        let Some(finished) = told else { continue };
+        assert!(
+            last == finished || last == finished + 1,
+            "round {round}: {finished} frames were finished, {last} are there"
+        );
         most = most.max(last);
         // All that is there is right.
         let mut world = World::new(blueprint(), Options::default()).expect("a world");
@@ -108,7 +97,6 @@ fn a_kill_costs_frames_of_a_twentieth_of_a_second_and_no_state() {
             assert_eq!(playback.hash(frame), Ok(world.frame_hash()), "round {round}, frame {frame}");
         }
     }
-    println!("at most {kept_back} finished frames, of {:.1} ms, were lost, of up to {most}", held as f64 * 1e-6);
-    assert!(most > 30 && kept_back > 0, "kills found runs at work: {most}, {kept_back}");
+    assert!(most > 30, "kills found runs at work: {most}");
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }

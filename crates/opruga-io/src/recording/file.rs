@@ -8,23 +8,18 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// Frames without a state wait so long at most for the next write: what a kill may cost.
-const WAITING: Duration = Duration::from_millis(50);
 /// What a loss of power may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// A recording that is being written. Every state that is kept goes to the system at once, with all that came before it;
-/// frames between two states do so where the last write is a twentieth of a second ago. So a process that is killed leaves
-/// every state, and every frame but those that were finished within the last twentieth of a second and behind the last
-/// state. A loss of power costs the last five seconds.
+/// A recording that is being written. Every frame goes to the system as soon as it is added, so that a process that is killed
+/// leaves all of them but one that it was just adding. A loss of power costs the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
     writer: Writer<Box<dyn Target + Send>>,
     /// Room for the bytes of a state.
     state: Vec<u8>,
-    written: Instant,
     syncing: Option<Syncing>,
     /// Whether there is no more to be written: all is, or nothing can be.
     ended: bool,
@@ -87,14 +82,7 @@ impl RecordingFile {
             let _ = fs::remove_file(&aside);
             failed(e)
         })?;
-        Ok(RecordingFile {
-            path: path.to_path_buf(),
-            writer,
-            state: Vec::new(),
-            written: Instant::now(),
-            syncing: Some(syncing),
-            ended: false,
-        })
+        Ok(RecordingFile { path: path.to_path_buf(), writer, state: Vec::new(), syncing: Some(syncing), ended: false })
     }
 
     /// Adds the next frame, whose state is not kept, with its hash.
@@ -104,7 +92,7 @@ impl RecordingFile {
     pub fn push(&mut self, frame: u64, hash: u64) -> Result<(), WriteError> {
         self.write(|file| {
             file.writer.push(frame, hash)?;
-            if file.written.elapsed() < WAITING { Ok(()) } else { file.give() }
+            file.writer.flush()
         })
     }
 
@@ -118,7 +106,7 @@ impl RecordingFile {
             file.state.clear();
             state(&mut file.state);
             file.writer.keep(frame, hash, &mut file.state)?;
-            file.give()
+            file.writer.flush()
         })
     }
 
@@ -136,12 +124,6 @@ impl RecordingFile {
     /// [`WriteError`] where the file could not be written; the frames before that are whole.
     pub fn finish(mut self) -> Result<u64, WriteError> {
         self.end()
-    }
-
-    /// Gives all frames so far to the system.
-    fn give(&mut self) -> io::Result<()> {
-        self.written = Instant::now();
-        self.writer.flush()
     }
 
     /// Does a piece of work unless one before has failed: what stands behind a gap would be damage.
