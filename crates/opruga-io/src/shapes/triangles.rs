@@ -153,7 +153,8 @@ pub(super) fn loaded(
     notices.extend(slivers(&mesh));
     let unused = mesh.drop_unreferenced();
     if unused > 0 {
-        let message = format!("{unused} vertices that no triangle names are left out");
+        let (one, many) = ("vertex that no triangle names is left out", "vertices that no triangle names are left out");
+        let message = counted(unused as u64, one, many);
         notices.push(SceneError::new("mesh.unreferenced", message).value(unused.to_string()));
     }
     orient(&mut mesh, &found, source, shape, &mut notices).map_err(named)?;
@@ -283,7 +284,7 @@ fn orient(
     if let (Err(MeshError::Open { .. }), "cap" | "sheet") = (&turned, open) {
         if open == "sheet" {
             let against = mesh.orient_alike().map_err(|e| refuse(mesh, e))?;
-            flipped(notices, against, "triangles that face against their neighbours are turned");
+            flipped(notices, against, AGAINST);
             mesh.sheets = std::mem::take(&mut mesh.facets);
             return Ok(());
         }
@@ -294,8 +295,12 @@ fn orient(
         turned = mesh.orient_components();
     }
     let turned = turned.map_err(|e| refuse(mesh, e))?;
-    flipped(notices, turned.against, "triangles that face against their neighbours are turned");
-    flipped(notices, turned.inside_out, "components that are inside out are turned");
+    flipped(notices, turned.against, AGAINST);
+    flipped(
+        notices,
+        turned.inside_out,
+        ["component that is inside out is turned", "components that are inside out are turned"],
+    );
     if let Some((facet, volume)) = turned.flat {
         let error = SceneError::new("mesh.dimension", "a closed surface is flat: it encloses no volume");
         let error = error.value(format!("{volume:e}")).allowed("a volume above 1e-12 of its extent cubed");
@@ -365,9 +370,14 @@ fn compare(
     })
 }
 
-fn flipped(notices: &mut Vec<SceneError>, count: usize, what: &str) {
+const AGAINST: [&str; 2] =
+    ["triangle that faces against its neighbours is turned", "triangles that face against their neighbours are turned"];
+
+/// Tells of what was turned, by one and by many.
+fn flipped(notices: &mut Vec<SceneError>, count: usize, [one, many]: [&str; 2]) {
     if count > 0 {
-        notices.push(SceneError::new("mesh.flipped", format!("{count} {what}")).value(count.to_string()));
+        let message = counted(count as u64, one, many);
+        notices.push(SceneError::new("mesh.flipped", message).value(count.to_string()));
     }
 }
 
