@@ -1,4 +1,4 @@
-//! Two hundred kills at random moments of recordings, and as many of checkpoints and sweeps: what is left can be read, and is
+//! Two hundred kills at random moments of recordings, and two hundred of checkpoints and sweeps: what is left can be read, and is
 //! right. What a kill may cost a recording is measured in `opruga/tests/killed_recordings.rs`.
 //! Rows 79 and 80 of a list of torments.
 #![cfg(unix)]
