@@ -121,6 +121,8 @@ pub struct BodyPicture {
     pub scalar: Vec<f64>,
     /// The colour of a body without scalars; the palette gives one where this is absent.
     pub colour: Option<[u8; 3]>,
+    /// The colour of a line around all that is seen of the body, in three dimensions; none where this is absent.
+    pub outlined: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
     /// How far apart neighbours were at the start [m]: where that leaves no room for dots in a flat picture there are none,
@@ -148,6 +150,7 @@ impl Default for BodyPicture {
             segments: Vec::new(),
             scalar: Vec::new(),
             colour: None,
+            outlined: None,
             nodes_drawn: false,
             node_spacing: None,
             extent: None,

@@ -130,7 +130,7 @@ const ASKED_FOR: [&str; 2] = ["shape.overlap", "shape.dropped"];
 
 impl Notice {
     /// Whether a notice of this code tells of nothing but what was asked for.
-    pub(crate) fn is_asked_for(code: &str) -> bool {
+    pub fn is_asked_for(code: &str) -> bool {
         ASKED_FOR.contains(&code)
     }
 }

@@ -383,7 +383,14 @@ impl Studio {
                 }
             }
         }
-        // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along.
+        // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along. Where it was
+        // let go before the pointer, nobody has forgotten that until it is pressed anew.
+        let anew = |event: &egui::Event| {
+            matches!(event, egui::Event::Key { key: Key::Space, pressed: true, repeat: false, .. })
+        };
+        if ui.input(|i| i.events.iter().any(anew)) {
+            self.canvas.panned = false;
+        }
         let let_go = !focused && ui.input(|i| i.key_released(Key::Space) && !i.pointer.any_down());
         if let_go && !std::mem::take(&mut self.canvas.panned) {
             asks.push(Request::Play(!shown.playing));

@@ -84,7 +84,8 @@ pub fn right_of(document: &Document, differences: &[Difference], files: &Files) 
     if reshaped.is_empty() {
         return Ok((right, twins));
     }
-    let rest = |document: &Document| read(&document.without_nodes(), files).map(|blueprint| rest_positions(&blueprint));
+    let rest =
+        |document: &Document| read(&document.without_nodes(), files).map(|(blueprint, _)| rest_positions(&blueprint));
     let (here, there) = (rest(document)?, rest(&right)?);
     for (number, (name, left)) in here.iter().enumerate() {
         let Some((_, other)) = there.get(number).filter(|_| reshaped.contains(name.as_str())) else { continue };

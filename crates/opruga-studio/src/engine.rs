@@ -1,12 +1,13 @@
 //! A world of either dimension behind one face: what a person does to it, as commands of the scene file.
 
 use crate::document::{FOR_EVER, command_table};
+use crate::normals::normals;
 use crate::shown::{BodyShown, EnergyShown, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::draw::{ArrowKind, ArrowPicture, Facets};
 use opruga::pictures::{Quantity, Scenery};
-use opruga::{Options, World, WorldError};
+use opruga::{Options, Warning, World, WorldError};
 use toml_edit::Table;
 
 /// A command that was given: its number in the world, and how the scene file writes it.
@@ -65,8 +66,8 @@ pub trait Engine: Send {
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
     ) -> Result<Given, WorldError>;
-    /// Gives the last command of a scene that begins now and adds a body.
-    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError>;
+    /// Gives the last command of a scene that begins now and adds a body, and what is odd about that scene.
+    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
     /// The node for which the one nearest to a point in the scene beside it stands; none where there is but one scene.
@@ -98,61 +99,33 @@ pub trait Engine: Send {
 /// Bodies up to which arrows are drawn: those of more could not be told apart.
 const MOST_WITH_ARROWS: usize = 64;
 
-/// The outward unit normals at the nodes of a surface: the mean of those of the facets around, by their size.
-fn normals(body: &opruga::draw::BodyPicture) -> Vec<[f64; 3]> {
-    let mut sum = vec![[0.0; 3]; body.positions.len()];
-    let at = |node: u32| body.positions[node as usize];
-    let between = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|d| b[d] - a[d]);
-    let mut add = |nodes: &[u32], normal: [f64; 3]| {
-        for node in nodes {
-            for d in 0..3 {
-                sum[*node as usize][d] += normal[d];
-            }
-        }
-    };
-    match &body.facets {
-        Facets::Edges(edges) => {
-            for edge in edges {
-                let [dx, dy, _] = between(at(edge[0]), at(edge[1]));
-                add(edge, [dy, -dx, 0.0]);
-            }
-        }
-        Facets::Triangles(triangles) => {
-            for triangle in triangles {
-                let [a, b] = [1, 2].map(|k| between(at(triangle[0]), at(triangle[k])));
-                let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-                add(triangle, cross);
-            }
-        }
-    }
-    for normal in &mut sum {
-        let size = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-        *normal = if size > 0.0 { normal.map(|c| c / size) } else { [0.0; 3] };
-    }
-    sum
-}
-
 /// A world and what stays the same from picture to picture.
 struct Living<const D: usize> {
     world: World<D>,
     scenery: Scenery,
     /// How many bodies the scenery knows.
     known: usize,
+    /// What was odd about the scene and its files.
+    odd: Vec<Warning>,
 }
 
-/// Builds the world of a scene.
+/// Builds the world of a scene, about which something was odd.
 ///
 /// # Errors
 /// What the world refuses.
-pub fn build(blueprint: AnyBlueprint, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
-    fn living<const D: usize>(blueprint: Blueprint<D>, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
+pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, options: &Options) -> Result<Box<dyn Engine>, WorldError> {
+    fn living<const D: usize>(
+        blueprint: Blueprint<D>,
+        odd: Vec<Warning>,
+        options: &Options,
+    ) -> Result<Box<dyn Engine>, WorldError> {
         let world = World::new(blueprint, options.clone())?;
         let (scenery, known) = (Scenery::new(&world), world.blueprint().bodies.len());
-        Ok(Box::new(Living { world, scenery, known }))
+        Ok(Box::new(Living { world, scenery, known, odd }))
     }
     match blueprint {
-        AnyBlueprint::Plane(blueprint) => living(blueprint, options),
-        AnyBlueprint::Space(blueprint) => living(blueprint, options),
+        AnyBlueprint::Plane(blueprint) => living(blueprint, odd, options),
+        AnyBlueprint::Space(blueprint) => living(blueprint, odd, options),
     }
 }
 
@@ -347,7 +320,7 @@ impl<const D: usize> Engine for Living<D> {
         self.give(0.0, Action::Change { body, models, integrator }, &name)
     }
 
-    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError> {
+    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError> {
         let any: Box<dyn core::any::Any> = match scene {
             AnyBlueprint::Plane(blueprint) => Box::new(blueprint),
             AnyBlueprint::Space(blueprint) => Box::new(blueprint),
@@ -356,7 +329,9 @@ impl<const D: usize> Engine for Living<D> {
         let blueprint = any.downcast::<Blueprint<D>>().map_err(|_| refuse("the scene has another dimension"))?;
         let now = self.world.time();
         let due = blueprint.commands.into_iter().rfind(|c| c.at <= now && matches!(c.action, Action::Add(_)));
-        self.world.act(due.ok_or_else(|| refuse("the scene adds nothing now"))?).map(|_| ())
+        self.world.act(due.ok_or_else(|| refuse("the scene adds nothing now"))?)?;
+        self.odd = odd;
+        Ok(())
     }
 
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {
@@ -460,7 +435,7 @@ impl<const D: usize> Engine for Living<D> {
                 error: e.loss_integrator,
             },
             momentum: three(m.linear.0),
-            warnings: self.world.warnings(),
+            warnings: self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect(),
             bodies,
             obstacles,
             has_drawings: has_drawings(&self.world),

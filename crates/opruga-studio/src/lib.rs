@@ -20,6 +20,7 @@ pub mod dropping;
 mod hand;
 pub mod handing;
 pub mod measure;
+mod normals;
 pub mod panels;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod rescue;

@@ -288,7 +288,7 @@ pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let together = |errors: Vec<_>| errors.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n");
     let (blueprint, _) = read.map_err(together)?;
     let refused = |error: WorldError| error.to_string();
-    let mut engine = engine::build(blueprint, &Options::default()).map_err(refused)?;
+    let mut engine = engine::build(blueprint, Vec::new(), &Options::default()).map_err(refused)?;
     for _ in 0..frames {
         engine.frame().map_err(refused)?;
     }

@@ -7,20 +7,24 @@ use crate::said::Said;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, SceneError, scene};
-use opruga::{Options, WorldError};
+use opruga::io::{Files, Notice, SceneError, scene};
+use opruga::{Options, Warning, WorldError};
 use std::sync::Arc;
 
-/// Reads the text of a document.
+/// Reads the text of a document; what is odd about it and its files is counted, but for what it asks for itself.
 ///
 /// # Errors
 /// Everything that is wrong with it, as one text.
-pub fn read(document: &Document, files: &Files) -> Result<AnyBlueprint, String> {
+pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<Warning>), String> {
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
     let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
     let together = |errors: Vec<SceneError>| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
-    read.map(|(blueprint, _)| blueprint).map_err(together)
+    let (blueprint, notices) = read.map_err(together)?;
+    let odd = notices.into_iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
+    let warning =
+        |Notice { about, count }| Warning { code: about.code.into(), message: about.message, count: count as u64 };
+    Ok((blueprint, odd.map(warning).collect()))
 }
 
 /// Builds the engine of a scene; with differences, also the one on its right.
@@ -34,8 +38,8 @@ pub fn build(
     options: &Options,
 ) -> Result<Box<dyn Engine>, Said> {
     let one = |document: &Document| {
-        let blueprint = read(document, files).map_err(Said::Because)?;
-        engine::build(blueprint, options).map_err(Said::World)
+        let (blueprint, odd) = read(document, files).map_err(Said::Because)?;
+        engine::build(blueprint, odd, options).map_err(Said::World)
     };
     let left = one(document)?;
     let Some(differences) = differences else { return Ok(left) };
@@ -207,9 +211,9 @@ impl Engine for Pair {
         self.follow(|right| right.change(body, models, integrator));
         Ok(given)
     }
-    fn add_from(&mut self, scene: AnyBlueprint) -> Result<(), WorldError> {
-        self.left.add_from(scene.clone())?;
-        self.follow(|right| right.add_from(scene));
+    fn add_from(&mut self, scene: AnyBlueprint, odd: Vec<Warning>) -> Result<(), WorldError> {
+        self.left.add_from(scene.clone(), odd.clone())?;
+        self.follow(|right| right.add_from(scene, odd));
         Ok(())
     }
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32> {

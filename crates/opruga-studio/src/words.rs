@@ -4,6 +4,9 @@ mod croatian;
 mod details;
 mod messages;
 mod named;
+mod readers;
+#[cfg(test)]
+mod said_in_sources;
 mod scene_errors;
 mod sentences;
 

@@ -2,7 +2,7 @@
 
 use super::bindings::Made;
 use libdeflater::{CompressionLvl, Compressor};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The most that the page may take on its way [bytes].
 const MOST_BYTES: usize = 4_000_000;
@@ -12,7 +12,7 @@ const MOST_BYTES: usize = 4_000_000;
 /// # Errors
 /// What cannot be written, and a page that is too large.
 pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), String> {
-    let (sources, shapes) = (root.join("crates/opruga-studio/web"), root.join("scenes/shapes"));
+    let sources = root.join("crates/opruga-studio/web");
     let packed = packed(&made.program)?;
     // Files of one version have one name, so that no browser mixes versions.
     let version = format!("{:016x}", fingerprint(&[&packed, &made.script]));
@@ -25,7 +25,7 @@ pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), Str
     let page = source("index.html")?;
     let page = page.replace("{{packed}}", &names.0).replace("{{glue}}", &names.1);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
-    let credits = credits(&shapes)?;
+    let credits = credits(&[root.join("scenes/shapes"), root.join("crates/opruga-studio/font")])?;
     // Credits are not among them: some servers make pages of such texts, and a file that is missing would hinder the others.
     let kept = ["./", "icon.svg", "manifest.webmanifest", &names.0, &names.1];
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
@@ -63,18 +63,21 @@ pub(super) fn lay_out(root: &Path, made: &Made, folder: &Path) -> Result<(), Str
     Ok(())
 }
 
-/// Where the shapes of the scenes come from, and the licences of those who made them: name and text of every such file.
+/// Where the shapes of the scenes and the letters come from, and the licences of those who made them: name and text of every
+/// such file.
 ///
 /// # Errors
 /// What cannot be read.
-fn credits(shapes: &Path) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let failed = |e: std::io::Error| format!("{}: {e}", shapes.display());
+fn credits(folders: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(shapes).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if ["CREDITS", "LICENSE", "README"].iter().any(|kind| name.starts_with(kind)) {
-            found.push((name, std::fs::read(entry.path()).map_err(failed)?));
+    for folder in folders {
+        let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
+        for entry in std::fs::read_dir(folder).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if ["CREDITS", "LICENSE", "README"].iter().any(|kind| name.starts_with(kind)) {
+                found.push((name, std::fs::read(entry.path()).map_err(failed)?));
+            }
         }
     }
     found.sort();

@@ -2,6 +2,7 @@
 
 pub(crate) mod camera;
 mod ground;
+mod outline;
 mod raster;
 mod shade;
 mod shapes;
@@ -22,6 +23,9 @@ use shapes::{FACES, corner, shape};
 
 /// The colour of an obstacle in the light.
 const SOLID: [u8; 3] = [188, 193, 202];
+
+/// The width of the line around a body, in the size of lines.
+const OUTLINE: f32 = 2.0;
 
 /// Draws the scene of a picture in three dimensions.
 pub(crate) fn scene(
@@ -50,6 +54,12 @@ pub(crate) fn scene(
         ground::draw(&mut screen, &painter.camera, view, *plane, shadow);
     }
     let mut image = screen.image()?;
+    for body in &picture.bodies {
+        if let Some(colour) = body.outlined {
+            let seen: Vec<Option<Seen>> = body.positions.iter().map(|&position| painter.camera.see(position)).collect();
+            outline::draw(&mut image, &screen, (body, &seen), colour, (OUTLINE * unit, painter.spring(body)));
+        }
+    }
     let mut canvas = Canvas::new(&mut image);
     let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
     draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point| {
@@ -176,6 +186,11 @@ impl Painter<'_> {
         }
     }
 
+    /// The width in which the springs of a body are drawn, in samples.
+    fn spring(&self, body: &BodyPicture) -> f32 {
+        if triangles(body).is_empty() { 1.6 * self.unit } else { 0.8 * self.unit }
+    }
+
     /// Draws a body.
     fn body(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         for ends in &body.rest.segments {
@@ -195,7 +210,7 @@ impl Painter<'_> {
             None => darker(base),
         };
         let seen: Vec<Option<Seen>> = body.positions.iter().map(|&position| self.camera.see(position)).collect();
-        let width = if filled { 0.8 } else { 1.6 } * self.unit;
+        let width = self.spring(body);
         for &[a, b] in &body.segments {
             if let (Some(from), Some(to)) = (seen[a as usize], seen[b as usize]) {
                 // On a surface of the same colour a line must be darker to be seen.

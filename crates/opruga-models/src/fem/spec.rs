@@ -73,7 +73,7 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             Allowed::Choice(&["lumped", "consistent"]),
             "",
             Default::Text("lumped"),
-            "Whether every node has a mass of its own, or the mass is that of the shape functions, ρ∫NₐNᵦ, which couples the nodes of a \
+            "Whether every node has a mass of its own, or the mass is that of the shape functions, ρ∫N_i N_j, which couples the nodes of a \
 cell: waves are then too fast where lumped masses make them too slow. For implicit integrators and natural frequencies.",
         ),
         Field::new(

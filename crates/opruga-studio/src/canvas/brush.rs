@@ -20,6 +20,17 @@ const ALIKE: u8 = 6;
 /// The most by which a corner sticks out, as a multiple of half the width.
 const MOST_MITRE: f32 = 2.0;
 
+fn vertex(pos: Pos2, color: Color32) -> Vertex {
+    Vertex { pos, uv: WHITE_UV, color }
+}
+
+/// The direction of a way on the screen. Points are thousands, and neither so far apart nor so near that a square would leave the range
+/// of numbers.
+fn unit(way: Vec2) -> Vec2 {
+    let long = way.length_sq().sqrt();
+    if long > 0.0 { way / long } else { Vec2::ZERO }
+}
+
 /// A mesh that grows, and the one that was shown last.
 #[derive(Debug, Default)]
 pub(crate) struct Brush {
@@ -57,14 +68,15 @@ impl Brush {
     }
 
     fn corner(&mut self, pos: Pos2, color: Color32) {
-        self.mesh.vertices.push(Vertex { pos, uv: WHITE_UV, color });
+        self.mesh.vertices.push(vertex(pos, color));
     }
 
     /// Triangles between points of these colours.
     pub(crate) fn fill(&mut self, points: impl Iterator<Item = (Pos2, Color32)>, triangles: &[[u32; 3]]) {
         let first = self.mesh.vertices.len() as u32;
-        self.mesh.vertices.extend(points.map(|(pos, color)| Vertex { pos, uv: WHITE_UV, color }));
-        self.mesh.indices.extend(triangles.iter().flatten().map(|point| first + point));
+        self.mesh.vertices.extend(points.map(|(pos, color)| vertex(pos, color)));
+        self.mesh.indices.reserve(3 * triangles.len());
+        triangles.iter().for_each(|nodes| self.mesh.indices.extend(nodes.map(|node| first + node)));
     }
 
     /// A band of four, or with hard borders two, corners at every point of a line: from the point number `from` of them to the
@@ -82,13 +94,16 @@ impl Brush {
         let half = 0.5 * width;
         if self.soft > 0.0 {
             let (inner, outer) = ((half - 0.5 * self.soft).max(0.0), half + 0.5 * self.soft);
-            self.corner(at + side * outer, Color32::TRANSPARENT);
-            self.corner(at + side * inner, color);
-            self.corner(at - side * inner, color);
-            self.corner(at - side * outer, Color32::TRANSPARENT);
+            let (inner, outer) = (side * inner, side * outer);
+            self.mesh.vertices.extend([
+                vertex(at + outer, Color32::TRANSPARENT),
+                vertex(at + inner, color),
+                vertex(at - inner, color),
+                vertex(at - outer, Color32::TRANSPARENT),
+            ]);
         } else {
-            self.corner(at + side * half, color);
-            self.corner(at - side * half, color);
+            let side = side * half;
+            self.mesh.vertices.extend([vertex(at + side, color), vertex(at - side, color)]);
         }
     }
 
@@ -145,10 +160,11 @@ impl Brush {
         let rows = if self.soft > 0.0 { 4 } else { 2 };
         self.mesh.vertices.reserve(count * rows);
         self.mesh.indices.reserve(count * 6 * (rows - 1));
-        let way = |k: usize| (line[(k + 1) % count].0 - line[k].0).normalized();
-        let mut before = way(count - 1);
-        for (k, (at, color)) in line.iter().enumerate() {
-            let after = way(k);
+        let way = |from: Pos2, to: Pos2| unit(to - from);
+        let mut before = way(line[count - 1].0, line[0].0);
+        let next = line[1..].iter().chain([&line[0]]);
+        for ((at, color), (next, _)) in line.iter().zip(next) {
+            let after = way(*at, *next);
             // Across the middle of both directions, so long that the band keeps its width.
             let sum = Vec2::new(-before.y - after.y, before.x + after.x);
             let square = sum.length_sq();

@@ -44,11 +44,16 @@ impl Flat {
             return false;
         }
         let corners = [rect.min, rect.max].map(|corner| self.to_world(rect, corner, view.y_down));
-        let positions = || shown.picture.bodies.iter().flat_map(|body| &body.positions);
+        let mut ends = [[f64::MAX, f64::MIN]; 2];
+        for p in shown.picture.bodies.iter().flat_map(|body| &body.positions) {
+            for (d, [low, high]) in ends.iter_mut().enumerate() {
+                (*low, *high) = (low.min(p[d]), high.max(p[d]));
+            }
+        }
         let mut wider = false;
         for d in 0..2 {
             let most = 2.0 * (first[1][d] - first[0][d]);
-            let (low, high) = positions().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[d]), b.max(p[d])));
+            let [low, high] = ends[d];
             let seen = [corners[0][d].min(corners[1][d]), corners[0][d].max(corners[1][d])];
             let edge = 0.02 * (seen[1] - seen[0]);
             if low < first[0][d] - most || high > first[1][d] + most {

@@ -5,7 +5,6 @@ mod camera;
 mod detail;
 mod handles;
 mod look;
-mod outline;
 mod outlines;
 mod overlays;
 mod pen;

@@ -30,16 +30,45 @@ fn on_paper(c: Color32, paper: &Paper) -> Color32 {
     Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))
 }
 
-/// The colours of a map, found once for a picture.
-struct Colours([Color32; 256]);
+/// The colours of a node: where surfaces are filled, and of lines.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ink {
+    fill: Color32,
+    fill_of_cells: Color32,
+    line: Color32,
+}
+
+impl Ink {
+    fn new(colour: Color32, paper: &Paper) -> Ink {
+        Ink {
+            fill: colour.gamma_multiply(FILLED),
+            fill_of_cells: colour.gamma_multiply(FILLED_CELLS),
+            line: if paper.dark { colour } else { darker(colour) },
+        }
+    }
+}
+
+/// The colours of a map, found once for a picture: a crowd has a hundred times as many nodes. The last one is that of what is no number.
+struct Colours {
+    inks: [Ink; 257],
+    low: f64,
+    /// Colours for a unit of what is shown.
+    factor: f64,
+}
 
 impl Colours {
-    fn new(map: ColourMap, paper: &Paper) -> Colours {
-        Colours(std::array::from_fn(|k| on_paper(colour(map.colour(k as f64 / 255.0)), paper)))
+    fn new(map: ColourMap, range: [f64; 2], paper: &Paper) -> Colours {
+        let at = |k: usize| match k {
+            256 => Color32::GRAY,
+            k => on_paper(colour(map.colour(k as f64 / 255.0)), paper),
+        };
+        let inks = std::array::from_fn(|k| Ink::new(at(k), paper));
+        Colours { inks, low: range[0], factor: 255.0 / (range[1] - range[0]).max(1e-300) }
     }
-    fn at(&self, scalar: f64, range: [f64; 2]) -> Color32 {
-        let place = (scalar - range[0]) / (range[1] - range[0]).max(1e-300);
-        if place.is_nan() { Color32::GRAY } else { self.0[(place.clamp(0.0, 1.0) * 255.0) as usize] }
+    fn at(&self, scalar: f64) -> Ink {
+        let place = (scalar - self.low) * self.factor;
+        // As a byte it ends where the colours do.
+        self.inks[if place.is_nan() { 256 } else { usize::from(place as u8) }]
     }
 }
 
@@ -50,7 +79,7 @@ pub(crate) struct Kept {
     brush: Brush,
     /// Where the nodes of a body are on the screen, and their colours.
     at: Vec<Pos2>,
-    colours: Vec<Color32>,
+    inks: Vec<Ink>,
     /// The corners of a large outline that are seen: their places on it, and of each node its number among them.
     seen: Vec<u32>,
     number: Vec<u32>,
@@ -80,7 +109,8 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     let crowd = lines > SOFT_EDGES && !alone;
     kept.outlines.next_picture();
     kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() }, rect);
-    let map = Colours::new(picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map), paper);
+    let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
+    let map = Colours::new(map, look.range, paper);
     for (place, body) in picture.bodies.iter().enumerate() {
         kept.at.clear();
         kept.at.extend(body.positions.iter().map(|p| project(*p)));
@@ -103,9 +133,9 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
 
 /// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
-    let Look { rect, paper, range, shown, .. } = *look;
+    let Look { rect, paper, shown, .. } = *look;
     let (place, body) = number;
-    let Kept { outlines, brush, at, colours, seen, number: numbers } = kept;
+    let Kept { outlines, brush, at, inks, seen, number: numbers } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
         // The areas that it carries, in their own colours, one over another.
         for area in &body.areas {
@@ -122,15 +152,13 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         }
         return;
     }
-    colours.clear();
+    inks.clear();
     if body.scalar.is_empty() {
-        colours.resize(at.len(), colour(body.colour.unwrap_or(BODIES[place % BODIES.len()])));
+        inks.resize(at.len(), Ink::new(colour(body.colour.unwrap_or(BODIES[place % BODIES.len()])), paper));
     } else {
-        colours.extend(body.scalar.iter().map(|s| map.at(*s, range)));
+        inks.extend(body.scalar.iter().map(|s| map.at(*s)));
     }
     let outline = outlines.of(place, body);
-    let (triangles, strength) =
-        if body.cells.is_empty() { (&outline.triangles, FILLED) } else { (&body.cells, FILLED_CELLS) };
     let near: Vec<Vec<u32>> = match outline.large {
         true => outline.closed.iter().map(|line| apart(line, at)).collect(),
         false => Vec::new(),
@@ -139,20 +167,19 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     if outline.large {
         // So many points of a surface are not told apart: those are filled that are.
         let detail = Detail { near: 1.0, beside: 0.35, colour: 24, screen: rect };
-        let lines = corners(closed, detail, |node| (at[*node as usize], colours[*node as usize]), seen);
+        let lines = corners(closed, detail, |node| (at[*node as usize], inks[*node as usize].line), seen);
         let mut triangles = fill(body, &lines);
         numbers.resize(at.len(), 0);
         lines.iter().flatten().zip(0..).for_each(|(node, number)| numbers[*node as usize] = number);
         triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
-        let shade = |node: &u32| (at[*node as usize], colours[*node as usize].gamma_multiply(strength));
+        let shade = |node: &u32| (at[*node as usize], inks[*node as usize].fill);
         brush.fill(lines.iter().flatten().map(shade), &triangles);
-    } else if !triangles.is_empty() {
-        brush.fill(at.iter().zip(colours.iter()).map(|(pos, c)| (*pos, c.gamma_multiply(strength))), triangles);
+    } else if !body.cells.is_empty() {
+        brush.fill(at.iter().zip(inks.iter()).map(|(pos, ink)| (*pos, ink.fill_of_cells)), &body.cells);
+    } else if !outline.triangles.is_empty() {
+        brush.fill(at.iter().zip(inks.iter()).map(|(pos, ink)| (*pos, ink.fill)), &outline.triangles);
     }
-    if !paper.dark {
-        colours.iter_mut().for_each(|c| *c = darker(*c));
-    }
-    let of = |node: &u32| (at[*node as usize], colours[*node as usize]);
+    let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
     if outline.springs {
         let width = if edged { 0.9 } else { 1.8 };
@@ -171,7 +198,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
-        at.iter().zip(colours.iter()).for_each(|(pos, c)| brush.disc(*pos, radius, *c));
+        at.iter().zip(inks.iter()).for_each(|(pos, ink)| brush.disc(*pos, radius, ink.line));
     }
 }
 

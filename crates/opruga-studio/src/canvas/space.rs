@@ -2,15 +2,14 @@
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
 use super::look::Look;
-use super::outline::outline;
 use crate::shown::Shown;
-use egui::{Color32, ColorImage, Rect, Stroke, TextureHandle, TextureOptions, Ui, Vec2};
+use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
 use opruga::draw::{Eye, Image, Lens, View, draw_scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The colour of the outline of the selected body.
-const OUTLINE: Color32 = Color32::from_rgb(240, 150, 30);
+const OUTLINE: [u8; 3] = [240, 150, 30];
 
 /// The longest side of a picture in pixels: finer screens are served by stretching.
 const MOST_PIXELS: f64 = 1400.0;
@@ -18,10 +17,9 @@ const MOST_PIXELS: f64 = 1400.0;
 /// The share of the picture that a scene fills at most.
 const FILLED: f64 = 0.96;
 
-/// A picture and the outline of the selected body on it, in shares of its sides.
+/// A picture, and of what it is.
 struct Drawn {
     image: Image,
-    outline: Vec<[[f32; 2]; 2]>,
     shown: Arc<Shown>,
     eye: Eye,
 }
@@ -48,7 +46,6 @@ pub(crate) struct Space {
     texture: Option<TextureHandle>,
     /// What the picture on the screen shows, and from where: what is drawn over it and pressed on it is that.
     seen: Option<(Arc<Shown>, Eye)>,
-    outline: Vec<[[f32; 2]; 2]>,
     /// What the last order was for, so that the same is not drawn twice.
     last: Option<Last>,
 }
@@ -137,10 +134,8 @@ impl Space {
 
     /// Takes a picture that is done.
     pub(crate) fn receive(&mut self, ui: &Ui) {
-        if let Some(Drawn { image, outline, shown, eye }) =
-            self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
-        {
-            (self.outline, self.seen) = (outline, Some((shown, eye)));
+        if let Some(Drawn { image, shown, eye }) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.seen = Some((shown, eye));
             let size = [image.width() as usize, image.height() as usize];
             let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
             match &mut self.texture {
@@ -186,10 +181,6 @@ impl Space {
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture.id(), rect, all, Color32::WHITE);
-            let spot = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
-            for [from, to] in &self.outline {
-                painter.line_segment([spot(*from), spot(*to)], Stroke::new(2.0, OUTLINE));
-            }
         }
     }
 }
@@ -217,15 +208,6 @@ fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
     eye
 }
 
-/// The outline of the selected body in shares of the sides of the picture.
-fn outline_of(order: &Order) -> Vec<[[f32; 2]; 2]> {
-    let place = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
-    let Some(body) = place.and_then(|place| order.shown.picture.bodies.get(place)) else { return Vec::new() };
-    let size = order.size.map(f64::from);
-    let lines = outline(body, &order.eye.lens(&order.view, size));
-    lines.into_iter().map(|ends| ends.map(|[x, y]| [(x / size[0]) as f32, (y / size[1]) as f32])).collect()
-}
-
 /// What else changes a picture of the same frame: what is shown of it.
 fn fingerprint(shown: &Shown) -> u64 {
     let picture = &shown.picture;
@@ -248,6 +230,10 @@ fn drawn(order: &Order) -> Option<Drawn> {
     // Labels and pulls are drawn by the interface, sharper than in the picture.
     picture.pulls.clear();
     picture.bodies.iter_mut().for_each(|body| body.label.clear());
+    let selected = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());
+    if let Some(body) = selected.and_then(|place| picture.bodies.get_mut(place)) {
+        body.outlined = Some(OUTLINE);
+    }
     let mut view = order.view.clone();
     if !picture.arrows.is_empty()
         && let Ok(fitted) = View::fit([&picture])
@@ -255,7 +241,7 @@ fn drawn(order: &Order) -> Option<Drawn> {
         (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
     }
     let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
-    Some(Drawn { image, outline: outline_of(order), shown: Arc::clone(&order.shown), eye: order.eye })
+    Some(Drawn { image, shown: Arc::clone(&order.shown), eye: order.eye })
 }
 
 #[cfg(test)]

@@ -284,7 +284,7 @@ impl Session {
             }
             self.document.push_command(add_table(now, &table));
             let added = match read(&self.document, &self.files) {
-                Ok(scene) => self.engine.add_from(scene).map_err(Said::World),
+                Ok((scene, odd)) => self.engine.add_from(scene, odd).map_err(Said::World),
                 Err(errors) => Err(Said::Because(errors)),
             };
             if let Err(refusal) = added {

@@ -215,7 +215,7 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
     (
         "model.fem.mass",
         "masa",
-        "Ima li svaki čvor svoju masu, ili je masa ona funkcija oblika, ρ∫NₐNᵦ, koja povezuje čvorove ćelije: valovi su tada prebrzi gdje su s usredotočenom masom prespori. Za implicitne integratore i vlastite frekvencije.",
+        "Ima li svaki čvor svoju masu, ili je masa ona funkcija oblika, ρ∫N_i N_j, koja povezuje čvorove ćelije: valovi su tada prebrzi gdje su s usredotočenom masom prespori. Za implicitne integratore i vlastite frekvencije.",
     ),
     (
         "model.fem.locking",

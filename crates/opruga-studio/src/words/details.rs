@@ -1,19 +1,33 @@
-//! What models, integrators, obstacles and the world say in English, in Croatian: sentences with gaps for names and numbers.
+//! What models, integrators, obstacles, the world and the readers of files say in English, in Croatian: sentences with gaps
+//! for names and numbers.
 
-use super::sentences::{PARTS, SENTENCES};
+use super::{readers, sentences};
+
+/// A sentence with gaps in English, and in Croatian.
+type Pair = (&'static str, &'static str);
+
+/// Whole sentences: those of the readers first, since the engine has some that fit much.
+pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
+    readers::SENTENCES.into_iter().chain([sentences::SENTENCES]).flatten()
+}
+
+/// Parts of sentences.
+pub(super) fn parts() -> impl Iterator<Item = &'static Pair> {
+    readers::PARTS.iter().chain(sentences::PARTS)
+}
 
 /// The Croatian of a sentence, where it is one of these.
 pub(super) fn croatian(english: &str) -> Option<String> {
-    found(SENTENCES, english)
+    found(whole(), english)
 }
 
 /// The same of a part of a sentence, or of a whole one.
 pub(super) fn part(english: &str) -> Option<String> {
-    found(PARTS, english).or_else(|| croatian(english))
+    found(parts(), english).or_else(|| croatian(english))
 }
 
-fn found(table: &[(&str, &str)], english: &str) -> Option<String> {
-    table.iter().find_map(|(pattern, wanted)| {
+fn found(table: impl Iterator<Item = &'static Pair>, english: &str) -> Option<String> {
+    table.filter(|(pattern, _)| may_fit(pattern, english)).find_map(|(pattern, wanted)| {
         let mut parts = matched(pattern, english)?.into_iter();
         let mut out = String::new();
         let mut rest = *wanted;
@@ -25,6 +39,25 @@ fn found(table: &[(&str, &str)], english: &str) -> Option<String> {
         out.push_str(rest);
         Some(out)
     })
+}
+
+/// Whether the words between the gaps of a pattern stand in a text one after another: of hundreds of patterns few do, and only these are
+/// looked at closer, since what fills their gaps may be sentences again.
+fn may_fit(pattern: &str, text: &str) -> bool {
+    let (mut pattern, mut text) = (pattern, text);
+    let mut begins = true;
+    loop {
+        let gap = gap(pattern);
+        let words = gap.map_or(pattern, |(start, ..)| &pattern[..start]);
+        let at = match (begins, gap) {
+            (true, None) => (words == text).then_some(0),
+            (true, Some(_)) => text.starts_with(words).then_some(0),
+            (false, None) => text.ends_with(words).then(|| text.len() - words.len()),
+            (false, Some(_)) => text.find(words),
+        };
+        let (Some(at), Some((_, end, _))) = (at, gap) else { return at.is_some() };
+        (pattern, text, begins) = (&pattern[end..], &text[at + words.len()..], false);
+    }
 }
 
 /// What may fill a gap.
@@ -76,6 +109,7 @@ fn matched(pattern: &str, text: &str) -> Option<Vec<String>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::said_in_sources::{literals, sources};
     use super::*;
 
     #[test]
@@ -102,7 +136,7 @@ mod tests {
             }
             all
         };
-        for (english, croatian) in SENTENCES.iter().chain(PARTS) {
+        for (english, croatian) in whole().chain(parts()) {
             assert_eq!(gaps(english), gaps(croatian), "{english}");
             assert_ne!(english, croatian);
         }
@@ -112,16 +146,17 @@ mod tests {
     fn every_sentence_is_one_that_the_program_says() {
         // What the sources say, with gaps for what they put in, as one text.
         let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crates");
-        let said: Vec<String> = ["core", "models", "integrators", "collide", "world", "io", "solve"]
+        let said: Vec<String> = ["core", "mesh", "models", "integrators", "collide", "world", "io", "solve"]
             .iter()
             .flat_map(|name| sources(&crates.join(format!("opruga-{name}/src"))))
             .flat_map(|text| literals(&text))
             .collect();
         assert!(said.len() > 1000, "the sources are read");
         // A sentence may be put together of several: the words between its gaps are what is looked for.
-        let missing: Vec<&str> = SENTENCES
+        // What readers say is put together of more parts than can be found again.
+        let missing: Vec<&str> = sentences::SENTENCES
             .iter()
-            .chain(PARTS)
+            .chain(sentences::PARTS)
             .flat_map(|(english, _)| {
                 english.split("{~}").flat_map(|part| part.split("{}")).flat_map(|part| part.split("{#}"))
             })
@@ -129,41 +164,5 @@ mod tests {
             .filter(|words| words.len() > 14 && !said.iter().any(|text| text.contains(words)))
             .collect();
         assert!(missing.is_empty(), "nobody says this any more: {missing:#?}");
-    }
-
-    fn sources(folder: &std::path::Path) -> Vec<String> {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries
-            .flat_map(|entry| match entry.path() {
-                path if path.is_dir() => sources(&path),
-                path => std::fs::read_to_string(path).into_iter().collect(),
-            })
-            .collect()
-    }
-
-    /// The texts in quotes of a source, lines joined.
-    fn literals(source: &str) -> Vec<String> {
-        let (mut all, mut now, mut escaped) = (Vec::new(), None::<String>, false);
-        let mut letters = source.chars().peekable();
-        while let Some(letter) = letters.next() {
-            match (&mut now, letter) {
-                (Some(_), '\n') if escaped => {
-                    while letters.next_if(|next| next.is_whitespace()).is_some() {}
-                    escaped = false;
-                }
-                (Some(text), letter) if escaped => {
-                    text.push(letter);
-                    escaped = false;
-                }
-                (Some(_), '\\') => escaped = true,
-                (Some(_), '"') => all.extend(now.take()),
-                (Some(text), letter) => text.push(letter),
-                (None, '\'') if letters.peek() == Some(&'"') => drop(letters.next()),
-                (None, '/') if letters.peek() == Some(&'/') => while letters.next_if(|next| *next != '\n').is_some() {},
-                (None, '"') => now = Some(String::new()),
-                (None, _) => {}
-            }
-        }
-        all
     }
 }

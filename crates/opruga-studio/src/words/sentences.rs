@@ -311,7 +311,6 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     // What stands in a scene.
     ("`{}` is missing in `{}`", "`{}` nedostaje u `{}`"),
     ("`{}` is missing", "`{}` nedostaje"),
-    ("there is no field `{}` in `{}`", "nema polja `{}` u `{}`"),
     ("`{}` is {#}", "`{}` je {#}"),
     ("`{}` is {~}", "`{}` je {~}"),
     // Files.

@@ -277,6 +277,7 @@ impl Scenery {
                 cells: fixed.cells.clone(),
                 segments: fixed.springs.as_ref().unwrap_or(&fixed.segments).clone(),
                 colour: None,
+                outlined: None,
                 nodes_drawn: (fixed.nodes_drawn && areas.is_empty()) || fixed.springs.is_some(),
                 node_spacing: fixed.springs.is_none().then_some(fixed.node_spacing),
                 extent: fixed.springs.is_none().then_some(fixed.extent),

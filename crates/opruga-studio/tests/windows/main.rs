@@ -3,61 +3,16 @@
 // No physics here.
 #![allow(clippy::disallowed_methods)]
 
+mod pointer;
+#[path = "../screen/mod.rs"]
 mod screen;
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use opruga_studio::session::Request;
 use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
-use screen::window::{SIZE, Window, top_of};
-
-#[test]
-fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
-    let mut window = Window::open("ball", SIZE);
-    let top = top_of(&window);
-    window.pointer(top);
-    window.button(top, PointerButton::Primary, true, Modifiers::NONE);
-    window.pointer(top + Vec2::new(60.0, -40.0));
-    for _ in 0..6 {
-        window.click("Step");
-        window.harness.event(Event::PointerMoved(top + Vec2::new(60.0, -40.0)));
-    }
-    // Pressing a button of the window has let the ball go: it is recorded from its beginning to its end.
-    window.until("a pull was recorded", |shown| shown.recorded == 1 && shown.frames >= 6);
-    let mut window = Window::open("ball", SIZE);
-    window.pointer(top);
-    window.button(top, PointerButton::Primary, true, Modifiers::NONE);
-    window.pointer(top + Vec2::new(60.0, -40.0));
-    for _ in 0..12 {
-        window.studio().ask(Request::Step);
-    }
-    window.until("the pull acts", |shown| shown.pulls.len() == 1 && shown.frames == 12);
-    let [_, pointer, force] = window.shown().pulls[0];
-    let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-    assert!(newtons > 0.1 && pointer[0] > 0.2 && pointer[1] > 2.5, "{pointer:?} {force:?}");
-    window.button(top, PointerButton::Primary, false, Modifiers::NONE);
-    window.studio().ask(Request::Step);
-    window.until("it was let go", |shown| shown.pulls.is_empty() && shown.frames == 13);
-}
-
-/// A screen that draws seldom takes in a press together with the way that the pointer went since.
-#[test]
-fn a_body_is_held_where_it_was_pressed_however_far_the_pointer_has_gone_until_the_next_picture() {
-    let mut window = Window::open("ball", SIZE);
-    let top = top_of(&window);
-    let far = top + Vec2::new(240.0, -60.0);
-    window.pointer(top + Vec2::new(0.0, 200.0));
-    let press =
-        Event::PointerButton { pos: top, button: PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
-    window.harness.input_mut().events.extend([Event::PointerMoved(top), press, Event::PointerMoved(far)]);
-    window.frames(2);
-    window.studio().ask(Request::Step);
-    window.studio().ask(Request::Step);
-    window.until("the ball is held", |shown| shown.pulls.len() == 1 && shown.frames == 2);
-    window.button(far, PointerButton::Primary, false, Modifiers::NONE);
-    window.until("it is let go", |shown| shown.recorded == 1);
-}
+use screen::window::{SIZE, Window};
 
 #[test]
 fn every_tool_and_menu_can_be_pressed_by_its_name() {
@@ -110,85 +65,6 @@ fn parameters_models_and_integrators_change_on_the_running_body() {
     assert_eq!(window.shown().frames, 1, "on the body as it is");
     window.click("Undo");
     window.until("undone", |shown| shown.bodies[0].models.len() == 3);
-}
-
-#[test]
-fn outlines_become_bodies_and_those_that_cross_themselves_are_refused_with_a_reason() {
-    let mut window = Window::open("ball", SIZE);
-    window.key(Modifiers::NONE, Key::Num5);
-    let middle = window.canvas().center() + Vec2::new(180.0, 60.0);
-    let line = |of: &dyn Fn(f32) -> Vec2| -> Vec<Pos2> {
-        (0..80).map(|k| middle + of(k as f32 / 80.0 * std::f32::consts::TAU)).collect()
-    };
-    window.drag(&line(&|t| 70.0 * Vec2::new(t.cos(), 0.7 * t.sin())), PointerButton::Primary, Modifiers::NONE);
-    window.until("a drawn body", |shown| shown.bodies.len() == 2 && shown.bodies[1].name == "drawn");
-    window.drag(&line(&|t| 70.0 * Vec2::new(t.sin(), (2.0 * t).sin())), PointerButton::Primary, Modifiers::NONE);
-    assert!(window.harness.query_by_label_contains("crosses itself").is_some());
-    assert_eq!(window.shown().bodies.len(), 2);
-}
-
-#[test]
-fn pins_pushes_and_moves_are_done_by_the_pointer_and_written_down() {
-    let mut window = Window::open("ball", SIZE);
-    let top = top_of(&window);
-    window.drag(&[top], PointerButton::Primary, Modifiers::SHIFT);
-    window.until("a pin", |shown| shown.pins.len() == 1);
-    for _ in 0..2 {
-        window.button(top, PointerButton::Primary, true, Modifiers::NONE);
-        window.button(top, PointerButton::Primary, false, Modifiers::NONE);
-    }
-    window.until("no pin", |shown| shown.pins.is_empty());
-    window.key(Modifiers::COMMAND, Key::Z);
-    window.studio().ask(Request::Reset);
-    window.until("the start", |shown| shown.frames == 0 && shown.recorded == 0);
-    window.click("Move");
-    let there = top + Vec2::new(80.0, 0.0);
-    window.drag(&[top, top + Vec2::new(40.0, 0.0), there], PointerButton::Primary, Modifiers::NONE);
-    window.until("it was moved", |shown| shown.picture.bodies[0].positions[9][0] > 0.2);
-    assert_eq!(window.shown().recorded, 0, "at the start it is written into the scene");
-}
-
-#[test]
-fn a_selected_body_is_turned_and_scaled_by_its_handles_copied_and_looked_at() {
-    let mut window = Window::open("ball", SIZE);
-    window.click("Move");
-    let shown = window.shown();
-    let spots: Vec<Pos2> =
-        shown.picture.bodies[0].positions.iter().filter_map(|p| window.studio().on_screen(*p)).collect();
-    let around = egui::Rect::from_points(&spots).expand(8.0);
-    // The corner of the box goes half as far again from its middle.
-    let corner = around.right_bottom();
-    let out = around.center() + 1.5 * (corner - around.center());
-    window.drag(&[corner, corner + Vec2::splat(3.0), out], PointerButton::Primary, Modifiers::NONE);
-    let width = |shown: &opruga_studio::shown::Shown| {
-        let xs = shown.picture.bodies[0].positions.iter().map(|p| p[0]);
-        xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min)
-    };
-    window.until("it has grown", |shown| (width(shown) - 1.5).abs() < 0.02);
-    window.key(Modifiers::COMMAND, Key::Z);
-    window.until("undone", |shown| (width(shown) - 1.0).abs() < 0.02);
-    // The handle above the box, to the right of it: a quarter of a turn.
-    let node = |shown: &opruga_studio::shown::Shown| shown.picture.bodies[0].positions[0];
-    let (before, handle) = (node(&window.shown()), around.center_top() - Vec2::new(0.0, 24.0));
-    let right = around.center() + Vec2::new(around.center().y - handle.y, 0.0);
-    window.drag(&[handle, handle + Vec2::splat(4.0), right], PointerButton::Primary, Modifiers::NONE);
-    window.until("it was turned", |shown| {
-        let now = node(shown);
-        // Clockwise as it is seen: what was on the right is below.
-        (now[0] - (before[1] - 2.0)).abs() < 0.03 && (now[1] - 2.0 + before[0]).abs() < 0.03
-    });
-    window.harness.get_by_label("Duplicate").scroll_to_me();
-    window.frames(30);
-    window.click("Duplicate");
-    window.until("two of them", |shown| shown.bodies.len() == 2);
-    let apart = |window: &Window| {
-        let at = |p: [f64; 3]| window.studio().on_screen(p).expect("in sight");
-        at([0.5, 2.0, 0.0]).distance(at([-0.5, 2.0, 0.0]))
-    };
-    window.frames(2);
-    let before = apart(&window);
-    window.click("Focus");
-    assert!(apart(&window) > 1.2 * before, "the body fills the window");
 }
 
 #[test]
@@ -307,21 +183,6 @@ fn every_overlay_and_every_map_of_colours_can_be_chosen_by_its_name() {
         window.click(label);
         window.until(label, |shown| shown.picture.legend.as_ref().is_some_and(|legend| legend.map == map));
     }
-}
-
-#[test]
-fn a_pin_of_the_scene_is_freed_by_a_double_click() {
-    let mut window = Window::open("hanging-net", SIZE);
-    let shown = window.shown();
-    let (node, count) = (shown.picture.bodies[0].pinned[0], shown.picture.bodies[0].pinned.len());
-    let at = window.studio().on_screen(shown.picture.bodies[0].positions[node as usize]).expect("in sight");
-    for _ in 0..2 {
-        window.button(at, PointerButton::Primary, true, Modifiers::NONE);
-        window.button(at, PointerButton::Primary, false, Modifiers::NONE);
-    }
-    window.studio().ask(Request::Step);
-    window.until("one pin fewer", |shown| shown.picture.bodies[0].pinned.len() == count - 1);
-    assert!(!window.shown().picture.bodies[0].pinned.contains(&node));
 }
 
 #[test]
