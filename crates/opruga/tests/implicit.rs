@@ -277,10 +277,10 @@ fn refusals_say_what_is_wrong_and_what_helps() {
 
     let arc = head(0.1, 1, -9.81, "equilibrium")
         .replace("kind = \"equilibrium\"\n", "kind = \"equilibrium\"\narc_length = 0.1\n");
-    let pinned = format!("{arc}{BLOCK}pin = [ {{ select = {{ node = 0 }} }} ]\n");
-    let error = refused(&(pinned + &floor(-5.0, 0.0, 0.0)));
+    // Without load, where the curve begins, nothing presses a body onto an obstacle.
+    let error = refused(&(format!("{arc}{BLOCK}") + &floor(-5.0, 0.5, 0.0)));
     assert_eq!(error.code(), "static.arc_length_and_obstacles");
-    assert!(error.to_string().contains("allowed with obstacles: the whole load at once"), "{error}");
+    assert!(error.to_string().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
 
     let published = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 100.0, vertices = 20 }\nnode_mass = 1.0\n\
         models = [ { kind = \"as_published\" } ]\n";
@@ -419,9 +419,9 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
             + &floor(level, friction, 0.0)
     };
     let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
-    // It hangs above the floor, just touches it, or begins within it.
-    for (friction, level) in
-        [0.0, 0.5].into_iter().flat_map(|friction| [-0.05, -0.099, 0.0, 0.03].map(|level| (friction, level)))
+    // It hangs above the floor, just touches it, or begins within it, up to the whole of it.
+    let levels = [-0.05, -0.099, 0.0, 0.03, 0.05, 0.09, 0.15, 0.3];
+    for (friction, level) in [0.0, 0.1, 0.5, 1.0].into_iter().flat_map(|friction| levels.map(|level| (friction, level)))
     {
         let mut world = built(plane(&text(friction, square, level)));
         let at_rest = mean(&world, |node| world.position(0, node)[0]);
