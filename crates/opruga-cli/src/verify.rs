@@ -24,12 +24,12 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
         return Ok(0);
     }
     let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer };
+    let stop = interrupt::asked_to_stop();
     // Whether the report can be written is known before the work.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores, usize::from);
-    let stop = interrupt::asked_to_stop();
     let bar = progress_bar(cases.len());
     // Errors of a call with --json are JSON: nothing else is said beside it.
     let tell = !call.json && !std::io::stderr().is_terminal();
@@ -42,6 +42,7 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
     });
     bar.finish_and_clear();
     if rows.len() < cases.len() {
+        // Cases that still run end with the program.
         return Err(Failure::Interrupted);
     }
     if let Some(folder) = &folder {

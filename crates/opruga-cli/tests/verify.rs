@@ -64,3 +64,21 @@ fn a_wrong_modulus_is_noticed_and_fails() {
     assert_eq!((code(&call("1")), code(&call("1.01")), code(&call("3"))), (0, 1, 2), "{}", said(&call("1.01")));
     assert!(printed(&call("1.01")).contains("0 of 1 pass") && said(&call("3")).contains("0.5 to 2"));
 }
+
+/// A case may take minutes: the program does not wait for it, and leaves no part of a report.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_verification_ends_with_130_and_writes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let call = ["verify", "--report", "r", "--json", "--threads", "2"];
+    let child = program(folder.path(), &call).spawn().expect("the program runs");
+    until("the report's folder is there", || folder.path().join("r").join(".opruga-lock").exists());
+    // Cases run by then, which together take far longer.
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    signal(&child, "INT");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    let error: Value = serde_json::from_str(&said(&output)).expect("the error is JSON");
+    assert_eq!(error["code"], "interrupted");
+    assert!(printed(&output).is_empty() && contents(&folder.path().join("r")).is_empty());
+}

@@ -2,43 +2,128 @@
 
 use crate::case::{Case, Row};
 use crate::lab::Lab;
-use std::sync::Mutex;
-use std::sync::PoisonError;
+use std::panic::resume_unwind;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+/// How often it is looked whether to stop while no row comes.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs cases on some threads, each case on one, and returns their rows in the order of the cases.
 ///
-/// `done` sees every row as it comes. Where `stop` is set, the cases that have not begun are left out.
-pub fn run_all(
-    cases: &[&'static Case],
-    lab: &Lab,
-    threads: usize,
-    stop: &AtomicBool,
-    done: &(dyn Fn(&Row) + Sync),
-) -> Vec<Row> {
-    let next = AtomicUsize::new(0);
+/// `done` sees every row as it comes. Where `stop` is set, what has not ended is left out: no case begins any more, and those
+/// that run are not waited for. Nobody looks at what they still compute, and they end with the program at the latest; a case
+/// may take minutes, and none writes anything.
+pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &AtomicBool, done: &dyn Fn(&Row)) -> Vec<Row> {
     // What takes long begins first.
-    let mut order: Vec<usize> = (0..cases.len()).collect();
-    order.sort_by_key(|number| cases[*number].quick);
-    let rows: Mutex<Vec<(usize, Row)>> = Mutex::new(Vec::new());
-    let worker = || {
-        while let Some((number, case)) =
-            { order.get(next.fetch_add(1, Ordering::Relaxed)).map(|number| (*number, cases[*number])) }
-        {
-            if stop.load(Ordering::Relaxed) {
-                return;
+    let mut order: Vec<(usize, &'static Case)> = cases.iter().copied().enumerate().collect();
+    order.sort_by_key(|(_, case)| case.quick);
+    let (order, next, lab) = (Arc::new(order), Arc::new(AtomicUsize::new(0)), *lab);
+    let (sender, receiver) = channel();
+    if stop.load(Ordering::Relaxed) {
+        return Vec::new();
+    }
+    let mut workers = Vec::new();
+    for _ in 0..threads.clamp(1, cases.len().max(1)) {
+        let (order, next, sender) = (order.clone(), next.clone(), sender.clone());
+        workers.push(thread::spawn(move || {
+            while let Some((number, case)) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if sender.send((*number, case.run(&lab))).is_err() {
+                    return;
+                }
             }
-            let row = case.run(lab);
-            done(&row);
-            rows.lock().unwrap_or_else(PoisonError::into_inner).push((number, row));
+        }));
+    }
+    drop(sender);
+    let mut rows: Vec<(usize, Row)> = Vec::new();
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok((number, row)) => {
+                done(&row);
+                rows.push((number, row));
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                // A worker that has not ended by itself had a panic, which is nobody's row.
+                for worker in workers {
+                    if let Err(panic) = worker.join() {
+                        resume_unwind(panic);
+                    }
+                }
+                break;
+            }
         }
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, cases.len().max(1)) {
-            scope.spawn(worker);
+        if stop.load(Ordering::Relaxed) && rows.len() < cases.len() {
+            // Nobody takes a case any more.
+            next.store(order.len(), Ordering::Relaxed);
+            break;
         }
-    });
-    let mut rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    }
     rows.sort_by_key(|(number, _)| *number);
     rows.into_iter().map(|(_, row)| row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Check, Family, Over, Scale};
+    use crate::lab::Trouble;
+    use std::sync::Mutex;
+    use std::sync::PoisonError;
+
+    /// What the second case waits for, which the test holds until it has its rows.
+    static GATE: Mutex<()> = Mutex::new(());
+
+    fn at_once(_: &Lab, _: f64) -> Result<f64, Trouble> {
+        Ok(1.0)
+    }
+
+    fn never(_: &Lab, _: f64) -> Result<f64, Trouble> {
+        drop(GATE.lock().unwrap_or_else(PoisonError::into_inner));
+        Ok(1.0)
+    }
+
+    const QUICK: Case = Case {
+        name: "quick",
+        family: Family::Statics,
+        quantity: "one",
+        unit: "",
+        source: "itself",
+        over: Over::Parameter("level"),
+        levels: &[1.0],
+        expected: &[1.0],
+        scale: Scale::Relative,
+        tolerance: 0.1,
+        check: Check::Finest,
+        quick: true,
+        measure: at_once,
+    };
+    static CASES: [Case; 3] = [QUICK, Case { name: "endless", measure: never, ..QUICK }, QUICK];
+
+    #[test]
+    fn a_case_that_runs_is_not_waited_for_once_it_shall_stop() {
+        let held = GATE.lock().unwrap_or_else(PoisonError::into_inner);
+        let cases: Vec<&'static Case> = CASES.iter().collect();
+        let stop = AtomicBool::new(false);
+        // Would wait for ever for the second case, which ends when the gate is open.
+        let rows = run_all(&cases, &Lab::default(), 1, &stop, &|_| stop.store(true, Ordering::Relaxed));
+        assert_eq!(rows.iter().map(|row| row.case.name).collect::<Vec<_>>(), ["quick"]);
+        drop(held);
+        let all = run_all(&cases, &Lab::default(), 1, &AtomicBool::new(false), &|_| {});
+        assert_eq!(all.iter().map(|row| row.case.name).collect::<Vec<_>>(), ["quick", "endless", "quick"]);
+        assert!(all.iter().all(|row| row.pass));
+    }
+
+    #[test]
+    #[should_panic(expected = "a case that panics")]
+    fn a_panic_of_a_case_is_the_panic_of_the_run() {
+        fn panics(_: &Lab, _: f64) -> Result<f64, Trouble> {
+            panic!("a case that panics")
+        }
+        static CASE: Case = Case { name: "panics", measure: panics, ..QUICK };
+        run_all(&[&CASE], &Lab::default(), 1, &AtomicBool::new(false), &|_| {});
+    }
 }

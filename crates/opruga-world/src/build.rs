@@ -359,9 +359,10 @@ impl<const D: usize> Builder<'_, D> {
             );
             return refuse("integrator.mass_matrix", message);
         }
-        if !self.blueprint.colliders.is_empty() {
+        // In statics masses are weights alone.
+        if !self.blueprint.colliders.is_empty() && !integrator.is_static() {
             let message = "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed \
-                           with obstacles: `mass = \"lumped\"`";
+                           with obstacles: `mass = \"lumped\"`, and both in `equilibrium`, which knows no impacts";
             return refuse("model.mass", message.into());
         }
         if let Mass::Node(mass) = body.mass {

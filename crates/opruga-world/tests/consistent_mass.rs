@@ -256,6 +256,47 @@ fn solvers_agree_on_consistent_masses() {
     }
 }
 
+/// A floor at a height.
+fn floor<const D: usize>(height: f64) -> ColliderBlueprint {
+    let spec = opruga_collide::all(D).into_iter().find(|s| s.kind == "half_space").expect("a floor");
+    let mut values = Values::defaults(spec, D);
+    let up: [f64; D] = core::array::from_fn(|d| if d == 1 { 1.0 } else { 0.0 });
+    for (name, numbers) in [("point", up.map(|x| height * x)), ("normal", up)] {
+        values.set(spec, name, Value::Numbers(numbers.to_vec()), D).expect("a field");
+    }
+    ColliderBlueprint { values }
+}
+
+/// In statics masses are weights alone, so obstacles go with consistent ones: a beam that sags onto a floor, of cells whose
+/// corners weigh nothing or less, lies on it as with lumped masses.
+#[test]
+fn a_beam_lies_on_a_floor_as_deep_with_consistent_as_with_lumped_masses() {
+    fn lies<const D: usize>(mesh: &Mesh<D>, mass: &str) -> (f64, f64, usize) {
+        let mut blueprint = body(mesh.clone(), mass, "equilibrium");
+        let height = -0.02;
+        blueprint.surroundings.gravity = core::array::from_fn(|d| if d == 1 { -9.81 } else { 0.0 });
+        blueprint.bodies[0].pins =
+            vec![PinBlueprint { select: Selector::Side("left".into()), axes: [true; D], motion: Vec::new() }];
+        blueprint.colliders.push(floor::<D>(height));
+        let mut beam = world(blueprint);
+        beam.frame().expect("a balance");
+        let heights: Vec<f64> = (0..beam.node_count(0) as u32).map(|node| beam.position(0, node)[1]).collect();
+        let lowest = heights.iter().copied().fold(f64::INFINITY, Lane::smaller);
+        let touching = heights.iter().filter(|y| **y < height + 1e-8).count();
+        (beam.energy().elastic, lowest - height, touching)
+    }
+    fn agrees<const D: usize>(mesh: &Mesh<D>) {
+        let [(consistent, above, touching), (lumped, ..)] = ["consistent", "lumped"].map(|mass| lies(mesh, mass));
+        assert!(above.abs() < 1e-8 && touching > 0, "{above} m, {touching} nodes");
+        assert!((consistent / lumped - 1.0).abs() < 0.05, "{consistent} {lumped}");
+    }
+    let space = Mesh::<3>::grid([0.0; 3], [1.0, 0.2, 0.2], [5, 1, 1]).expect("a mesh");
+    agrees(&space.into_simplices().expect("tetrahedra").into_quadratic().expect("quadratic ones"));
+    let plane = Mesh::<2>::grid([0.0; 2], [1.0, 0.2], [10, 2]).expect("a mesh");
+    agrees(&plane);
+    agrees(&plane.into_simplices().expect("triangles").into_quadratic().expect("quadratic ones"));
+}
+
 /// Statics has no inertia: whatever the masses, a beam sags as far, and swings about there with frequencies of its own.
 #[test]
 fn a_balance_is_the_same_with_consistent_and_lumped_masses() {
@@ -302,11 +343,7 @@ fn what_moves_nodes_by_their_own_masses_refuses_consistent_ones_and_says_what_he
     by_node.bodies[0].mass = Mass::Node(1.0);
     assert_eq!(refusal(by_node).0, "model.mass");
     let mut on_a_floor = body(mesh(), "consistent", "newmark");
-    let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a floor");
-    let mut floor = Values::defaults(spec, 2);
-    for (name, numbers) in [("point", vec![0.0, -1.0]), ("normal", vec![0.0, 1.0])] {
-        floor.set(spec, name, Value::Numbers(numbers), 2).expect("a field");
-    }
-    on_a_floor.colliders.push(ColliderBlueprint { values: floor });
-    assert_eq!(refusal(on_a_floor).0, "model.mass");
+    on_a_floor.colliders.push(floor::<2>(-1.0));
+    let (code, message) = refusal(on_a_floor);
+    assert!(code == "model.mass" && message.contains("lumped") && message.contains("`equilibrium`"), "{message}");
 }

@@ -277,10 +277,10 @@ fn refusals_say_what_is_wrong_and_what_helps() {
 
     let arc = head(0.1, 1, -9.81, "equilibrium")
         .replace("kind = \"equilibrium\"\n", "kind = \"equilibrium\"\narc_length = 0.1\n");
-    let pinned = format!("{arc}{BLOCK}pin = [ {{ select = {{ node = 0 }} }} ]\n");
-    let error = refused(&(pinned + &floor(-5.0, 0.0, 0.0)));
+    // Without load, where the curve begins, nothing presses a body onto an obstacle.
+    let error = refused(&(format!("{arc}{BLOCK}") + &floor(-5.0, 0.5, 0.0)));
     assert_eq!(error.code(), "static.arc_length_and_obstacles");
-    assert!(error.to_string().contains("allowed with obstacles: the whole load at once"), "{error}");
+    assert!(error.to_string().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
 
     let published = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 100.0, vertices = 20 }\nnode_mass = 1.0\n\
         models = [ { kind = \"as_published\" } ]\n";
@@ -407,35 +407,6 @@ fn the_ledger_does_not_warn_of_a_rules_own_damping() {
     }
 }
 
-/// The table of docs/finite-elements.md: by how much a soft block that flies and spins misses its energy at most, in parts of it.
-#[test]
-fn in_free_flight_rules_of_second_order_keep_the_energy_within_their_error() {
-    let text = |rule: &str, substeps: u32| {
-        head(1.0 / 60.0, substeps, 0.0, rule)
-            + "[[body]]\nname = \"block\"\nshape = { kind = \"grid\", size = [0.4, 0.2], cells = [8, 4] }\ndensity = 1000.0\n\
-               velocity = [1.0, 2.0]\nangular_velocity = 6.0\nmodels = [{ kind = \"fem\", youngs_modulus = 1e5 }]\n"
-    };
-    // Of 1/60 s in 1 and 4 steps.
-    for (rule, limits, order) in [
-        ("implicit_midpoint", [1.2e-3, 5e-5], 2.0),
-        ("newmark", [1.5e-3, 1e-4], 2.0),
-        ("bdf2", [8e-3, 9e-4], 1.5),
-        ("backward_euler", [0.12, 0.09], 0.3),
-    ] {
-        let missed = [1, 4].map(|substeps| {
-            let mut world = built(plane(&text(rule, substeps)));
-            let start = world.energy().total();
-            (0..300).fold(0.0, |most: f64, _| {
-                world.frame().unwrap_or_else(|e| panic!("{rule}: {e}"));
-                most.max((world.energy().total() / start - 1.0).abs())
-            })
-        });
-        println!("{rule}: {:.1e} and {:.1e} of the energy", missed[0], missed[1]);
-        assert!(missed[0] < limits[0] && missed[1] < limits[1], "{rule}: {missed:?}");
-        assert!((missed[0] / missed[1]).ln() / 4.0f64.ln() > order - 0.25, "{rule}: {missed:?}");
-    }
-}
-
 /// A floor without friction holds a block up, and not where it is along the floor.
 #[test]
 fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
@@ -448,9 +419,9 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
             + &floor(level, friction, 0.0)
     };
     let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
-    // It hangs above the floor, just touches it, or begins within it.
-    for (friction, level) in
-        [0.0, 0.5].into_iter().flat_map(|friction| [-0.05, -0.099, 0.0, 0.03].map(|level| (friction, level)))
+    // It hangs above the floor, just touches it, or begins within it, up to the whole of it.
+    let levels = [-0.05, -0.099, 0.0, 0.03, 0.05, 0.09, 0.15, 0.3];
+    for (friction, level) in [0.0, 0.1, 0.5, 1.0].into_iter().flat_map(|friction| levels.map(|level| (friction, level)))
     {
         let mut world = built(plane(&text(friction, square, level)));
         let at_rest = mean(&world, |node| world.position(0, node)[0]);

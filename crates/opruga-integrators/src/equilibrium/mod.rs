@@ -20,10 +20,11 @@
 //!       └────────────────▶ way
 //! ```
 //!
-//! A scene with obstacles has no `arc_length`: the curve knows nothing of them.
+//! Obstacles stop the curve where the body meets them, and it goes on along their surface; a body that is held by obstacles
+//! alone has no curve, which begins without any load.
 //!
 //! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free.
-//! Obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
+//! Without `arc_length` obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
 //! within the iteration only. Where that leads nowhere, the motions are named that contact leaves free.
 //!
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
@@ -34,6 +35,7 @@ pub mod rigid;
 #[cfg(test)]
 mod tests;
 
+use crate::implicit::approach::{leaves_nodes_inside, lift_out};
 use crate::implicit::newton::{Balance, Solved, solve};
 use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
@@ -212,6 +214,7 @@ impl Equilibrium {
                 self.refuse_what_is_free(system, room)?;
             }
         }
+        solved.converged &= !leaves_nodes_inside(system, room, h);
         report(SPEC.kind, &self.settings, system, room, &solved)
     }
 
@@ -242,6 +245,7 @@ impl Equilibrium {
         for k in 0..room.u.len() {
             room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
         }
+        lift_out(system, room, h);
         let whole = Reached { load: 1.0, held: 1.0, time: h };
         match self.arc_length {
             Some(length) if !complete => {
@@ -339,12 +343,16 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         Amplification::new([[kept, 0.0], [0.0, 0.0]])
     }
     fn check(&self, system: &System<D>, obstacles: bool) -> Result<(), BuildError> {
-        if obstacles && self.arc_length.is_some() {
-            let message = "`arc_length` is given, and the scene has obstacles, of which the curve of equilibria knows nothing; \
-                           allowed with obstacles: the whole load at once, in as many `load_steps` as it takes";
+        if !obstacles {
+            return rigid::refuse_free_motions(system);
+        }
+        if self.arc_length.is_some() && !rigid::unheld_motions(system).is_empty() {
+            let message = "`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve \
+                           begins, without any load; allowed: pins that hold it, or the whole load at once, in as many \
+                           `load_steps` as it takes";
             return Err(BuildError::new(SPEC.kind, "static.arc_length_and_obstacles", message));
         }
-        if obstacles { Ok(()) } else { rigid::refuse_free_motions(system) }
+        Ok(())
     }
     fn readings(&self, system: &System<D>) -> Vec<Reading> {
         vec![("load_factor".into(), system.history.numbers[LOAD])]

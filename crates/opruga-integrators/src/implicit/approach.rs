@@ -4,6 +4,7 @@ use super::contact::{Contact, Contacting};
 use super::contact_derivatives::Sight;
 use super::newton::Balance;
 use super::room::Room;
+use opruga_core::contacts::Touch;
 use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::blocks::nodes;
@@ -17,6 +18,63 @@ const CAUGHT: f64 = 1e-3;
 
 /// Bisections of the part, so that half the extent is divided more finely than `CAUGHT`.
 const BISECTIONS: usize = 12;
+
+/// How often a body is moved as a whole out of what it begins in, at most: from surface to surface.
+const MOST_LIFTS: u32 = 32;
+
+/// The depth in which no node may be left where forces balance, in extents of the body.
+const LEFT: f64 = 1e-6;
+
+/// Where no pin holds a body that begins deep in obstacles, the iteration begins with the body as a whole out of them, in
+/// `room.u`: put onto the surface one by one, nodes that are deep inside would tear it.
+pub(crate) fn lift_out<const D: usize>(system: &System<D>, room: &mut Room<D>, h: f64) {
+    if system.contacts.is_none() || room.held.iter().any(|way| !way.is_nan()) {
+        return;
+    }
+    let mut lift = [0.0; D];
+    for count in 0..MOST_LIFTS {
+        let deep = if count == 0 { CAUGHT * room.extent } else { 0.0 };
+        let Some(touch) = deepest(system, room, &|_, d| lift[d], h).filter(|touch| touch.gap < -deep) else {
+            for u in room.u.as_chunks_mut::<D>().0 {
+                *u = lift;
+            }
+            return;
+        };
+        for d in 0..D {
+            lift[d] -= touch.gap * touch.normal[d];
+        }
+    }
+    // Between obstacles there is no room for the whole: it begins where it is.
+}
+
+/// Whether the displacement in `room.u` leaves a node in an obstacle that nothing else holds: one that changed sides too often.
+pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> bool {
+    let most = LEFT * room.extent;
+    deepest(system, room, &|node, d| room.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
+}
+
+/// The deepest place of a node that no pin holds, at the displacements that `way` tells of nodes and axes; none where all are outside.
+fn deepest<const D: usize>(
+    system: &System<D>,
+    room: &Room<D>,
+    way: &dyn Fn(usize, usize) -> f64,
+    h: f64,
+) -> Option<Touch<D>> {
+    let obstacles = system.contacts.as_ref()?;
+    let mut deepest: Option<Touch<D>> = None;
+    for (node, (from, held)) in nodes::<D>(&room.x0).iter().zip(nodes::<D>(&room.held)).enumerate() {
+        if held.iter().any(|way| !way.is_nan()) {
+            continue;
+        }
+        let at: [f64; D] = core::array::from_fn(|d| from[d] + way(node, d));
+        obstacles.touch(&at, &at, system.time + h, h, 0.0, &mut |touch| {
+            if touch.gap < -touch.rounding && deepest.is_none_or(|other| touch.gap < other.gap) {
+                deepest = Some(touch);
+            }
+        });
+    }
+    deepest
+}
 
 /// The part of the step in `room.step`, whose longest way is `longest`, that is gone at most in statics: it is not longer than the
 /// body, nor does it lead through obstacles.

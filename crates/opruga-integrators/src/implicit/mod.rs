@@ -18,6 +18,7 @@
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
 //! | `linear` | the direction: conjugate gradients or sparse Cholesky |
+//! | `approach` | what keeps statics, without inertia, out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
 //! | `contact_derivatives` | what the forces of contacts change by with positions |
 //! | `growth` | refuses what accepted steps blow up |
@@ -39,9 +40,9 @@
 //! force along the normal that the direction itself brings about. Velocities are dealt with at the end of the step: what a node
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
-mod approach;
+pub(crate) mod approach;
 pub(crate) mod contact;
-mod contact_derivatives;
+pub(crate) mod contact_derivatives;
 mod growth;
 pub(crate) mod impact;
 mod kept;

@@ -116,10 +116,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "`linear_solver` je \"matrix_free\", a `arc_length` rastavlja matricu; dopušteno uz njega: {}",
     ),
     (
-        "`arc_length` is given, and the scene has obstacles, of which the curve of equilibria knows nothing; allowed with \
-         obstacles: the whole load at once, in as many `load_steps` as it takes",
-        "`arc_length` je zadan, a prizor ima prepreke, o kojima krivulja ravnoteža ništa ne zna; dopušteno uz prepreke: cijeli \
-         teret odjednom, u koliko god `load_steps` treba",
+        "`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve begins, without \
+         any load; allowed: pins that hold it, or the whole load at once, in as many `load_steps` as it takes",
+        "`arc_length` je zadan, a tijelo ne drže pribodene točke, i ništa ga ne pritišće na prepreke gdje krivulja počinje, bez \
+         ikakva tereta; dopušteno: pribodene točke koje ga drže, ili cijeli teret odjednom, u koliko god `load_steps` treba",
     ),
     ("more substeps, or `accuracy = \"exact\"`", "više podkoraka, ili `accuracy = \"exact\"`"),
     (
@@ -190,9 +190,9 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed with \
-         obstacles: `mass = \"lumped\"`",
+         obstacles: `mass = \"lumped\"`, and both in `equilibrium`, which knows no impacts",
         "`mass` je \"consistent\", a ima prepreka, čiji sudari djeluju na mase pojedinih čvorova; dopušteno uz prepreke: \
-         `mass = \"lumped\"`",
+         `mass = \"lumped\"`, a oboje u `equilibrium`, gdje sudara nema",
     ),
     ("body `{}` has no model `{}`; it has {}", "tijelo `{}` nema model `{}`; ima {}"),
     (
