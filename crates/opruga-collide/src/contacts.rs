@@ -76,7 +76,7 @@ impl<const D: usize> Colliders<D> {
         })
     }
     /// The collider that a surface belongs to; surfaces are numbered part by part.
-    pub(crate) fn collider_of(&self, surface: usize) -> usize {
+    pub fn collider_of(&self, surface: usize) -> usize {
         let mut parts = 0;
         let behind = |collider: &Collider<D>| {
             parts += collider.parts.len();

@@ -5,6 +5,7 @@ use crate::overrides;
 use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_math::words::number;
+use opruga_world::schema::MOST_SUBSTEPS;
 use opruga_world::{Warning, WorldError};
 
 impl From<&WorldError> for SceneError {
@@ -22,9 +23,14 @@ impl From<&WorldError> for SceneError {
                 say(format!("the step h = {h} s of `{integrator}` is unstable for body `{body}`"))
                     .value(h)
                     .allowed(format!("h <= {limit} s ({fastest})"))
-                    .hint(format!(
-                        "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
-                    ))
+                    .hint(match *substeps {
+                        substeps if substeps <= MOST_SUBSTEPS => format!(
+                            "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
+                        ),
+                        _ => format!(
+                            "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, or another integrator"
+                        ),
+                    })
             }
             WorldError::Diverged { body, node, time, last } => say(format!(
                 "body `{body}` diverged: node {node} left the finite numbers in the substep from t = {} s",

@@ -87,6 +87,17 @@ fn corners_stay_where_they_are() {
     assert!((rings[0].area() - 1.0).abs() < 1e-14);
 }
 
+/// The corners of a regular polygon turn by 360° over their number: what turns by 45° and by 40° is a corner, 30° is a curve.
+#[test]
+fn blunt_corners_stay_and_curves_are_cut_evenly() {
+    for (corners, stay) in [(8, true), (9, true), (12, false)] {
+        let polygon = circle([0.5, -0.25], 1.0, corners);
+        let rings = outline::resampled(std::slice::from_ref(&polygon), 0.45).expect("a polygon");
+        let kept = polygon.points.iter().filter(|point| rings[0].points.contains(point)).count();
+        assert_eq!(kept == corners as usize, stay, "{kept} of {corners}");
+    }
+}
+
 #[test]
 fn a_spacing_that_makes_edges_cross_is_refused() {
     // A square hole that nearly fills its square: between them there is no room for long chords.

@@ -6,6 +6,7 @@ use crate::build::build_colliders;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
+use crate::schema::MOST_SUBSTEPS;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
 use std::collections::BTreeMap;
@@ -209,12 +210,12 @@ impl<const D: usize> World<D> {
                 Ok((Before::Surroundings(before), Touched::All))
             }
             ["time", "substeps"] => match value {
-                Value::Integer(n) if (1..=1_000_000).contains(&n) => {
+                Value::Integer(n) if (1..=i64::from(MOST_SUBSTEPS)).contains(&n) => {
                     let before = self.blueprint.time;
                     self.blueprint.time.substeps = n as u32;
                     Ok((Before::Time(before), Touched::Bodies(Vec::new())))
                 }
-                other => Err(refuse(format!("is {other}; allowed: a whole number from 1 to 1000000"))),
+                other => Err(refuse(format!("is {other}; allowed: a whole number from 1 to {MOST_SUBSTEPS}"))),
             },
             _ => Err(refuse(format!("allowed: {FORMS}"))),
         }

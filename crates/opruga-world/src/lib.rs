@@ -6,6 +6,7 @@ mod bytes;
 mod changes;
 mod commands;
 mod compiled_once;
+mod crushed;
 pub mod error;
 mod frame_hash;
 mod inputs;

@@ -10,6 +10,9 @@ pub use actions::{COMMANDS, LOADS, PROBE};
 
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
+/// The most steps of the integrator in a frame.
+pub const MOST_SUBSTEPS: u32 = 1_000_000;
+
 /// One table of a scene: its plain fields and its structured ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
@@ -166,7 +169,7 @@ pub const TIME: Section = Section {
             ),
             Field::new(
                 "substeps",
-                Allowed::Integer { least: 1, greatest: 1_000_000 },
+                Allowed::Integer { least: 1, greatest: MOST_SUBSTEPS as i64 },
                 "",
                 Default::Integer(16),
                 "The number of steps of the integrator in a frame.",

@@ -248,6 +248,7 @@ impl<const D: usize> World<D> {
         let damped =
             self.energy.loss_integrator > 0.0 && self.islands.iter().all(|island| island.integrator.damps_by_itself());
         self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE && !damped);
+        self.warn_of_crushed_bodies();
         self.take_away_what_is_far()
     }
 

@@ -81,6 +81,18 @@ fn outlines_have_their_areas_pieces_and_holes() {
     }
 }
 
+/// The tip of the heart turns by 40°: at every spacing a node lies in it, and the skin reaches as far down as the drawing.
+#[test]
+fn the_heart_keeps_its_tip_at_every_spacing() {
+    // From its path: 32.069 of 35.77 units high, so that its middle is at half of that over the tip.
+    let tip = -0.5 * (34.034 - 1.965) / (35.885 - 0.115);
+    for spacing in [0.02, 0.03, 0.05, 0.06, 0.07, 0.1, 0.2] {
+        let skin = plane(&format!("kind = \"svg\", file = \"shapes/heart.svg\", spacing = {spacing}, size = 1.0"));
+        let lowest = skin.positions.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min);
+        assert!((lowest - tip).abs() < 1e-4, "{spacing}: {lowest} instead of {tip}");
+    }
+}
+
 /// Squares around every outline hold together, and carry it with the area that it was drawn with.
 #[test]
 fn lattices_of_squares_carry_the_outlines_as_they_were_drawn() {

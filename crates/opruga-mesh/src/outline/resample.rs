@@ -2,13 +2,14 @@
 
 use super::{OutlineError, Ring, distance};
 
-/// A turn by more than this within one edge length is a corner: cos 45°.
-const CORNER_COSINE: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by no more than 40°, a
+/// regular octagon by 45°; a circle, cut into the twelve edges or more in which turns are looked for, by 30° at most.
+const CORNER_COSINE: f64 = 0.819_152_044_288_991_8;
 
 /// Rings with points about `spacing` [m] apart along them: corners stay, curves between them are cut into equal lengths, detail finer than the
 /// spacing is left out; at least 3 points each.
 ///
-/// A corner is a point where the directions half a spacing before and behind differ by more than 45°, and more than those around it; or one in which
+/// A corner is a point where the directions half a spacing before and behind differ by more than 35°, and more than those around it; or one in which
 /// rings touched before [`super::joined`] took them apart.
 ///
 /// # Errors

@@ -436,7 +436,7 @@ pub(super) const SCENES: &[(&str, &str)] = &[
         "implicit-integrators",
         "ista lopta na njihaju pod svakim implicitnim integratorom: što prigušuju, a nitko ih ne pita",
     ),
-    ("integrators", "ista lopta na njihaju pod svakim integratorom: eksplicitni Euler joj ne da mira"),
+    ("integrators", "ista lopta na njihaju pod svakim eksplicitnim integratorom: eksplicitni Euler joj ne da mira"),
     ("jelly", "želei od konačnih elemenata"),
     ("leaking-tyre", "guma koja pušta"),
     ("million-vertices", "27.778 lopti, milijun vrhova"),

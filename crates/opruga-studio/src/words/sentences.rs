@@ -121,6 +121,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "`arc_length` je zadan, a tijelo ne drže pribodene točke, i ništa ga ne pritišće na prepreke gdje krivulja počinje, bez \
          ikakva tereta; dopušteno: pribodene točke koje ga drže, ili cijeli teret odjednom, u koliko god `load_steps` treba",
     ),
+    (
+        "a frame has at most {} substeps: a shorter one, or another integrator",
+        "slika ima najviše {} podkoraka: kraća slika, ili drugi integrator",
+    ),
     ("more substeps, or `accuracy = \"exact\"`", "više podkoraka, ili `accuracy = \"exact\"`"),
     (
         "more substeps, or more `iterations`; the step was already halved down to 1/256",
@@ -229,6 +233,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "tijelo `{}` počinje u prepreci {} ({}): {~}, najdublji je čvor {}, {} m; {~}",
     ),
     ("moved by ({}) m it would be free", "pomaknuto za ({}) m bilo bi slobodno"),
+    (
+        "at t = {} s obstacles {} ({}) and {} ({}) left body `{}` no room: node {} lay {} m inside the first, counted per frame \
+         and body; obstacles that are led must not meet",
+        "u t = {} s prepreke {} ({}) i {} ({}) nisu ostavile mjesta tijelu `{}`: čvor {} bio je {} m u prvoj, brojeno po slici \
+         i tijelu; vođene prepreke ne smiju se sresti",
+    ),
     ("no shift along the surfaces around it would free it", "nijedan pomak duž ploha oko njega ne bi ga oslobodio"),
     (
         "`{}` has no stable step for body `{}` (ω = {} rad/s): its fastest motion grows as exp({} t)",

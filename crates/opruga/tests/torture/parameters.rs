@@ -1,0 +1,198 @@
+//! Rows 43 to 58: parameters that make no sense, and odd ones that do.
+
+use super::*;
+
+/// A block of finite elements that falls, with these fields of their model.
+fn solid(fields: &str) -> String {
+    format!("{}{}", head(1.0 / 60.0, 64, -9.81, "symplectic_euler"), block(fields))
+}
+
+fn block(fields: &str) -> String {
+    format!(
+        "[[body]]\nname = \"s\"\nmass = 1\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2] }}\n\
+         simplices = true\n\
+         models = [{{ kind = \"fem\", {fields} }}]\n"
+    )
+}
+
+/// Rows 43 to 58: what is said about parameters that make no sense.
+#[test]
+fn parameters_that_make_no_sense() {
+    let chain = |points: &str, models: &str| {
+        format!(
+            "{}[[body]]\nname = \"c\"\nmass = 1\nshape = {{ kind = \"polyline\", points = {points} }}\nmodels = [{models}]\n",
+            head(1.0 / 60.0, 16, 0.0, "symplectic_euler")
+        )
+    };
+    let springs = "{ kind = \"mass_spring\", stiffness = 10.0 }";
+    let cases = [
+        // 43: springs without length
+        (chain("[[0, 0], [0, 0]]", springs), "error[scene.shape]: points 0 and 1 follow each other at the same place"),
+        (
+            chain("[[0, 0], [1, 0], [1, 0]]", springs),
+            "error[scene.shape]: points 1 and 2 follow each other at the same place",
+        ),
+        // 47: Poisson's ratio of finite elements, 46 and 48: their modulus
+        (solid("youngs_modulus = 1e5, poissons_ratio = 0.5"), "error[scene.range]: `poissons_ratio` is 0.5"),
+        (solid("youngs_modulus = 1e5, poissons_ratio = -1"), "error[scene.range]: `poissons_ratio` is -1"),
+        (solid("youngs_modulus = 1e5, poissons_ratio = 0.6"), "error[scene.range]: `poissons_ratio` is 0.6"),
+        (
+            solid("youngs_modulus = 1e5, poissons_ratio = 0.4999999").replace("mass = 1", "mass = 1\norder = 1"),
+            "`poissons_ratio` is 0.4999999; allowed for linear triangles: at most 0.45",
+        ),
+        (solid("youngs_modulus = 0"), "error[scene.range]: `youngs_modulus` is 0"),
+        (solid("youngs_modulus = -1"), "error[scene.range]: `youngs_modulus` is -1"),
+        (solid("youngs_modulus = 1e300"), "not_finite"),
+        (solid("youngs_modulus = 1e30"), "step.unstable: the step h = "),
+        // 44, 46: masses and constants
+        (ring(16, BALL, "").replace("mass = 1", "mass = 0"), "error[scene.range]: `mass` is 0"),
+        (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
+        (
+            ring(16, "{ kind = \"mass_spring\" }", ""),
+            "model.one_of: body `b`: mass_spring: exactly one of `stiffness` and `modulus` must be given",
+        ),
+        (
+            ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
+            "exactly one of `stiffness` and `modulus` must be given",
+        ),
+        (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
+        (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
+        (ring(16, BALL, &FLOOR.replace("normal = [0, 1]", "normal = [0, 0]")), "normal"),
+        // 48, 50: steps that are too long, told before the run
+        (
+            ring(1, BALL, ""),
+            "step.unstable: the step h = 0.0166667 s of `symplectic_euler` is unstable for body `b`: the largest stable step is ",
+        ),
+        (
+            ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
+            "step.not_finite: body `b`: stability: the forces around the state are not finite",
+        ),
+        (ring(16, "{ kind = \"mass_spring\", stiffness = 1, damping = 1e12 }", ""), "step.unstable: the step h = "),
+        // 53: gas
+        (ring(16, "{ kind = \"pressure\", nRT = -1 }", ""), "error[scene.range]: `nRT` is -1"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, gamma = 1 }", ""), "error[scene.range]: `gamma` is 1"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, ramp = -1 }", ""), "error[scene.range]: `ramp` is -1"),
+        (ring(16, "{ kind = \"pressure\" }", ""), "nRT"),
+        (ring(16, "{ kind = \"pressure\", nRT = 1, pressure = 1 }", ""), "nRT"),
+        (chain("[[0, 0], [1, 0], [1, 1]]", "{ kind = \"pressure\", nRT = 1 }"), "pressure"),
+        // 56: gravity
+        (ring(16, BALL, "").replace("gravity = [0, -9.81]", "gravity = [0, inf]"), "error[scene.not_finite]"),
+    ];
+    for (text, expected) in cases {
+        let said = said(&text);
+        println!("{said}\n");
+        assert!(said.contains(expected), "expected {expected}, said: {said}\n{text}");
+        assert!(!said.contains("NaN") && said.len() < 2000, "{said}");
+    }
+}
+
+/// Rows 44 to 58: what looks odd and runs.
+#[test]
+fn parameters_that_are_odd_but_fine() {
+    let heavy = |mass: &str, x: f64| {
+        format!(
+            "[[body]]\nname = \"m{mass}\"\nmass = {mass}\nposition = [{x:?}, 0]\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 12 }}\n"
+        )
+    };
+    let cases = [
+        // 43: a rest length of nothing: the springs draw themselves together until their ends coincide
+        ring(64, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0, rest_scale = 0 }", FLOOR),
+        // 47, 48: nothing is too soft; a body of 1 Pa beside one of 10¹² Pa
+        solid("youngs_modulus = 1e-300"),
+        solid("youngs_modulus = 1e5, poissons_ratio = 0.4999999")
+            .replace("symplectic_euler", "backward_euler")
+            .replace("substeps = 64", "substeps = 1"),
+        format!(
+            "{}{}",
+            solid("youngs_modulus = 1"),
+            block("youngs_modulus = 1")
+                .replace("name = \"s\"", "name = \"hard\"")
+                .replace("youngs_modulus = 1", "youngs_modulus = 1e12")
+        )
+        .replace("symplectic_euler", "backward_euler")
+        .replace("substeps = 64", "substeps = 1"),
+        // 43: a rest length of nearly nothing, 45: masses of 1e-9 kg beside 1000 kg
+        ring(64, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0, rest_scale = 1e-6 }", FLOOR),
+        ring(16, BALL, &format!("{}{}", heavy("1e-9", 3.0), heavy("1e3", 6.0))),
+        // 48: nothing is too soft
+        ring(16, "{ kind = \"mass_spring\", stiffness = 1e-300 }", FLOOR),
+        ring(16, "{ kind = \"mass_spring\", stiffness = 0 }", FLOOR),
+        // 53: no ramp, hardly any gas, a vacuum that is pressed flat
+        ring(32, "{ kind = \"mass_spring\", stiffness = 600.0 }, { kind = \"pressure\", nRT = 1e-12 }", FLOOR),
+        ring(
+            64,
+            "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 1, ambient = 200.0 }",
+            FLOOR,
+        ),
+        // 56: no gravity and a great deal
+        ring(32, BALL, FLOOR).replace("-9.81", "0"),
+        ring(32, BALL, FLOOR).replace("-9.81", "-1e6"),
+        // 58: all nodes held; neighbours forced apart; a node led through the floor
+        ring(32, BALL, &format!("pin = [{{ select = {{ all = true }} }}]\n{FLOOR}")),
+        ring(
+            64,
+            BALL,
+            &format!(
+                "pin = [{{ select = {{ node = 0 }}, motion = [[0, 0, 0], [1, 9, 0]] }}, {{ select = {{ node = 1 }}, motion = [[0, 0, 0], [1, -9, 0]] }}]\n{FLOOR}"
+            ),
+        ),
+        ring(64, BALL, &format!("pin = [{{ select = {{ node = 18 }}, motion = [[0, 0, 0], [1, 0, -3]] }}]\n{FLOOR}")),
+        // 70: ice and glue
+        ring(32, BALL, &FLOOR.replace("0.5", "0")),
+        ring(32, BALL, &FLOOR.replace("0.5", "1e6")),
+        // 71: the same node pinned twice, loads that cancel
+        ring(
+            32,
+            BALL,
+            "[[load]]\nkind = \"force\"\nbody = \"b\"\nvalue = [1e3, 0]\n[[load]]\nkind = \"force\"\nbody = \"b\"\nvalue = [-1e3, 0]\n",
+        ),
+    ];
+    for text in cases {
+        let mut world = built(plane(&text));
+        for _ in 0..90 {
+            world.frame().unwrap_or_else(|e| panic!("{e}\n{text}"));
+        }
+        assert!(finite(&world), "{text}");
+    }
+}
+
+/// Row 50: integrators without any stable step say so, and how fast it grows.
+#[test]
+fn integrators_without_a_stable_step_warn() {
+    for rule in ["explicit_euler", "heun"] {
+        let text = ring(64, "{ kind = \"mass_spring\", stiffness = 600.0 }", "").replace("symplectic_euler", rule);
+        let world = built(plane(&text));
+        let warnings = world.warnings();
+        let warning = warnings.iter().find(|w| w.code == "step.no_stable_step").expect("a warning");
+        let expected = format!("`{rule}` has no stable step for body `b` (ω = ");
+        assert!(
+            warning.message.starts_with(&expected) && warning.message.contains("grows as exp("),
+            "{}",
+            warning.message
+        );
+    }
+}
+
+/// Row 54: a ring that is turned inside out is counted, and no energy is made of it.
+#[test]
+fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
+    let models =
+        "{ kind = \"mass_spring\", stiffness = 600.0 }, { kind = \"pressure\", nRT = 30.0, largest_pressure = 500.0 }";
+    let text =
+        ring(512, models, "").replace("gravity = [0, -9.81]", "gravity = [0, 0]").replace("symplectic_euler", "verlet");
+    let mut world = built(plane(&text));
+    for node in 0..24 {
+        let [x, y] = world.position(0, node);
+        world.place_node(0, node, [-0.9 * x, y], [0.0; 2]).expect("a node");
+    }
+    assert!(world.readings(0)[0].1 < 0.0, "{:?}", world.readings(0));
+    let start = world.energy().total();
+    for _ in 0..120 {
+        world.frame().expect("a frame");
+        let now = world.energy();
+        assert!((now.total() - start).abs() < 1e-2 * (start.abs() + now.kinetic), "{now:?} of {start} J");
+    }
+    let warnings = world.warnings();
+    let warning = warnings.iter().find(|w| w.code == "pressure.inverted").expect("a warning");
+    assert!(warning.count > 0 && warning.message.contains("inside out"), "{warning:?}");
+}

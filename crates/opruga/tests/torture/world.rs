@@ -1,0 +1,88 @@
+//! Rows 73 and 78: bodies that come and go, threads that change.
+
+use super::*;
+use opruga::WorldError;
+
+/// Row 78: numbers of threads.
+#[test]
+fn numbers_of_threads() {
+    let scene = || plane(&ring(32, BALL, FLOOR));
+    for threads in [0, 257, 10_000] {
+        let error = World::new(scene(), Options { threads, ..Options::default() }).expect_err("no such number");
+        assert_eq!(
+            error,
+            WorldError::Path { path: "threads".into(), message: format!("is {threads}; allowed: 1 to 256") }
+        );
+    }
+    let hash = |threads| {
+        let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");
+        frames(&mut world, 30);
+        world.state_hash()
+    };
+    assert_eq!(hash(1), hash(256));
+}
+
+/// Row 78: threads change between frames, by way of a snapshot: the bits stay.
+#[test]
+fn threads_change_in_the_middle_of_a_run() {
+    let scene = || plane(&ring(32, BALL, &format!("copies = {{ count = [5], spacing = [2, 0] }}\n{FLOOR}")));
+    let mut one = built(scene());
+    frames(&mut one, 60);
+    let mut bytes = built(scene()).snapshot();
+    for threads in [2, 7, 1, 5] {
+        let mut world = World::new(scene(), Options { threads, ..Options::default() }).expect("a world");
+        world.restore(&bytes).expect("its own snapshot");
+        frames(&mut world, 15);
+        bytes = world.snapshot();
+    }
+    let mut last = built(scene());
+    last.restore(&bytes).expect("its own snapshot");
+    assert_eq!((last.state_hash(), last.energy()), (one.state_hash(), one.energy()));
+}
+
+/// Row 73: while a frame runs nobody can add or take bodies away: a law that wants to is no program
+/// (`World::add_force` shows it); between frames both are as good as in a scene.
+#[test]
+fn bodies_come_and_go_between_frames_without_a_trace_on_others() {
+    let scene = || plane(&ring(32, BALL, FLOOR));
+    let mut quiet = built(scene());
+    frames(&mut quiet, 60);
+    let mut busy = built(scene());
+    let body = busy.blueprint().bodies[0].clone();
+    for k in 0..60 {
+        let mut guest = body.clone();
+        guest.name = "guest".into();
+        guest.translation[0] += 5.0;
+        let number = busy.add_body(guest.clone()).expect("a body");
+        let handle = busy.handle(number).expect("it is there");
+        assert!(busy.add_body(guest).is_err(), "the name is taken");
+        assert_eq!(busy.islands(), 2);
+        busy.frame().expect("a frame");
+        busy.remove_body("guest").expect("it is there");
+        assert!(busy.resolve(handle).is_none() && busy.remove_body("guest").is_err(), "{k}");
+    }
+    for node in 0..24 {
+        assert_eq!(busy.position(0, node), quiet.position(0, node));
+        assert_eq!(busy.velocity(0, node), quiet.velocity(0, node));
+    }
+}
+
+/// Bodies that a command adds are drawn from then on, in a resumed world too.
+#[test]
+fn bodies_that_come_later_are_drawn() {
+    let late = "[[command]]\ndo = \"add\"\nat = 0.05\nbody = { name = \"late\", mass = 1, position = [3, 1], \
+                shape = { kind = \"ring\", radius = 0.5, vertices = 7 } }\n";
+    let scene = || plane(&ring(32, BALL, late));
+    let mut world = built(scene());
+    let scenery = opruga::pictures::Scenery::new(&world);
+    let drawn = |scenery: &opruga::pictures::Scenery, world: &mut World<2>| {
+        scenery.picture(&scenery.capture(world, false)).bodies.len()
+    };
+    assert_eq!(drawn(&scenery, &mut world), 1);
+    frames(&mut world, 6);
+    assert_eq!(drawn(&scenery, &mut world), 2);
+    let bytes = world.snapshot();
+    let mut other = built(scene());
+    other.restore(&bytes).expect("its own snapshot");
+    assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &mut other), 2);
+}
