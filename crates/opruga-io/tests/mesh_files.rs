@@ -188,6 +188,10 @@ fn malformed_files_of_others_are_refused_with_their_line() {
         let error = body::<3>(name, &bytes(name), Mending::default()).unwrap_err();
         assert_eq!((error.code, error.line), (code, place), "{error}");
     }
+    // What is curved is refused with what can be read instead.
+    let curved = body::<3>("mfem/mobius-strip.mesh", &bytes("mfem/mobius-strip.mesh"), Mending::default()).unwrap_err();
+    assert_eq!(curved.allowed.as_deref(), Some("`vertices` with coordinates"));
+    assert!(curved.hint.is_some_and(|hint| hint.contains("Gmsh and VTK")));
 }
 
 /// Every beginning of every good Gmsh file is refused, with a line of text or a byte of binary files.

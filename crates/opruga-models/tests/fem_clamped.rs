@@ -2,13 +2,13 @@
 
 mod support;
 
-use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink};
+use opruga_core::potential::{Definiteness, Model, Sink};
 use opruga_core::spec::Values;
-use opruga_core::state::{Columns, Layout, Parameter, View};
-use opruga_math::{Column, Simd};
+use opruga_core::system::Stage;
 use opruga_mesh::Mesh;
 use opruga_models::fem::FemModel as Fem;
 use opruga_models::fem::materials::NAMES;
+use support::system;
 
 /// Blocks in the order in which they come.
 struct List<const D: usize>(Vec<[[f64; D]; D]>);
@@ -20,24 +20,12 @@ impl<const D: usize> Sink<D> for List<D> {
 }
 
 /// Both Hessians of a body that is turned and stretched in every direction.
-fn hessians<const D: usize>(mesh: &Mesh<D>, values: &Values, turned: bool) -> [Vec<f64>; 2]
+fn hessians<const D: usize>(mesh: &Mesh<D>, values: Values, turned: bool) -> [Vec<f64>; 2]
 where
     Fem: Model<D>,
 {
-    let mass = Parameter::uniform(1.0);
-    let ingredients = Ingredients {
-        mesh,
-        layout: Layout::Single,
-        values: &[values],
-        mass: &mass,
-        densities: None,
-        thickness: 1.0,
-        gravity: [0.0; D],
-    };
-    let solid: Box<dyn Potential<D>> = Fem.build(&ingredients).unwrap();
+    let mut system = system(mesh, &[(&Fem as &dyn Model<D>, values)]);
     let (c, s) = if turned { (0.6, 0.8) } else { (1.0, 0.0) };
-    let places = Layout::Single.places(mesh.nodes());
-    let (mut x, v) = (Columns::<D>::zeros(places), Columns::<D>::zeros(places));
     for (k, p) in mesh.positions.iter().enumerate() {
         let mut q = *p;
         for d in 0..D {
@@ -46,15 +34,15 @@ where
         q[0] += 0.03 * p[1];
         let (along, across) = (q[0], q[1]);
         (q[0], q[1]) = (c * along - s * across, s * along + c * across);
-        x.set(k, q);
+        system.state.x.set(k, q);
     }
-    let view =
-        View { x: x.slices(), v: v.slices(), nodes: mesh.nodes(), layout: Layout::Single, time: 0.0, threads: 1 };
-    let mut scratch = Column::zeros(solid.scratch_len());
-    solid.prepare(Simd::best(), &view, &[], &mut scratch).unwrap();
+    system.forces(false).unwrap();
+    let view = system.view(Stage::Current, system.time);
     [Definiteness::Exact, Definiteness::Clamped].map(|keep| {
         let mut list = List(Vec::new());
-        solid.hessian(&view, &scratch, keep, &mut list);
+        for member in &system.members {
+            member.potential.hessian(&view, &member.scratch, keep, &mut list);
+        }
         list.0.into_iter().flatten().flatten().collect()
     })
 }
@@ -65,7 +53,7 @@ where
 {
     for &material in NAMES {
         let values = values!(fem, material: material, youngs_modulus: 900.0, poissons_ratio: 0.3, plane: plane);
-        let [exact, clamped] = hessians(mesh, &values, material != "linear");
+        let [exact, clamped] = hessians(mesh, values, material != "linear");
         let largest = exact.iter().fold(0.0, |most: f64, k| if k.abs() > most { k.abs() } else { most });
         assert!(largest > 0.0 && exact.len() == clamped.len());
         for (exact, clamped) in exact.iter().zip(&clamped) {

@@ -128,12 +128,18 @@ fn one_large_solid_has_the_same_bits_on_any_number_of_threads() {
         (boxes, "verlet", "", 6),
         (quadratic, "backward_euler", "exact", 1),
         (cube(10), "newmark", "exact", 1),
+        // With volumes of nodes.
+        (cube(10), "verlet", "nodal_volume", 6),
     ] {
         assert!(mesh.nodes() >= 1000, "{} nodes are not shared", mesh.nodes());
-        let more = [("damping", Value::Number(1e-3)), ("material", text("fixed_corotated"))];
-        let mut blueprint = clamped(mesh, rule, accuracy, 1e4, &more);
+        let nodal = accuracy == "nodal_volume";
+        let mut more = vec![("damping", Value::Number(1e-3)), ("material", text("fixed_corotated"))];
+        if nodal {
+            more.extend([("locking", text(accuracy)), ("poissons_ratio", Value::Number(0.47))]);
+        }
+        let mut blueprint = clamped(mesh, rule, if nodal { "" } else { accuracy }, 1e4, &more);
         let spec = Registry::<3>::default().integrator(rule).expect("an integrator").spec();
-        if accuracy.is_empty() {
+        if accuracy.is_empty() || nodal {
             blueprint.time.substeps = 40;
         } else {
             blueprint.integrator.set(spec, "linear_solver", text("conjugate_gradients"), 3).expect("a field");

@@ -52,7 +52,8 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             "mfem_mesh_end" => {}
             "nodes" => {
                 let error = scanner.error("mfem.curved", "curved elements (`nodes`) cannot be read", from);
-                return Err(error.value("nodes").allowed("`vertices` with coordinates").hint("save a straight mesh"));
+                let hint = "save the mesh without `nodes`, its sides straight; curved cells of second order can be read from Gmsh and VTK files";
+                return Err(error.value("nodes").allowed("`vertices` with coordinates").hint(hint));
             }
             other => {
                 let error = scanner.error(SYNTAX, format!("`{}` is no section that can be read", visible(other)), from);

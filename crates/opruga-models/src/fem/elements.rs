@@ -24,7 +24,7 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     }
     /// Whether ∂x/∂ξ is made of differences to the first node.
     const SIMPLEX: bool;
-    /// Whether bending has the strain that [`super::hourglass`] assumes.
+    /// Whether bending has the strain that [`super::boxes`] assumes.
     const BOX: bool = false;
 }
 

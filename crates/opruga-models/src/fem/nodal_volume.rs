@@ -8,13 +8,16 @@
 //!
 //! In every cell that is a stress p in all directions, the mean of κₐ (Jₐ − 1) over its corners, with P = p cof F. Under `linear` det F is 1 + tr (F − 1).
 //!
+//! All cells are asked for their J first, then every node sums up those around it, then cells are worked on as they always are, with
+//! p cof F beside the stress of their law ([`super::pressures`]).
+//!
 //! Its second derivatives tie every node to those of all cells that share a cell with it: wide rows, no matrix of cells.
 
-use super::boxes::beyond;
-use super::material::{Tangent, add_cofactor_derivative, no_tangent};
+use super::numbers::beyond;
 use super::section::rest_gradient;
-use opruga_core::potential::{CellState, Definiteness, Sink};
+use opruga_core::potential::{CellState, Sink};
 use opruga_core::state::{Layout, View};
+use opruga_core::threads::each_part;
 use opruga_math::WIDTH;
 use opruga_math::matrix::{self, Matrix};
 
@@ -36,6 +39,32 @@ pub(super) struct NodalVolumes<const D: usize> {
     /// The cells around each node: where its list begins, and the lists.
     start: Vec<u32>,
     around: Vec<u32>,
+    /// Where J − 1 of these lies, once it is known.
+    grown: Vec<u32>,
+    /// Where the energies and pressures of every block of nodes begin.
+    starts: Vec<usize>,
+}
+
+/// Nodes that one thread works on at a time.
+const BLOCK: usize = 512;
+
+/// Pressures of nodes [Pa].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pressures<'a> {
+    scratch: &'a [f64],
+    bodies: usize,
+}
+
+impl<'a> Pressures<'a> {
+    pub(super) fn is_empty(&self) -> bool {
+        self.scratch.is_empty()
+    }
+    /// Those of a node, body by body.
+    #[inline(always)]
+    pub(super) fn of(&self, node: usize) -> &'a [f64] {
+        let block = node / BLOCK * (WIDTH + BLOCK * self.bodies) + WIDTH;
+        &self.scratch[block + node % BLOCK * self.bodies..][..self.bodies]
+    }
 }
 
 /// A cell.
@@ -70,6 +99,8 @@ impl<const D: usize> NodalVolumes<D> {
             moduli: vec![0.0; nodes * bodies],
             start: vec![0; nodes + 1],
             around: Vec::new(),
+            grown: Vec::new(),
+            starts: (0..nodes.div_ceil(BLOCK)).map(|block| block * (WIDTH + BLOCK * bodies)).collect(),
         };
         // ∂N/∂ξ of the reference simplex.
         let reference: [[f64; D]; N] = core::array::from_fn(|a| {
@@ -118,7 +149,7 @@ impl<const D: usize> NodalVolumes<D> {
         &cell.nodes[..D + 1]
     }
 
-    /// F of a cell of a body; without rotations the unit matrix, whose cofactors are those of the law of small strain.
+    /// F of a cell of a body.
     fn gradient(&self, view: &View<D>, cell: usize, body: usize) -> Matrix<f64, D> {
         let nodes = self.cells[cell].nodes;
         let at = |a: usize, i: usize| view.x[i][self.layout.place(nodes[a] as usize, body)];
@@ -134,14 +165,9 @@ impl<const D: usize> NodalVolumes<D> {
         out
     }
 
-    /// J − 1 of a cell, and ∂J/∂F.
-    fn volume(&self, view: &View<D>, cell: usize, body: usize) -> (f64, Matrix<f64, D>) {
-        let f = self.gradient(view, cell, body);
-        if !self.turns {
-            return (matrix::trace(&f) - D as f64, matrix::identity());
-        }
-        let cofactors = matrix::cofactor(&f);
-        (matrix::determinant_by(&f, &cofactors) - 1.0, cofactors)
+    /// ∂J/∂F of a cell.
+    fn cofactors(&self, view: &View<D>, cell: usize, body: usize) -> Matrix<f64, D> {
+        if self.turns { matrix::cofactor(&self.gradient(view, cell, body)) } else { matrix::identity() }
     }
 
     /// ∂J/∂x of a corner of a cell.
@@ -150,88 +176,92 @@ impl<const D: usize> NodalVolumes<D> {
         core::array::from_fn(|i| (0..D).map(|j| cofactors[i][j] * own[j]).sum())
     }
 
-    /// Numbers that [`NodalVolumes::evaluate`] leaves: the pressures of the nodes, and the forces on them.
-    pub(super) fn scratch_len(&self) -> usize {
-        self.nodes * self.bodies() * (1 + D)
+    /// Says where J − 1 of the packs of cells lies in what the cells of a solid leave.
+    pub(super) fn locate(&mut self, grown_at: impl Fn(usize) -> Option<usize>) {
+        let place = |cell: u32| {
+            let (pack, lane) = match self.layout {
+                Layout::Single => (cell as usize / WIDTH, cell as usize % WIDTH),
+                Layout::Batch => (cell as usize, 0),
+            };
+            (grown_at(pack).unwrap_or(0) + lane) as u32
+        };
+        self.grown = self.around.iter().map(|cell| place(*cell)).collect();
     }
 
-    /// κₐ (Jₐ − 1) of all nodes, node by node and body by body; returns the energies of the bodies [J].
-    fn pressures(&self, view: &View<D>, pressures: &mut [f64]) -> [f64; WIDTH] {
+    /// Numbers that [`NodalVolumes::press`] leaves: for every block of nodes energies and pressures.
+    pub(super) fn scratch_len(&self) -> usize {
+        self.starts.len() * (WIDTH + BLOCK * self.bodies())
+    }
+
+    /// κₐ (Jₐ − 1) of all nodes, of what their cells have grown by; returns the energies of the bodies [J].
+    pub(super) fn press(&self, threads: usize, grown: &[f64], scratch: &mut [f64]) -> [f64; WIDTH] {
         let bodies = self.bodies();
-        let mut energy = [0.0; WIDTH];
-        pressures.fill(0.0);
-        for (body, energy) in energy.iter_mut().enumerate().take(bodies) {
-            for (k, cell) in self.cells.iter().enumerate() {
-                let (grown, _) = self.volume(view, k, body);
-                for node in self.corners(cell) {
-                    pressures[*node as usize * bodies + body] += cell.share * grown;
+        each_part(threads, scratch, &self.starts, |block, scratch| {
+            let (energies, pressures) = scratch.split_at_mut(WIDTH);
+            energies.fill(0.0);
+            let nodes = block * BLOCK..((block + 1) * BLOCK).min(self.nodes);
+            for (node, pressures) in nodes.zip(pressures.chunks_exact_mut(bodies)) {
+                let list = self.start[node] as usize..self.start[node + 1] as usize;
+                let mut sums = [0.0; WIDTH];
+                for (cell, at) in self.around[list.clone()].iter().zip(&self.grown[list]) {
+                    let share = self.cells[*cell as usize].share;
+                    for (sum, grown) in sums.iter_mut().zip(&grown[*at as usize..][..bodies]) {
+                        *sum += share * grown;
+                    }
+                }
+                let volume = self.volumes[node];
+                for (body, pressure) in pressures.iter_mut().enumerate() {
+                    let grown = if volume > 0.0 { sums[body] / volume } else { 0.0 };
+                    *pressure = self.moduli[node * bodies + body] * grown;
+                    energies[body] += 0.5 * volume * *pressure * grown;
                 }
             }
-            for node in (0..self.nodes).filter(|node| self.volumes[*node] > 0.0) {
-                let (at, volume) = (node * bodies + body, self.volumes[node]);
-                let grown = pressures[at] / volume;
-                pressures[at] = self.moduli[at] * grown;
-                *energy += 0.5 * volume * pressures[at] * grown;
+        });
+        let mut energy = [0.0; WIDTH];
+        for start in &self.starts {
+            for (sum, own) in energy.iter_mut().zip(&scratch[*start..*start + WIDTH]) {
+                *sum += own;
             }
         }
         energy
+    }
+
+    /// What [`NodalVolumes::press`] has left.
+    pub(super) fn pressures<'a>(&self, scratch: &'a [f64]) -> Pressures<'a> {
+        Pressures { scratch, bodies: self.bodies() }
     }
 
     /// The pressure of a cell: the mean of its corners'.
-    fn pressure(&self, cell: &Simplex, pressures: &[f64], body: usize) -> f64 {
-        let sum: f64 = self.corners(cell).iter().map(|node| pressures[*node as usize * self.bodies() + body]).sum();
+    fn pressure(&self, cell: &Simplex, pressures: &Pressures<'_>, body: usize) -> f64 {
+        let sum: f64 = self.corners(cell).iter().map(|node| pressures.of(*node as usize)[body]).sum();
         sum / (D + 1) as f64
     }
 
-    /// Stresses in all directions, and forces, of all nodes; returns the energies of the bodies [J].
-    pub(super) fn evaluate(&self, view: &View<D>, scratch: &mut [f64]) -> [f64; WIDTH] {
-        let bodies = self.bodies();
-        let (pressures, forces) = scratch.split_at_mut(self.nodes * bodies);
-        let energy = self.pressures(view, pressures);
-        forces.fill(0.0);
-        for body in 0..bodies {
-            for (k, cell) in self.cells.iter().enumerate() {
-                let measure = cell.share * (D + 1) as f64;
-                let pressure = measure * self.pressure(cell, pressures, body);
-                let (_, cofactors) = self.volume(view, k, body);
-                for (corner, node) in self.corners(cell).iter().enumerate() {
-                    let slope = self.slope(k, corner, &cofactors);
-                    for d in 0..D {
-                        forces[(*node as usize * D + d) * bodies + body] -= pressure * slope[d];
-                    }
-                }
-            }
-        }
-        energy
-    }
-
-    /// The force on a node of a body, after [`NodalVolumes::evaluate`].
-    pub(super) fn force(&self, scratch: &[f64], node: usize, body: usize) -> [f64; D] {
-        let bodies = self.bodies();
-        let forces = &scratch[self.nodes * bodies..];
-        core::array::from_fn(|d| forces[(node * D + d) * bodies + body])
-    }
-
-    /// Delivers the second derivatives: κ V ∂J/∂x ∂J/∂x of every node, and what the pressures make of those of det F.
-    pub(super) fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
+    /// Delivers κ V ∂J/∂x ∂J/∂x of every node. What the pressures make of the second derivatives of J comes with the cells.
+    pub(super) fn hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let bodies = self.bodies();
         // Where a node lies in the list of those around another.
         let mut seat = vec![u32::MAX; self.nodes];
         let mut around: Vec<(usize, [f64; D])> = Vec::new();
+        let mut slopes = vec![[0.0; D]; self.slopes.len()];
         for body in 0..bodies {
+            // ∂J/∂x of the corners of all cells.
+            for (k, slopes) in slopes.chunks_exact_mut(D + 1).enumerate() {
+                let cofactors = self.cofactors(view, k, body);
+                for (corner, slope) in slopes.iter_mut().enumerate() {
+                    *slope = self.slope(k, corner, &cofactors);
+                }
+            }
             for node in (0..self.nodes).filter(|node| self.moduli[node * bodies + body] > 0.0) {
-                let cells = &self.around[self.start[node] as usize..self.start[node + 1] as usize];
                 around.clear();
-                for cell in cells {
+                for cell in &self.around[self.start[node] as usize..self.start[node + 1] as usize] {
                     let (k, own) = (*cell as usize, &self.cells[*cell as usize]);
-                    let (_, cofactors) = self.volume(view, k, body);
-                    for (corner, other) in self.corners(own).iter().enumerate() {
+                    for (other, slope) in self.corners(own).iter().zip(&slopes[k * (D + 1)..]) {
                         let other = *other as usize;
                         if seat[other] == u32::MAX {
                             seat[other] = around.len() as u32;
                             around.push((other, [0.0; D]));
                         }
-                        let slope = self.slope(k, corner, &cofactors);
                         let sum = &mut around[seat[other] as usize].1;
                         (0..D).for_each(|d| sum[d] += own.share * slope[d]);
                     }
@@ -246,45 +276,14 @@ impl<const D: usize> NodalVolumes<D> {
                 }
                 around.iter().for_each(|(other, _)| seat[*other] = u32::MAX);
             }
-            if keep == Definiteness::Exact && self.turns {
-                for k in 0..self.cells.len() {
-                    self.bend(view, scratch, k, body, sink);
-                }
-            }
-        }
-    }
-
-    /// p V ∂²J/∂x∂x of a cell.
-    fn bend(&self, view: &View<D>, scratch: &[f64], k: usize, body: usize, sink: &mut dyn Sink<D>) {
-        let cell = &self.cells[k];
-        let pressure = cell.share * (D + 1) as f64 * self.pressure(cell, scratch, body);
-        let mut tangent: Tangent<f64, D> = no_tangent();
-        add_cofactor_derivative(&mut tangent, pressure, &self.gradient(view, k, body));
-        let slopes = &self.slopes[k * (D + 1)..(k + 1) * (D + 1)];
-        for (a, left) in self.corners(cell).iter().zip(slopes) {
-            for (b, right) in self.corners(cell).iter().zip(slopes) {
-                let mut block = [[0.0; D]; D];
-                for i in 0..D {
-                    for m in 0..D {
-                        for j in 0..D {
-                            for l in 0..D {
-                                block[i][m] += left[j] * tangent[i][j][m][l] * right[l];
-                            }
-                        }
-                    }
-                }
-                sink.block(self.layout.place(*a as usize, body), self.layout.place(*b as usize, body), block);
-            }
         }
     }
 
     /// Adds its pressure to the stresses of the cells of a body.
-    pub(super) fn add_stresses(&self, view: &View<D>, body: usize, states: &mut [CellState]) {
-        let mut pressures = vec![0.0; self.nodes * self.bodies()];
-        self.pressures(view, &mut pressures);
+    pub(super) fn add_stresses(&self, pressures: &Pressures<'_>, body: usize, states: &mut [CellState]) {
         let mut of_cell = std::collections::BTreeMap::new();
         for cell in &self.cells {
-            of_cell.insert(cell.number, self.pressure(cell, &pressures, body));
+            of_cell.insert(cell.number, self.pressure(cell, pressures, body));
         }
         for state in states {
             let pressure = of_cell.get(&state.cell).copied().unwrap_or(0.0);
@@ -295,6 +294,7 @@ impl<const D: usize> NodalVolumes<D> {
     pub(super) fn heap_bytes(&self) -> usize {
         size_of::<Simplex>() * self.cells.capacity()
             + 8 * (D * self.slopes.capacity() + self.volumes.capacity() + self.moduli.capacity())
-            + 4 * (self.start.capacity() + self.around.capacity())
+            + 4 * (self.start.capacity() + self.around.capacity() + self.grown.capacity())
+            + size_of::<usize>() * self.starts.capacity()
     }
 }

@@ -6,6 +6,11 @@ use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
 
+/// λ − λ′ with λ′ = min(λ, 2μ): what resists volume so much that few cells could keep theirs and bend.
+pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
+    if lambda > 2.0 * mu { lambda - 2.0 * mu } else { 0.0 }
+}
+
 /// Poisson's ratio above which linear triangles and tetrahedra are refused.
 const LOCKS_ABOVE: f64 = 0.45;
 

@@ -3,12 +3,14 @@
 //! All of them look at a few packs of elements at a time: deformation gradients into a buffer, a law over the buffer, and
 //! what they are after out of it.
 
-use super::box_matrices::{self, Of};
-use super::boxes::{self, Deform, DeformRates, KEPT, Push, Rates};
+use super::boxes::{self, Deform, DeformRates, KEPT, Of, Push, Rates};
 use super::contraction::{Contract, ContractPrincipal};
 use super::elements::Shape;
 use super::law::{PARAMETERS, PRINCIPAL, Points};
-use super::section::{Group, MOST_PACKS, Part, Room, Section, Share, Totals};
+use super::nodal_volume::Pressures;
+use super::part::{Part, Totals};
+use super::pressures::{Means, PressedStress, PressedTangents};
+use super::section::{Group, MOST_PACKS, Room, Section, Share};
 use super::work::{Forces, Gradients, Nodes, ViscousStress, ViscousTangents, parameters_of_points};
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -32,6 +34,8 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     kept: Room<{ MOST_BOXES * KEPT * WIDTH }>,
     numbers: Room<{ MOST_PACKS * PARAMETERS * WIDTH }>,
     times: Room<{ MOST_PACKS * WIDTH }>,
+    /// Pressures of cells whose nodes resist volume.
+    pressures: Room<{ MOST_PACKS * WIDTH }>,
 }
 
 /// What a matrix is made of: tangents at the points, or what damping adds.
@@ -50,6 +54,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             kept: Room([0.0; MOST_BOXES * KEPT * WIDTH]),
             numbers: Room([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
             times: Room([0.0; MOST_PACKS * WIDTH]),
+            pressures: Room([0.0; MOST_PACKS * WIDTH]),
         };
         // What holds for all elements is written once.
         if section.uniform && section.packs() > 0 {
@@ -60,22 +65,21 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
     }
 
     fn read_parameters(&mut self, group: &Group<'_>) {
-        let (numbers, times) = (&mut self.numbers.0, &mut self.times.0);
-        if E::BOX {
-            boxes::parameters_of_points::<N>(group, numbers, times);
-        } else {
-            parameters_of_points(group, numbers, times);
-        }
+        parameters_of_points(group, E::POINTS, &mut self.numbers.0, &mut self.times.0);
     }
 
     /// Deformation gradients and parameters at the points of some packs of elements.
-    fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>) {
+    fn deform(&mut self, group: &Group<'_>, nodes: Nodes<'_, D>, pressures: Pressures<'_>) {
         let (of, shape, gradient) = (*group, PhantomData, &mut self.gradient.0);
         if E::BOX {
             let kept = &mut self.kept.0;
             self.simd.run(Deform::<E, D, N> { shape, group: of, positions: nodes, gradient, kept });
         } else {
             self.simd.run(Gradients::<E, D, N> { shape, group: of, nodes, gradient });
+        }
+        if E::SIMPLEX && self.section.nodal && !pressures.is_empty() {
+            let means = &mut self.pressures.0;
+            self.simd.run(Means::<E, D, N> { shape, group: of, nodes, pressures, means });
         }
         if !self.section.uniform {
             self.read_parameters(group);
@@ -92,6 +96,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         share: &Share,
         view: &View<D>,
         [positions, velocities]: [Nodes<'_, D>; 2],
+        pressures: Pressures<'_>,
         totals: &mut Totals,
         force: &mut [f64],
     ) -> Result<(), StepError> {
@@ -102,9 +107,13 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         let mut power = Room([0.0; MOST_PACKS * WIDTH]);
         for group in section.groups(share, MOST_PACKS) {
-            self.deform(&group, positions);
+            self.deform(&group, positions, pressures);
             let points = self.points(&group);
             section.law.stress(simd, points, &mut density.0, &mut stress.0);
+            if section.nodal {
+                let (turns, pressures, stress) = (group.turns, &self.pressures.0, &mut stress.0);
+                simd.run(PressedStress::<D> { points, turns, pressures, stress });
+            }
             if section.damped {
                 let (shape, nodes, gradient, times) = (PhantomData, velocities, &mut rate.0, &self.times.0);
                 if E::BOX {
@@ -155,6 +164,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         &mut self,
         share: &Share,
         positions: Nodes<'_, D>,
+        pressures: Pressures<'_>,
         matrix: Matrix,
         rows: &Range<usize>,
         to: &mut dyn FnMut(usize, &StencilPack<'_>),
@@ -175,7 +185,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             if wanted == [false; TANGENTS] {
                 continue;
             }
-            self.deform(&group, positions);
+            self.deform(&group, positions, pressures);
             let points = self.points(&group);
             let principal = match matrix {
                 Matrix::Hessian(keep) => {
@@ -191,6 +201,10 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     false
                 }
             };
+            // What the pressures make of the second derivatives of J may be negative.
+            if section.nodal && group.turns && matches!(matrix, Matrix::Hessian(Definiteness::Exact)) {
+                simd.run(PressedTangents::<D> { points, pressures: &self.pressures.0, tangent });
+            }
             // Boxes turn and stretch what their points are under.
             if E::BOX && matches!(matrix, Matrix::Hessian(Definiteness::Exact)) {
                 section.law.stress(simd, points, &mut density.0, &mut stress.0);
@@ -203,7 +217,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         Matrix::Damping => Of::Damping,
                     };
                     let (kept, stress, times) = (&self.kept.0, &stress.0, &self.times.0);
-                    simd.run(box_matrices::Contract::<E, D, N> {
+                    simd.run(boxes::Contract::<E, D, N> {
                         shape,
                         group,
                         pack,
@@ -234,7 +248,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
         for group in section.groups(share, 1) {
-            self.deform(&group, positions);
+            self.deform(&group, positions, Pressures::default());
             let points = self.points(&group);
             // Rows of stresses as they are stored: of three axes where the law in space is asked.
             let axes = if let Some(law) = &section.law_in_space {
@@ -283,6 +297,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
 pub(super) struct Matrices<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     view: &'a View<'a, D>,
+    pressures: Pressures<'a>,
     scratch: &'a [f64],
     matrix: Matrix,
 }
@@ -292,14 +307,16 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Matrices<'a, E, D, N> {
     pub(super) fn hessian(
         section: &'a Section<E, D, N>,
         view: &'a View<'a, D>,
+        pressures: Pressures<'a>,
         scratch: &'a [f64],
         keep: Definiteness,
     ) -> Self {
-        Matrices { section, view, scratch, matrix: Matrix::Hessian(keep) }
+        Matrices { section, view, pressures, scratch, matrix: Matrix::Hessian(keep) }
     }
     /// −∂F/∂v.
     pub(super) fn damping(section: &'a Section<E, D, N>, view: &'a View<'a, D>, scratch: &'a [f64]) -> Self {
-        Matrices { section, view, scratch, matrix: Matrix::Damping }
+        // What damps knows no pressures.
+        Matrices { section, view, pressures: Pressures::default(), scratch, matrix: Matrix::Damping }
     }
 }
 
@@ -322,7 +339,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
             let from = share.nodes.partition_point(|node| (*node as usize + 1) * stride <= rows.start);
             if share.nodes.get(from).is_some_and(|node| *node as usize * stride < rows.end) {
                 let positions = self.section.positions(share, self.view, self.scratch);
-                pass.assemble(share, positions, self.matrix, rows, to);
+                pass.assemble(share, positions, self.pressures, self.matrix, rows, to);
             }
         }
     }

@@ -11,18 +11,17 @@
 //! touches, whose forces are added up in the order of its elements, and those of a node in the order of the shares. Shares
 //! are the same for every number of threads and for both layouts, and so are the bits.
 
-use super::boxes::beyond;
+use super::boxes::{self, Boxes};
 use super::elements::Shape;
-use super::hourglass::{self, fields, stiffness_numbers};
 use super::law::Law;
-use super::pass::{Matrices, Pass};
+use super::numbers::beyond;
+use super::part::Part;
 use super::work::Nodes;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use opruga_core::error::StepError;
-use opruga_core::potential::{CellState, Definiteness, Sink};
 use opruga_core::state::{Layout, View};
-use opruga_math::{Column, ROW, Simd, WIDTH, sum_in_fixed_order};
+use opruga_math::{Column, ROW, WIDTH};
 
 /// Packs of points that are looked at together, at most.
 pub(super) const MOST_PACKS: usize = 9;
@@ -61,22 +60,22 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) cells: Vec<Cell<N>>,
     /// Points of an element where the law is asked.
     pub(super) points: usize,
-    shares: Vec<Share>,
+    pub(super) shares: Vec<Share>,
     /// Where elements find their nodes: N packs of rows of the share for every pack of elements of one body, N places for every
     /// element of eight.
-    places: Vec<u32>,
+    pub(super) places: Vec<u32>,
     /// For eight bodies the N rows of the share for every element.
-    targets: Vec<u32>,
-    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; of boxes what [`hourglass::stored`] counts. In packs for one
-    /// body.
+    pub(super) targets: Vec<u32>,
+    /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. Boxes have their own.
     pub(super) geometry: Column,
-    /// What boxes resist bending with: what [`stiffness_numbers`] counts.
-    stiffness: Column,
+    pub(super) boxes: Boxes,
     /// [`NUMBERS`] packs for every pack of elements, or for all.
-    parameters: Column,
+    pub(super) parameters: Column,
     /// Whether the parameters of the first pack hold for all.
     pub(super) uniform: bool,
     pub(super) damped: bool,
+    /// Whether the nodes resist the volume beyond λ′.
+    pub(super) nodal: bool,
 }
 
 /// Packs of elements that are worked on by one thread at a time.
@@ -89,48 +88,6 @@ pub(super) struct Share {
     pub(super) nodes: Vec<u32>,
     /// Where its scratch begins in that of the section.
     pub(super) start: usize,
-}
-
-/// Sums over elements whose bits do not depend on the layout.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Totals {
-    /// Energy [J]: one body eight partial sums in the first row, eight bodies a column each.
-    pub(super) energy: [[f64; WIDTH]; WIDTH],
-    /// Power of damping [W].
-    pub(super) power: [[f64; WIDTH]; WIDTH],
-}
-
-/// One number for one body, or one for each of eight.
-pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
-    let mut out = [0.0; WIDTH];
-    match layout {
-        Layout::Single => out[0] = sum_in_fixed_order(&partial[0]),
-        Layout::Batch => {
-            for l in 0..WIDTH {
-                out[l] = sum_in_fixed_order(&core::array::from_fn(|k| partial[k][l]));
-            }
-        }
-    }
-    out
-}
-
-/// A section, whatever its elements.
-pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// The shares, which may be evaluated side by side.
-    fn shares(&self) -> &[Share];
-    /// Numbers that the evaluation of a share leaves: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and
-    /// damping), and copies of what it read. For one body the forces of a node are a row, for eight a pack for every axis.
-    fn scratch_len(&self, share: &Share) -> usize;
-    /// Evaluates the elements of a share.
-    fn evaluate(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]) -> Result<(), StepError>;
-    /// Delivers ∂²U/∂x∂x, after all shares were evaluated in the same state.
-    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>);
-    /// Delivers −∂F/∂v, likewise.
-    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>);
-    /// Stress and volume ratio of the cells of a body.
-    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);
-    /// Bytes on the heap.
-    fn heap_bytes(&self) -> usize;
 }
 
 /// What every step of the work on some packs of elements needs to know.
@@ -149,7 +106,7 @@ pub(super) struct Group<'a> {
     pub(super) places: &'a [u32],
     pub(super) targets: &'a [u32],
     pub(super) geometry: &'a [f64],
-    pub(super) stiffness: &'a [f64],
+    pub(super) boxes: &'a Boxes,
     pub(super) parameters: &'a [f64],
     /// Distance of the parameters of two packs.
     pub(super) step: usize,
@@ -163,6 +120,11 @@ impl Group<'_> {
             Layout::Single => (self.count - pack * WIDTH).min(WIDTH),
             Layout::Batch => WIDTH,
         }
+    }
+    /// Where the numbers of a pack lie, or those that hold for all packs: a whole one and the last one.
+    #[inline(always)]
+    pub(super) fn one_or(&self, one: bool, pack: usize) -> usize {
+        if one { usize::from(self.present(pack) < WIDTH) } else { pack }
     }
 }
 
@@ -200,12 +162,14 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) thickness: f64,
     /// Whether no stress acts across the plane.
     pub(super) plane_stress: bool,
+    /// Whether the nodes resist the volume beyond λ′.
+    pub(super) nodal: bool,
     pub(super) damped: bool,
 }
 
-/// Numbers of the geometry of the points of an element.
+/// Numbers of the geometry of the points of an element that is no box.
 const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
-    if E::BOX { hourglass::stored::<D, N>() } else { E::POINTS * (D * D + 1) }
+    if E::BOX { 0 } else { E::POINTS * (D * D + 1) }
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
@@ -215,7 +179,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         mut cells: Vec<Cell<N>>,
         numbers: &dyn Fn(u32, usize) -> [f64; NUMBERS],
     ) -> Self {
-        let Plan { layout, law, law_in_space, positions, thickness, plane_stress, damped } = plan;
+        let Plan { layout, law, law_in_space, positions, thickness, plane_stress, nodal, damped } = plan;
         let lowest = |cell: &Cell<N>| cell.nodes.iter().copied().min().unwrap_or(0);
         cells.sort_by_key(|cell| (lowest(cell), cell.nodes, cell.number));
         let resists_volume = |cell: &Cell<N>| {
@@ -255,8 +219,12 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
         let mut geometry = Column::zeros(packs * stored * lanes);
         let mut parameters = Column::zeros(packs * NUMBERS * WIDTH);
-        let stiffnesses = if E::BOX { stiffness_numbers::<D, N>() } else { 0 };
-        let mut stiffness = Column::zeros(packs * stiffnesses * WIDTH);
+        let boxes = if E::BOX && !cells.is_empty() {
+            let plan = boxes::Plan { layout, positions, thickness, plane_stress, cells: &cells, mean };
+            Boxes::new::<E, D, N>(&plan, numbers)
+        } else {
+            Boxes::default()
+        };
         for pack in 0..packs {
             for lane in 0..lanes {
                 let this = cell(pack, lane);
@@ -264,27 +232,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 let there = pack * lanes + lane < cells.len();
                 let rest: [[f64; D]; N] = this.nodes.map(|n| positions[n as usize]);
                 let mut put = |k: usize, value: f64| geometry[(pack * stored + k) * lanes + lane] = value;
-                if E::BOX {
-                    let rest = hourglass::Rest::new::<E>(&rest, thickness);
-                    let measures = rest.measures.map(|measure| if there { measure } else { 0.0 });
-                    let shares = rest.weights.iter().flat_map(|shares| &shares[..N - 1]);
-                    let all = shares.chain(&measures).chain(&rest.means[..fields::<D>()]);
-                    all.chain(rest.axes.as_flattened()).enumerate().for_each(|(k, value)| put(k, *value));
-                    let bodies = if layout == Layout::Single { 0..1 } else { 0..WIDTH };
-                    for body in bodies.filter(|_| there) {
-                        let [mu, lambda, ..] = numbers(this.number, body);
-                        let ratio = 0.5 * lambda / (lambda + mu);
-                        let across = if D == 2 && !plane_stress { ratio } else { ratio / (1.0 + ratio) };
-                        let mut of_cell = rest.response(across);
-                        of_cell.extend([across, if mean { beyond(mu, lambda) } else { 0.0 }]);
-                        of_cell.extend(rest.guards[..hourglass::modes::<D, N>()].iter().map(|guard| mu * guard));
-                        for (k, number) in of_cell.into_iter().enumerate() {
-                            stiffness[(pack * stiffnesses + k) * WIDTH + lane + body] = number;
-                        }
-                    }
-                    continue;
-                }
-                for q in 0..E::POINTS {
+                for q in 0..if E::BOX { 0 } else { E::POINTS } {
                     let (inverse, determinant) = rest_gradient(&rest, &E::SLOPES[q]);
                     for j in 0..D {
                         for k in 0..D {
@@ -317,15 +265,16 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             places,
             targets,
             geometry,
-            stiffness,
+            boxes,
             parameters,
             uniform,
             damped,
+            nodal,
         };
         let mut start = 0;
         for k in 0..section.shares.len() {
             section.shares[k].start = start;
-            start += section.scratch_len(&section.shares[k]);
+            start += Part::scratch_len(&section, &section.shares[k]);
         }
         section
     }
@@ -348,7 +297,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             places: &self.places,
             targets: &self.targets,
             geometry: &self.geometry,
-            stiffness: &self.stiffness,
+            boxes: &self.boxes,
             parameters: &self.parameters,
             step: if self.uniform { 0 } else { NUMBERS * WIDTH },
         }
@@ -375,11 +324,11 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
     }
 
     /// Numbers of the copy of a vector of every node of a share.
-    fn copy(&self, share: &Share) -> usize {
+    pub(super) fn copy(&self, share: &Share) -> usize {
         if self.layout == Layout::Single { share.nodes.len() * ROW } else { 0 }
     }
     /// Numbers of the forces of a share.
-    fn forces(&self, share: &Share) -> usize {
+    pub(super) fn forces(&self, share: &Share) -> usize {
         share.nodes.len() * if self.layout == Layout::Single { ROW } else { WIDTH * D }
     }
     /// The positions that the evaluation of a share has copied.
@@ -387,16 +336,22 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let start = share.start + FORCES + self.forces(share);
         Nodes { rows: &scratch[start..start + self.copy(share)], columns: view.x }
     }
+    /// Where J − 1 of the elements begins in the scratch of a share.
+    pub(super) fn grown(&self, share: &Share) -> usize {
+        FORCES + self.forces(share) + self.copy(share) * if self.damped { 2 } else { 1 }
+    }
 
     /// The measure of a point of an element [m³]; of the mean of a box that of the box.
     pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
         let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
-        let at = |k: usize| self.geometry[(pack * stored::<E, D, N>() + k) * lanes + lane];
-        match (E::BOX, point < E::POINTS) {
-            (false, _) => at((point + 1) * (D * D + 1) - 1),
-            (true, true) => at(N * (N - 1) + point),
-            (true, false) => (0..N).map(|q| at(N * (N - 1) + q)).sum(),
+        if E::BOX {
+            return self.boxes.measure::<D, N>(
+                self.group(pack, 1).one_or(self.boxes.one_geometry, pack),
+                point,
+                [lane, lanes],
+            );
         }
+        self.geometry[(pack * stored::<E, D, N>() + (point + 1) * (D * D + 1) - 1) * lanes + lane]
     }
 
     /// The element and body of a lane of a pack.
@@ -443,59 +398,4 @@ fn shares<const N: usize>(cells: &[Cell<N>], packs: usize, lanes: usize, each: u
         Share { first, packs, nodes, start: 0 }
     };
     firsts.map(share).collect()
-}
-
-/// A vector of some nodes in rows.
-fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: &[u32], rows: &mut [f64]) {
-    for (node, row) in nodes.iter().zip(rows.chunks_exact_mut(ROW)) {
-        for d in 0..D {
-            row[d] = columns[d][*node as usize];
-        }
-    }
-}
-
-impl<E: Shape<D, N>, const D: usize, const N: usize> Part<D> for Section<E, D, N> {
-    fn shares(&self) -> &[Share] {
-        &self.shares
-    }
-    fn scratch_len(&self, share: &Share) -> usize {
-        FORCES + self.forces(share) + self.copy(share) * if self.damped { 2 } else { 1 }
-    }
-    fn evaluate(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]) -> Result<(), StepError> {
-        let (sums, rest) = scratch.split_at_mut(FORCES);
-        let (forces, rest) = rest.split_at_mut(self.forces(share));
-        let (x, v) = rest.split_at_mut(self.copy(share));
-        if self.layout == Layout::Single {
-            to_rows(&view.x, &share.nodes, x);
-            to_rows(&view.v, &share.nodes, v);
-        }
-        let nodes = [Nodes { rows: x, columns: view.x }, Nodes { rows: v, columns: view.v }];
-        forces.fill(0.0);
-        let mut totals = Totals::default();
-        Pass::new(self, simd).forces(share, view, nodes, &mut totals, forces)?;
-        sums[..WIDTH].copy_from_slice(&total(self.layout, &totals.energy));
-        sums[WIDTH..].copy_from_slice(&total(self.layout, &totals.power));
-        Ok(())
-    }
-    fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
-        sink.stencil_packs(view.threads, &Matrices::hessian(self, view, scratch, keep));
-    }
-    fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>) {
-        if self.damped {
-            sink.stencil_packs(view.threads, &Matrices::damping(self, view, scratch));
-        }
-    }
-    fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>) {
-        for share in &self.shares {
-            let mut rows = vec![0.0; self.copy(share)];
-            to_rows(&view.x, &share.nodes, &mut rows);
-            Pass::new(self, Simd::best()).cell_states(share, Nodes { rows: &rows, columns: view.x }, body, out);
-        }
-    }
-    fn heap_bytes(&self) -> usize {
-        let shares: usize = self.shares.iter().map(|share| share.nodes.capacity()).sum();
-        let places = 4 * (self.places.capacity() + self.targets.capacity() + shares)
-            + size_of::<Cell<N>>() * self.cells.capacity();
-        places + self.geometry.heap_bytes() + self.stiffness.heap_bytes() + self.parameters.heap_bytes()
-    }
 }

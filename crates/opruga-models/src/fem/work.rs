@@ -5,6 +5,7 @@
 use super::elements::Shape;
 use super::law::{PARAMETERS, Points, read_matrix, write_matrix};
 use super::material::{Tangent, add_strain_tangent, no_tangent};
+use super::numbers::beyond;
 use super::section::{Group, NUMBERS};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
@@ -171,8 +172,9 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Gradients<'_, E, D
     }
 }
 
-/// The parameters of the points of a group, and their retardation times.
-pub(super) fn parameters_of_points(group: &Group<'_>, parameters: &mut [f64], times: &mut [f64]) {
+/// The parameters of the points of a group, and their retardation times. Where the law is asked at the mean of a box behind
+/// its points, what resists volume beyond λ′ is asked there.
+pub(super) fn parameters_of_points(group: &Group<'_>, points: usize, parameters: &mut [f64], times: &mut [f64]) {
     for k in 0..group.packs {
         let numbers = &group.parameters[(group.first + k) * group.step..][..NUMBERS * WIDTH];
         for q in 0..group.points {
@@ -180,6 +182,11 @@ pub(super) fn parameters_of_points(group: &Group<'_>, parameters: &mut [f64], ti
             let to = &mut parameters[point * PARAMETERS * WIDTH..(point + 1) * PARAMETERS * WIDTH];
             to.copy_from_slice(&numbers[..PARAMETERS * WIDTH]);
             times[point * WIDTH..(point + 1) * WIDTH].copy_from_slice(&numbers[PARAMETERS * WIDTH..]);
+            for l in (0..WIDTH).filter(|_| group.points > points) {
+                let (mu, lambda) = (numbers[l], numbers[WIDTH + l]);
+                let more = beyond(mu, lambda);
+                (to[l], to[WIDTH + l]) = if q < points { (mu, lambda - more) } else { (0.0, more) };
+            }
         }
     }
 }

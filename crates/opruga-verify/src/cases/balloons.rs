@@ -52,23 +52,25 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "thick-balloon-hexahedra",
         levels: &[2.0, 4.0, 8.0],
-        measure: |lab, n| sphere(lab, [n as u32; 2], Cells::Boxes, 2.0, 0.551_868_541_979),
+        measure: |lab, n| sphere(lab, [n as u32; 2], Cells::Boxes, 0.49999, [2.0, 0.551_868_541_979]),
         ..SPHERE
     },
     Case {
         name: "thick-balloon-quadratic-tetrahedra",
         levels: &[2.0, 3.0, 4.0],
-        measure: |lab, n| sphere(lab, [n as u32; 2], Cells::Quadratic, 2.0, 0.551_868_541_979),
+        measure: |lab, n| sphere(lab, [n as u32; 2], Cells::Quadratic, 0.49999, [2.0, 0.551_868_541_979]),
         ..SPHERE
     },
     Case {
         name: "thin-balloon-quadratic-tetrahedra",
-        quantity: "growth of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, at p = 0.1 μ; neo-Hookean, ν = 0.49999",
+        // Changed after its first run, from one cell through the wall, which no finer sides make better, and ν = 0.49999,
+        // which moved the wall by 1e-4.
+        quantity: "growth of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, two cells through the wall, at p = 0.1 μ; neo-Hookean, ν = 0.499999",
         source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; the same by quadrature), λ_A = 1.195255",
         over: Over::Cells("cells along a side of an eighth"),
-        levels: &[4.0, 6.0, 8.0],
+        levels: &[4.0, 5.0, 6.0],
         expected: &[0.195_255_486_883_212_6],
-        measure: |lab, n| sphere(lab, [n as u32, 1], Cells::Quadratic, 1.1, 0.1),
+        measure: |lab, n| sphere(lab, [n as u32, 2], Cells::Quadratic, 0.499_999, [1.1, 0.1]),
         ..SPHERE
     },
     Case {
@@ -140,12 +142,18 @@ fn whole_tube(layers: u32) -> Result<Mesh<2>, Trouble> {
     Ok(mesh)
 }
 
-fn sphere(lab: &Lab, [n, layers]: [u32; 2], cells: Cells, outer: f64, pressure: f64) -> Result<f64, Trouble> {
+fn sphere(
+    lab: &Lab,
+    [n, layers]: [u32; 2],
+    cells: Cells,
+    poisson: f64,
+    [outer, pressure]: [f64; 2],
+) -> Result<f64, Trouble> {
     let mesh = octant::<3>(n, layers, Some(1.0), outer, cells)?;
     let inner = at_radius(&mesh, 1.0);
     let scene = Scene::statics(3, 1e-9)
         .add("load_steps = 5")
-        .body(&mesh, &rubber(&symmetric(&mesh), 0.49999))?
+        .body(&mesh, &rubber(&symmetric(&mesh), poisson))?
         .add(&blown(&inner, pressure));
     let mut world = lab.space(scene)?;
     world.frame()?;

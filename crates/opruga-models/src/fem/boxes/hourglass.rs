@@ -10,8 +10,9 @@
 //! whose energy is ½ g·Lᵀ H⁻¹ L g. Among the fields no combination is a pressure alone, so it stays finite as ν → 0.5, and H⁻¹
 //! knows what free sides do: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the strain of that.
 
-use super::elements::{CORNERS, Shape};
-use super::section::rest_gradient;
+use super::super::elements::{CORNERS, Shape};
+use super::super::section::rest_gradient;
+use super::corners::sums;
 
 /// Hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
@@ -31,9 +32,22 @@ pub(super) const PAIR: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (0, 1)
 /// The axes whose coordinates a function of an assumed stress multiplies.
 const FIELD: [&[usize]; FIELDS] = [&[0], &[1], &[2], &[1, 2], &[2, 0], &[0, 1]];
 
-/// The assumed stresses: pairs of axes and functions. The first two are those of the plane.
-pub(super) const TERMS: [(usize, usize); MOST_STRESSES] =
-    [(0, 1), (1, 0), (0, 2), (1, 2), (2, 0), (2, 1), (0, 3), (1, 4), (2, 5), (3, 2), (4, 0), (5, 1)];
+/// An assumed stress: its pair of axes and its function, those of one function one after the other. A function is that of
+/// stresses along axes whose coordinates it does not have.
+pub(super) const fn term<const D: usize>(stress: usize) -> (usize, usize) {
+    let of_space = [(1, 0), (2, 0), (4, 0), (2, 1), (0, 1), (5, 1), (0, 2), (1, 2), (3, 2), (0, 3), (1, 4), (2, 5)];
+    if D == 2 { (1 - stress, stress) } else { of_space[stress] }
+}
+
+/// The first stress of a function, and its axes: where they are two, the stresses are those along the first, along the second,
+/// and of both.
+pub(super) const fn axes_of_field<const D: usize>(field: usize) -> (usize, [usize; 2]) {
+    match (D, field) {
+        (2, _) => (field, [1 - field; 2]),
+        (_, 0..3) => (3 * field, [(field + 1) % 3, (field + 2) % 3]),
+        _ => (field + 6, [field - 3; 2]),
+    }
+}
 
 /// Hourglass modes of a cell of N corners.
 pub(super) const fn modes<const D: usize, const N: usize>() -> usize {
@@ -50,10 +64,19 @@ pub(super) const fn pairs<const D: usize>() -> usize {
     if D == 2 { 2 } else { PAIRS }
 }
 
-/// Numbers of the geometry of a cell: the shares of its corners, the measures of its points, the means of the functions, its axes.
+/// Numbers of the geometry of a cell: the shares of the functions row by row, the measures of its points, the means of the
+/// functions of the stresses, its axes.
 pub(super) const fn stored<const D: usize, const N: usize>() -> usize {
-    N * (N - 1) + N + fields::<D>() + D * D
+    measures_at::<N>() + N + fields::<D>() + D * D
 }
+
+/// Where the measures of the points are among these.
+pub(super) const fn measures_at<const N: usize>() -> usize {
+    (N - 1) * (N - 1)
+}
+
+/// What is so much smaller than the largest of its kind is nothing but rounding: of the corners of equal cells of a grid, say.
+pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// Numbers of the material of a cell: X row by row, c, λ − λ′, and kₐ.
 pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
@@ -100,8 +123,9 @@ fn product(corner: usize, axes: &[usize]) -> f64 {
 /// A cell at rest.
 #[derive(Debug)]
 pub(super) struct Rest<const D: usize, const N: usize> {
-    /// For every corner its share in the mean of ∂x/∂X (D columns [1/m]) and in the hourglass amplitudes.
-    pub(super) weights: [[f64; N]; N],
+    /// For every function but 1, whose sum over the corners is Σ ±x, its share in the mean of ∂x/∂X (D columns [1/m]) and in
+    /// the hourglass amplitudes.
+    pub(super) shares: [[f64; N]; N],
     /// The measures of Gauss's points [m³].
     pub(super) measures: [f64; N],
     /// The means of the functions of the assumed stresses.
@@ -158,6 +182,15 @@ impl<const D: usize, const N: usize> Rest<D, N> {
                 weights[a][D + mode] = row[modes + a];
             }
         }
+        // No column sees a translation, so each is a sum of functions.
+        let mut shares = [[0.0; N]; N];
+        for c in 0..N - 1 {
+            let column = sums(&core::array::from_fn::<f64, N, _>(|a| weights[a][c] / N as f64));
+            let largest = column[1..].iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+            for (w, share) in column[1..].iter().enumerate() {
+                shares[w][c] = if share.abs() > ROUNDING * largest { *share } else { 0.0 };
+            }
+        }
 
         let (at_middle, size) = (E::at([0.0; 3]).1, modes * D);
         let mut jacobian = [[0.0; D]; D];
@@ -168,18 +201,20 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         }
         let mut means = [0.0; FIELDS];
         for (field, mean) in means.iter_mut().enumerate().take(fields::<D>()) {
-            *mean = (0..N).map(|q| measures[q] * SIGNS[q][field]).sum::<f64>() / measure;
+            let own = (0..N).map(|q| measures[q] * SIGNS[q][field]).sum::<f64>() / measure;
+            *mean = if own.abs() > ROUNDING { own } else { 0.0 };
         }
         let mut tensors = [[[0.0; D]; D]; MOST_STRESSES];
         let mut values = [[0.0; N]; MOST_STRESSES];
-        for (s, (pair, field)) in TERMS.iter().enumerate().take(size) {
-            let (a, b) = PAIR[*pair];
+        for s in 0..size {
+            let (pair, field) = term::<D>(s);
+            let (a, b) = PAIR[pair];
             for i in 0..D {
                 for j in 0..D {
                     tensors[s][i][j] = 0.5 * (jacobian[i][a] * jacobian[j][b] + jacobian[i][b] * jacobian[j][a]);
                 }
             }
-            values[s] = core::array::from_fn(|q| SIGNS[q][*field] - means[*field]);
+            values[s] = core::array::from_fn(|q| SIGNS[q][field] - means[field]);
         }
         let mut guards = [0.0; MOST_MODES];
         for (mode, guard) in guards.iter_mut().enumerate().take(modes) {
@@ -188,7 +223,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         }
         let none = [[0.0; MOST_STRESSES]; MOST_STRESSES];
         let (work, inner, trace) = (none, none, none);
-        let mut rest = Rest { weights, measures, means, axes: jacobian, guards, work, inner, trace };
+        let mut rest = Rest { shares, measures, means, axes: jacobian, guards, work, inner, trace };
         for s in 0..size {
             for mode in 0..modes {
                 // ∫ f ∂h/∂X of the field f of the stress.
@@ -240,7 +275,12 @@ impl<const D: usize, const N: usize> Rest<D, N> {
                 out[i][column] = (out[i][column] - done) / factor[i][i];
             }
         }
-        out[..size].iter().flat_map(|row| row[..size].to_vec()).collect()
+        let mut rows: Vec<f64> = out[..size].iter().flat_map(|row| row[..size].to_vec()).collect();
+        for row in rows.chunks_mut(size) {
+            let largest = row.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+            row.iter_mut().filter(|x| x.abs() <= ROUNDING * largest).for_each(|x| *x = 0.0);
+        }
+        rows
     }
 }
 
@@ -266,7 +306,7 @@ fn eliminate(rows: &mut [Vec<f64>]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::elements::{Hexahedron, Quadrilateral};
+    use super::super::super::elements::{Hexahedron, Quadrilateral};
     use super::*;
 
     /// 2μ Lᵀ H⁻¹ L.
@@ -329,11 +369,14 @@ mod tests {
             });
             let rest = Rest::new::<Hexahedron>(&corners, 1.0);
             for mode in 0..4 {
+                let amplitude = |at: &dyn Fn(usize) -> f64| -> f64 {
+                    let sums = sums(&core::array::from_fn::<f64, 8, _>(at));
+                    (0..7).map(|w| rest.shares[w][3 + mode] * sums[1 + w]).sum()
+                };
                 for d in 0..4 {
-                    let affine = |a: usize| if d == 3 { 1.0 } else { corners[a][d] };
-                    let seen: f64 = (0..8).map(|a| rest.weights[a][3 + mode] * affine(a)).sum();
+                    let seen = amplitude(&|a| if d == 3 { 1.0 } else { corners[a][d] });
                     assert!(seen.abs() < 1e-13, "{seen:e}");
-                    let own: f64 = (0..8).map(|a| rest.weights[a][3 + mode] * product(a, axes::<3>(d))).sum();
+                    let own = amplitude(&|a| product(a, axes::<3>(d)));
                     assert!((own - f64::from(u8::from(d == mode))).abs() < 1e-13);
                 }
             }

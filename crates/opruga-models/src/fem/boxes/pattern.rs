@@ -1,0 +1,59 @@
+//! Which entries of the small matrices of boxes are anything but zero.
+//!
+//! Of the 49 and 144 entries of a hexahedron whose sides are at right angles 7 and 21 are; all of them are of other cells. The
+//! sums are the same with and without the others, and so is the order of their parts.
+
+/// The entries of a matrix that may be something, by rows and by columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Pattern {
+    pub(super) rows: Lists,
+    pub(super) columns: Lists,
+}
+
+/// Lists of small numbers, one after the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Lists {
+    ends: Vec<u8>,
+    items: Vec<u8>,
+}
+
+impl Lists {
+    fn new(lists: usize, of: impl Fn(usize, usize) -> bool) -> Self {
+        let mut out = Lists::default();
+        for list in 0..lists {
+            out.items.extend((0..lists).filter(|k| of(list, *k)).map(|k| k as u8));
+            out.ends.push(out.items.len() as u8);
+        }
+        out
+    }
+    /// The numbers of a list, rising.
+    #[inline(always)]
+    pub(super) fn of(&self, list: usize) -> impl Iterator<Item = usize> + '_ {
+        let from = if list == 0 { 0 } else { self.ends[list - 1] };
+        self.items[from as usize..self.ends[list] as usize].iter().map(|k| usize::from(*k))
+    }
+}
+
+impl Pattern {
+    /// Of a square matrix of so many rows.
+    pub(super) fn new(size: usize, is: impl Fn(usize, usize) -> bool) -> Self {
+        Pattern { rows: Lists::new(size, &is), columns: Lists::new(size, |column, row| is(row, column)) }
+    }
+    pub(super) fn heap_bytes(&self) -> usize {
+        let bytes = |lists: &Lists| lists.ends.capacity() + lists.items.capacity();
+        bytes(&self.rows) + bytes(&self.columns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pattern_lists_its_entries_by_rows_and_by_columns() {
+        let pattern = Pattern::new(3, |i, j| i == j || (i, j) == (0, 2));
+        let lists = |lists: &Lists| (0..3).map(|k| lists.of(k).collect::<Vec<_>>()).collect::<Vec<_>>();
+        assert_eq!(lists(&pattern.rows), [vec![0, 2], vec![1], vec![2]]);
+        assert_eq!(lists(&pattern.columns), [vec![0], vec![1], vec![0, 2]]);
+    }
+}

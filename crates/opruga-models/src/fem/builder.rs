@@ -1,0 +1,195 @@
+//! From the cells of a mesh to a solid, and what is refused on the way.
+
+use super::elements::Shape;
+use super::law::Law;
+use super::nodal_volume::NodalVolumes;
+use super::numbers::{Numbers, beyond};
+use super::section::{Cell, Plan, Section, rest_gradient};
+use super::solid::{Built, Solid};
+use super::{mass, materials, refuse};
+use opruga_core::error::BuildError;
+use opruga_core::potential::Ingredients;
+use opruga_mesh::Mesh;
+
+/// det ∂X/∂ξ below this fraction of the cube (square) of the longest edge is no volume.
+const NO_VOLUME: f64 = 1e-12;
+
+/// What is the same for all cells while a solid is built.
+pub(super) struct Builder<'a, const D: usize> {
+    ingredients: &'a Ingredients<'a, D>,
+    /// Which cells are of this material.
+    chosen: Vec<bool>,
+    numbers: Numbers<'a>,
+    pub(super) stress: bool,
+    /// The density [kg/m³, in the plane per area] of every cell where the mass matrix is consistent.
+    density: Option<Vec<f64>>,
+}
+
+impl<'a, const D: usize> Builder<'a, D> {
+    pub(super) fn new(ingredients: &'a Ingredients<'a, D>) -> Result<Self, BuildError> {
+        let (mesh, first) = (ingredients.mesh, ingredients.values[0]);
+        if mesh.cells.is_empty() {
+            let message = "the body has no cells: it is an outline, a surface or a chain. Filled shapes are `grid`, shapes from \
+                           files with a `filling`, and volume meshes";
+            return Err(refuse("model.no_cells", message));
+        }
+        let mut chosen = vec![true; mesh.cells.len()];
+        if let Some(name) = first.text("cells") {
+            let Some(group) = mesh.cell_groups.get(name) else {
+                return Err(refuse(
+                    "model.no_group",
+                    format!("the mesh has no group of cells `{name}`; {}", known(mesh)),
+                ));
+            };
+            chosen.fill(false);
+            group.iter().for_each(|cell| chosen[*cell as usize] = true);
+            if group.is_empty() {
+                return Err(refuse("model.no_cells", format!("the group of cells `{name}` is empty")));
+            }
+        }
+        let numbers = Numbers::new(ingredients, &chosen)?;
+        Ok(Builder {
+            ingredients,
+            chosen,
+            numbers,
+            stress: D == 2 && first.text("plane") == Some("stress"),
+            density: (first.text("mass") == Some("consistent")).then(|| densities(ingredients)).transpose()?,
+        })
+    }
+
+    pub(super) fn entry(&self) -> Result<&'static materials::Entry, BuildError> {
+        let name = self.ingredients.values[0].text("material").unwrap_or("");
+        let found = materials::ALL.iter().find(|entry| entry.name == name);
+        found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))
+    }
+
+    /// What holds for linear simplices near incompressibility.
+    fn locking(&self) -> &str {
+        self.ingredients.values[0].text("locking").unwrap_or("refuse")
+    }
+
+    /// The section of one kind of cells, the first of which has the number `first` in the mesh.
+    pub(super) fn add<E: Shape<D, N>, const N: usize>(
+        &self,
+        built: &mut Built<D>,
+        list: &[[u32; N]],
+        first: usize,
+        law: fn() -> Box<dyn Law<D>>,
+        law_in_space: Option<fn() -> Box<dyn Law<3>>>,
+    ) -> Result<(), BuildError> {
+        let numbered = list.iter().enumerate().filter(|(k, _)| self.chosen[first + k]);
+        let cells: Vec<Cell<N>> =
+            numbered.map(|(k, nodes)| Cell { number: (first + k) as u32, nodes: *nodes }).collect();
+        if cells.is_empty() {
+            return Ok(());
+        }
+        let positions = &self.ingredients.mesh.positions;
+        for cell in &cells {
+            self.check::<E, N>(cell, positions)?;
+        }
+        if let Some(density) = &self.density {
+            for cell in &cells {
+                let rest = cell.nodes.map(|n| positions[n as usize]);
+                mass::entries::<E, D, N>(&cell.nodes, &rest, density[cell.number as usize], &mut built.inertia);
+            }
+        }
+        let law = law();
+        let nodal = E::SIMPLEX && self.locking() == "nodal_volume";
+        let turns = law.turns();
+        if E::SIMPLEX && !nodal && !self.stress {
+            let kind = if D == 2 { "triangles" } else { "tetrahedra" };
+            self.numbers.refuse_what_locks(&mut cells.iter().map(|cell| cell.number), kind)?;
+        }
+        let plan = Plan {
+            layout: self.ingredients.layout,
+            law,
+            law_in_space: law_in_space.map(|law| law()),
+            positions,
+            thickness: if D == 2 { self.ingredients.thickness } else { 1.0 },
+            plane_stress: self.stress,
+            nodal,
+            damped: self.numbers.damped,
+        };
+        let numbers = |cell: u32, body: usize| {
+            let mut numbers = self.numbers.of(cell, body);
+            if nodal {
+                numbers[1] -= beyond(numbers[0], numbers[1]);
+            }
+            numbers
+        };
+        let section = Section::<E, D, N>::new(plan, cells, &numbers);
+        if nodal {
+            let lame = |cell: u32, body: usize| {
+                let [mu, lambda, ..] = self.numbers.of(cell, body);
+                [mu, lambda]
+            };
+            let list = section.cells.iter().map(|cell| (cell.number, cell.nodes));
+            let (layout, thickness) = (self.ingredients.layout, if D == 2 { self.ingredients.thickness } else { 1.0 });
+            built.volumes = Some(NodalVolumes::new(layout, turns, positions, thickness, list, &lame));
+        }
+        built.parts.push(Box::new(section));
+        Ok(())
+    }
+
+    /// Refuses a cell that is flat or turned inside out at rest.
+    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<(), BuildError> {
+        let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
+        let mut longest = 0.0;
+        for a in &rest {
+            for b in &rest {
+                let square: f64 = (0..D).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum();
+                longest = if square > longest { square } else { longest };
+            }
+        }
+        let size = longest.sqrt();
+        let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
+        // Boxes are looked at in the middle too.
+        let middle = E::BOX.then(|| E::at([0.0; 3]).1);
+        for slopes in E::SLOPES.iter().chain(&middle) {
+            let (_, determinant) = rest_gradient(&rest, slopes);
+            if !(determinant.is_finite() && determinant > least) {
+                let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
+                let message = format!(
+                    "cell {} with the nodes {:?} {what} at rest: det ∂X/∂ξ = {determinant:e}; allowed: more than {least:e}",
+                    cell.number, cell.nodes
+                );
+                return Err(refuse("model.inverted_cell", message));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {
+        if self.locking() == "nodal_volume" && (self.stress || built.volumes.is_none()) {
+            let message = if self.stress {
+                "`locking` is `nodal_volume`; allowed in plane stress: `refuse` or `accept`, since nothing locks where the thickness is free"
+            } else {
+                "`locking` is `nodal_volume`, but the cells are no linear triangles or tetrahedra; allowed for others: `refuse` or \
+                 `accept`, since they do not lock"
+            };
+            return Err(refuse("model.locking", message));
+        }
+        let (layout, nodes) = (self.ingredients.layout, self.ingredients.mesh.positions.len());
+        Ok(Box::new(Solid::new(layout, nodes, built, self.numbers.damped)))
+    }
+}
+
+/// The density of every cell [kg/m³, in the plane per area], where they do not differ from the masses of the nodes.
+fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, BuildError> {
+    if let Some(densities) = ingredients.densities {
+        let depth = if D == 2 { ingredients.thickness } else { 1.0 };
+        return Ok(densities.iter().map(|density| depth * density).collect());
+    }
+    let measure = ingredients.mesh.measure().map_err(|e| refuse("model.mass", e.to_string()))?.value();
+    let nodes = 0..ingredients.mesh.nodes();
+    Ok(vec![
+        nodes.map(|node| ingredients.mass.at(ingredients.layout.place(node, 0))).sum::<f64>() / measure;
+        ingredients.mesh.cells.len()
+    ])
+}
+
+/// The names of the groups of cells of a mesh.
+fn known<const D: usize>(mesh: &Mesh<D>) -> String {
+    let names: Vec<_> = mesh.cell_groups.keys().map(|n| format!("`{n}`")).collect();
+    if names.is_empty() { "it has none".into() } else { format!("known: {}", names.join(", ")) }
+}
