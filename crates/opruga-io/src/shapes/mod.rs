@@ -10,6 +10,7 @@
 mod bitmap;
 mod curves;
 mod drawing;
+mod glb;
 mod globe;
 mod gltf;
 mod json;
@@ -164,7 +165,7 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
             triangles::loaded(found, name, source.as_ref(), shape)
         }
         "gltf" | "glb" => {
-            let (json, binary) = gltf::chunks(name, bytes)?;
+            let (json, binary) = glb::chunks(name, bytes)?;
             let source = text_of(name, json)?;
             triangles::loaded(gltf::read(&source, binary, open)?, name, Some(&source), shape)
         }
