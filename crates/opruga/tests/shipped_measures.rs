@@ -17,7 +17,7 @@ fn tried(dimension: u8, shape: &str) -> Result<AnyBlueprint, Vec<SceneError>> {
          [[body]]\nname = \"it\"\nmass = 1\nshape = {{ {shape} }}\n"
     );
     // Some of the shapes are for tests alone, and not within the program.
-    let options = scene::Options { files: Files::in_folder(&folder().join("..")), ..scene::Options::default() };
+    let options = scene::Options { files: Files::in_folder(folder().join("..")), ..scene::Options::default() };
     scene::read(text.as_bytes(), "test.toml", &catalogue(), &options).map(|read| read.0)
 }
 
