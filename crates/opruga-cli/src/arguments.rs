@@ -190,7 +190,8 @@ pub(crate) struct BenchVertices {
 
 #[derive(Args, Debug)]
 pub(crate) struct Mesh {
-    /// A surface (.obj, .stl, .ply, .gltf, .glb), a drawing (.svg, .png, .json map), or a mesh (.msh, .vtk, .vtu, .mesh, .mfem, .node, .ele)
+    /// A surface (.obj, .stl, .ply, .gltf, .glb), a drawing (.svg, .png), a map (.json, .geojson, .topojson), a font (.ttf, .otf), or a mesh (.msh,
+    /// .vtk, .vtu, .mesh, .mfem, .node, .ele)
     pub(crate) input: PathBuf,
     /// The mesh to be written: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture lies beside it, with `.png` behind its name
     #[arg(short, long, value_name = "FILE")]
@@ -198,12 +199,15 @@ pub(crate) struct Mesh {
     /// About the length of edges of the cells [m]: surfaces and drawings need it
     ///
     /// In space it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
-    /// What is thinner than that may be lost: compare the volumes.
+    /// What is thinner than that may be lost, which is told.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// The longest side of the whole body [m], instead of the units of the file; drawings need it
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) scale_to: Option<f64>,
+    /// A field of the shape as a scene would have it, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    pub(crate) set: Vec<String>,
     /// 2: a node in the middle of every edge too
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,

@@ -3,12 +3,13 @@
 
 use crate::arguments::Mesh as Call;
 use crate::failure::{Failure, print_data};
-use opruga::core::spec::{Value, Values};
+use crate::source::overrides;
+use opruga::core::spec::Values;
 use opruga::draw::{self, BodyPicture, ColourMap, Facets, Legend, Picture};
 use opruga::io::problem::visible;
 use opruga::io::safe_write::{safe_write, try_write};
-use opruga::io::scene::Limits;
-use opruga::io::shapes::{Problem, body};
+use opruga::io::scene::{self, Limits};
+use opruga::io::shapes::{Problem, body, kind_of_file};
 use opruga::io::{Files, Notice, SceneError, meshes};
 use opruga::math::words::{counted, number, rounded};
 use opruga::mesh::{CellQuality, Element, Mesh, triangle_parts};
@@ -51,32 +52,42 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
 
 /// What the call asks for in the words of scenes, and the dimension.
 fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, Values), Failure> {
+    let set = overrides(&call.set)?;
+    let is_set = |field: &str| set.iter().any(|(path, _)| path == field);
     let needs = |what: &str, why: &str| Failure::Call {
         message: format!("{what} is missing"),
         hint: Some(format!("{what} {why}")),
     };
-    let size = || call.size.ok_or_else(|| needs("--size", "H: about the length of edges [m]"));
-    let word = |field, value: &str| (field, Value::Text(value.into()));
-    let number = |field, value| (field, Value::Number(value));
-    let surface = |weld: bool| -> Result<(usize, Values), Failure> {
-        let mut fields = vec![word("filling", "tetrahedra"), number("spacing", size()?)];
-        fields.extend(call.scale_to.map(|size| number("size", size)));
-        fields.extend(weld.then(|| number("weld", 0.0)));
-        Ok((3, shape_of("surface", 3, name, &fields)?))
+    let word = |field: &str, value: &str| (field.to_string(), serde_json::Value::from(value).to_string());
+    // Lengths that `--set` gives are not asked for once more.
+    let length = |field: &str, given: Option<f64>, missing: Option<Failure>| match (given, missing) {
+        (Some(length), _) => Ok(Some((field.to_string(), format!("{length:?}")))),
+        (None, Some(missing)) if !is_set(field) => Err(missing),
+        _ => Ok(None),
+    };
+    let spacing = || length("spacing", call.size, Some(needs("--size", "H: about the length of edges [m]")));
+    // What the call says by options of its own, then what it sets.
+    let made = |kind: &str, dimension: usize, fields: Vec<(String, String)>| {
+        let all = [&[word("file", name)], &fields[..], &set[..]].concat();
+        let (values, _) = scene::shape_of_fields(kind, dimension, &all).map_err(Failure::Scene)?;
+        Ok((dimension, values))
+    };
+    let surface = |weld: bool| {
+        let mut fields = vec![word("filling", "tetrahedra")];
+        fields.extend(spacing()?);
+        fields.extend(length("size", call.scale_to, None)?);
+        fields.extend(weld.then(|| ("weld".to_string(), "0.0".to_string())));
+        made("surface", 3, fields)
+    };
+    let outline = |kind: &str| {
+        let mut fields = vec![word("overlap", "union"), word("filling", "triangles")];
+        fields.extend(spacing()?);
+        let missing = needs("--scale-to", "L: the longer side of the drawing [m]");
+        fields.extend(length("size", call.scale_to, Some(missing))?);
+        made(kind, 2, fields)
     };
     match ending {
-        "svg" | "png" | "json" | "geojson" | "topojson" => {
-            let kind = match ending {
-                "svg" => "svg",
-                "png" => "bitmap",
-                _ => "map",
-            };
-            let spacing = size()?;
-            let long = call.scale_to.ok_or_else(|| needs("--scale-to", "L: the longer side of the drawing [m]"))?;
-            let fill = [word("overlap", "union"), word("filling", "triangles")];
-            let fields = [&fill[..], &[number("spacing", spacing), number("size", long)]].concat();
-            Ok((2, shape_of(kind, 2, name, &fields)?))
-        }
+        "json" => outline("map"),
         _ if meshes::is_mesh(name) => {
             let path = folder.join(name);
             let read = |name: &str| -> Result<Arc<[u8]>, SceneError> {
@@ -97,35 +108,28 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
                     hint: Some("without --size and --scale-to it is shown, and written in another format".into()),
                 });
             }
-            let mending = [word("inverted", "turn"), word("unreferenced", "leave_out")];
+            let mending = vec![word("inverted", "turn"), word("unreferenced", "leave_out")];
             let dimension = if found.dimension() == 3 { 3 } else { 2 };
-            Ok((dimension, shape_of("mesh", dimension, name, if call.mend { &mending } else { &[] })?))
+            made("mesh", dimension, if call.mend { mending } else { Vec::new() })
         }
         "obj" | "stl" | "ply" | "gltf" | "glb" => surface(call.mend),
-        _ => {
-            let known =
-                format!(".obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, {}", meshes::ENDINGS);
-            let hint = match ending {
-                "ttf" | "otf" => "in a scene, `kind = \"text\"` writes words in a font".to_string(),
-                "toml" => "a scene is read by `opruga check` and `opruga run`".to_string(),
-                _ => format!("files that can be read end in {known}"),
-            };
-            let message = format!("{}: files ending in `.{}` hold no shape", call.input.display(), visible(ending));
-            Err(Failure::Call { message, hint: Some(hint) })
+        "ttf" | "otf" if !is_set("text") => {
+            let hint = "such as --set text=opruga, says what is written in the letters of the font";
+            Err(needs("--set text=…", hint))
         }
+        _ => match kind_of_file(name) {
+            Some(kind) => outline(kind),
+            None => {
+                let known = ".obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, .ttf, .otf";
+                let hint = match ending {
+                    "toml" => "a scene is read by `opruga check` and `opruga run`".to_string(),
+                    _ => format!("files that can be read end in {known}, {}", meshes::ENDINGS),
+                };
+                let message = format!("{}: files ending in `.{}` hold no shape", call.input.display(), visible(ending));
+                Err(Failure::Call { message, hint: Some(hint) })
+            }
+        },
     }
-}
-
-/// A shape with some of its fields; the others have their defaults.
-fn shape_of(kind: &str, dimension: usize, file: &str, fields: &[(&str, Value)]) -> Result<Values, Failure> {
-    let unknown = || Failure::call(format!("there is no shape `{kind}`"));
-    let spec = shapes::all().into_iter().find(|spec| spec.kind == kind).ok_or_else(unknown)?;
-    let mut values = Values::defaults(spec, dimension);
-    let file = ("file", Value::Text(file.into()));
-    for (field, value) in fields.iter().chain([&file]) {
-        values.set(spec, field, value.clone(), dimension).map_err(|error| Failure::call(error.to_string()))?;
-    }
-    Ok(values)
 }
 
 /// What a file or an option of the call is refused for: the words of scenes become those of the call.
@@ -134,7 +138,7 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
     let option = match problem.field {
         "spacing" => value("--size", call.size),
         "size" => value("--scale-to", call.scale_to),
-        _ => None,
+        field => call.set.iter().rfind(|set| set.split('=').next() == Some(field)).map(|set| format!("--set {set}")),
     };
     let error = in_words_of_the_call(call, name, problem.about);
     Failure::Scene(vec![match option.filter(|_| error.line.is_none()) {
@@ -148,10 +152,8 @@ fn told(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
     notices.into_iter().map(|about| Notice { about: in_words_of_the_call(call, name, about), count: 1 }).collect()
 }
 
-/// Fields of scenes and the options that stand for them here.
-const WORDS: [(&str, &str); 8] = [
-    ("`spacing`", "--size"),
-    ("`size`", "--scale-to"),
+/// Words of scenes and the options that stand for them here.
+const WORDS: [(&str, &str); 6] = [
     ("`weld = 0`", "--mend"),
     ("`inverted = \"turn\"`", "--mend"),
     ("`unreferenced = \"leave_out\"`", "--mend"),
@@ -160,9 +162,32 @@ const WORDS: [(&str, &str); 8] = [
     ("the scene would take", "the mesh would take"),
 ];
 
+/// A text in which fields of scenes, alone or with a value, are options of the call: `` `weld = 0.1` `` becomes `--set weld=0.1`.
+fn options(text: &str) -> String {
+    let mut out = String::new();
+    for (place, piece) in text.split('`').enumerate() {
+        let (field, value) = piece.split_once(" = ").map_or((piece, None), |(field, value)| (field, Some(value)));
+        let option = match field {
+            "spacing" => "--size".to_string(),
+            "size" => "--scale-to".to_string(),
+            _ => format!("--set {field}"),
+        };
+        let between = if option.starts_with("--set") { "=" } else { " " };
+        let known = field != "kind" && shapes::all().iter().any(|spec| spec.fields.iter().any(|f| f.name == field));
+        match (place % 2 == 1, known, value) {
+            (true, true, Some(value)) => out += &format!("{option}{between}{}", value.trim_matches('"')),
+            (true, true, None) if between == "=" => out += &format!("{option}=…"),
+            (true, true, None) => out += &option,
+            (true, false, _) => out += &format!("`{piece}`"),
+            (false, ..) => out += piece,
+        }
+    }
+    out
+}
+
 fn in_words_of_the_call(call: &Call, name: &str, error: SceneError) -> SceneError {
-    let said = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
-    // Other fields have no option: what they would do is said of scenes.
+    let said = |text: String| options(&WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call)));
+    // What only scenes have is said of them.
     let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(said).map(|hint| {
         let (here, in_scenes): (Vec<&str>, Vec<&str>) = hint.split("; ").partition(|part| !part.contains('`'));
         match in_scenes.is_empty() {

@@ -7,7 +7,7 @@ use crate::source::Source;
 use opruga::draw;
 use opruga::io::safe_write::OutputFolder;
 use opruga::io::tables::{
-    EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
+    CellSummary, EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
 };
 use opruga::math::words::{counted, number, rounded};
 use opruga::pictures::{Moment, Scenery};
@@ -118,6 +118,7 @@ impl Outputs<'_> {
             },
             state_hash: format!("{:016x}", world.state_hash()),
             solver: solver_summary(world),
+            cells: cells(world),
             warnings: self.all_warnings(world),
             files,
         }
@@ -264,4 +265,25 @@ fn solver_summary<const D: usize>(world: &World<D>) -> Option<SolverSummary> {
         disturbed: work.disturbed,
         odd_rests: work.odd_rests,
     })
+}
+
+/// How good the cells of bodies are at rest. Copies share a mesh, which is looked at once.
+pub(crate) fn cells<const D: usize>(world: &World<D>) -> Vec<CellSummary> {
+    let mut seen = std::collections::BTreeSet::new();
+    let mut found = Vec::new();
+    for body in world.bodies().map(|body| &world.blueprint().bodies[body]) {
+        if !seen.insert(std::sync::Arc::as_ptr(&body.mesh)) {
+            continue;
+        }
+        let Some(quality) = body.mesh.cell_quality() else { continue };
+        found.push(CellSummary {
+            body: body.name.clone(),
+            cells: quality.cells,
+            smallest_angle: quality.smallest_angle.to_degrees(),
+            largest_angle: quality.largest_angle.to_degrees(),
+            shortest_edge: quality.shortest_edge,
+            longest_edge: quality.longest_edge,
+        });
+    }
+    found
 }

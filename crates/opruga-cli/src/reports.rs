@@ -3,6 +3,7 @@
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
 use crate::failure::{Failure, print_data};
+use crate::outputs::cells;
 use crate::run::simd_from_environment;
 use crate::source::{Source, Whole, argument, overrides};
 use opruga::core::spec::{Spec, nearest};
@@ -10,8 +11,9 @@ use opruga::core::stability::Stability;
 use opruga::draw;
 use opruga::io::problem::visible;
 use opruga::io::safe_write::{safe_write, try_write};
+use opruga::io::tables::CellSummary;
 use opruga::io::{Notice, scene};
-use opruga::math::words::{counted, number};
+use opruga::math::words::{counted, number, rounded};
 use opruga::{Options, Warning, World, blueprint::AnyBlueprint};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -51,6 +53,7 @@ struct Found {
     integrator: String,
     h: f64,
     substeps: u32,
+    cells: Vec<CellSummary>,
     stability: Vec<(String, Stability)>,
     warnings: Vec<Warning>,
 }
@@ -64,6 +67,7 @@ impl Found {
             integrator: world.integrators().join(", "),
             h: world.h(),
             substeps: world.blueprint().time.substeps,
+            cells: cells(world),
             stability: world.stability().to_vec(),
             warnings: world.warnings(),
         }
@@ -83,6 +87,7 @@ impl Found {
         json!({
             "file": file, "errors": 0, "dimension": self.dimension, "bodies": self.bodies, "nodes": self.nodes,
             "integrator": self.integrator, "h": self.h, "substeps": self.substeps,
+            "cells": self.cells,
             "stability": self.stability.iter().map(stability).collect::<Vec<_>>(),
             "warnings": of_scene.chain(of_world).collect::<Vec<_>>(),
         })
@@ -96,6 +101,12 @@ impl core::fmt::Display for Found {
         writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
         let substeps = counted(self.substeps.into(), "substep", "substeps");
         writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?;
+        for c in &self.cells {
+            let (low, high) = (rounded(c.smallest_angle, 3), rounded(c.largest_angle, 4));
+            let (short, long) = (rounded(c.shortest_edge, 3), rounded(c.longest_edge, 3));
+            let cells = counted(c.cells as u64, "cell", "cells");
+            writeln!(f, "  `{}`: {cells} with angles of {low}° to {high}°, edges of {short} m to {long} m", c.body)?;
+        }
         for (body, stability) in &self.stability {
             let limit = match stability.largest_stable_step {
                 None => "there is no stable step".into(),

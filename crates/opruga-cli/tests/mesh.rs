@@ -80,6 +80,54 @@ fn a_drawing_becomes_triangles() {
     assert!(folder.path().join("heart.vtk.png").is_file());
 }
 
+/// What a scene can choose of a file, the call can choose too: a layer and a feature of a map, an element of a drawing, a text in a font.
+#[test]
+fn parts_of_files_are_chosen_as_in_scenes() {
+    let folder = folder();
+    let shapes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/shapes");
+    for name in ["countries-110m.json", "inter-black-subset.otf"] {
+        std::fs::copy(shapes.join(name), folder.path().join(name)).expect("a shape");
+    }
+    let two = "<svg xmlns=\"http://www.w3.org/2000/svg\"><rect id=\"a\" width=\"4\" height=\"4\"/><rect id=\"b\" x=\"9\" width=\"2\" height=\"1\"/></svg>";
+    std::fs::write(folder.path().join("two.svg"), two).expect("a file");
+    let measure = |file: &str, set: &[&str]| {
+        let mut call = vec!["mesh", file, "--size", "0.02", "--scale-to", "1", "--json"];
+        set.iter().for_each(|set| call.extend(["--set", set]));
+        let row = json(&opruga(folder.path(), &call));
+        row["measure"].as_f64().expect("an area")
+    };
+    assert!((measure("two.svg", &["path=b"]) - 0.5).abs() < 1e-9);
+    assert!((measure("two.svg", &["path=a"]) - 1.0).abs() < 1e-9);
+    // The areas that the scenes of these shapes have, within what their spacing leaves out.
+    let near = |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 0.02, "{found}, not {wanted}");
+    near(measure("countries-110m.json", &["layer=countries", "feature=Italy"]), 0.23453);
+    near(measure("countries-110m.json", &["layer=countries", "feature=\"South Africa\""]), 0.47180);
+    let word = json(&opruga(
+        folder.path(),
+        &["mesh", "inter-black-subset.otf", "--size", "0.01", "--scale-to", "1", "--set", "text=OPRUGA", "--json"],
+    ));
+    near(word["measure"].as_f64().expect("an area"), 0.09967);
+    // A map of several layers asks for one, in the words of the call.
+    let told = opruga(folder.path(), &["mesh", "countries-110m.json", "--size", "0.02", "--scale-to", "1"]);
+    let said = text(&told.stderr);
+    assert!(code(&told) == 2 && said.contains("name one by --set layer=…") && said.contains("countries"), "{said}");
+}
+
+/// What tetrahedra cut off a surface is told in figures, with a size that keeps it; too much of it is an error.
+#[test]
+fn a_filling_that_loses_volume_is_told_and_refused_where_it_is_much() {
+    let folder = folder();
+    let run = |size: &str| opruga(folder.path(), &["mesh", "spot.obj", "--scale-to", "1.5", "--size", size]);
+    let (fine, coarse, crude) = (run("0.1"), run("0.25"), run("0.6"));
+    assert_eq!((code(&fine), text(&fine.stderr).contains("lost")), (0, false), "{}", text(&fine.stderr));
+    let said = text(&coarse.stderr);
+    assert!(code(&coarse) == 0 && said.contains("warning[shape.lost_volume]") && said.contains("m³ ("), "{said}");
+    let works = said.split("--size ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a size").to_string();
+    assert!(!text(&run(&works).stderr).contains("lost"), "{works}");
+    let said = text(&crude.stderr);
+    assert!(code(&crude) == 2 && said.contains("of the volume"), "{said}");
+}
+
 #[test]
 fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
     let folder = folder();
@@ -95,7 +143,10 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
         (&["mesh", "cut.msh"], 2, "cut.msh:5:"),
         (&["mesh", "box.mesh"], 2, "box.mesh:3:"),
         (&["mesh", "none.msh"], 4, "none.msh"),
-        (&["mesh", "letters.ttf"], 2, "writes words in a font"),
+        (&["mesh", "letters.ttf"], 2, "--set text=opruga"),
+        (&["mesh", "heart.svg", "--size", "0.1", "--scale-to", "1", "--set", "path=haert"], 2, "`haert`"),
+        (&["mesh", "heart.svg", "--size", "0.1", "--scale-to", "1", "--set", "feature=a"], 2, "--set feature=a"),
+        (&["mesh", "heart.svg", "--size", "0.1", "--scale-to", "1", "--set", "path"], 2, "PATH=VALUE"),
         (&["mesh", "scene.toml"], 2, "`opruga check`"),
         (&["mesh", "picture.jpg"], 2, "files that can be read end in .obj, "),
         (&["mesh", "none.obj", "--size", "1"], 4, "none.obj"),
@@ -120,7 +171,7 @@ fn errors_of_mesh_speak_of_the_call() {
     for (call, place, said) in [
         (&["mesh", "spot.obj", "--size", "9"][..], "--size 9: error[", "no tetrahedron fits"),
         (&["mesh", "spot.obj", "--size", "1e-9"], "--size 0.000000001: error[limit.", "the mesh would have"),
-        (&["mesh", "open.obj", "--size", "0.1"], "open.obj: error[mesh.open]", "in a scene, `open = "),
+        (&["mesh", "open.obj", "--size", "0.1"], "open.obj: error[mesh.open]", "--set open="),
         (&["mesh", "strokes.svg", "--size", "0.1", "--scale-to", "1"], "strokes.svg: error[shape.no_area]", ""),
         (
             &["mesh", "thin.svg", "--size", "0.3", "--scale-to", "1"],

@@ -141,10 +141,30 @@ pub struct Summary {
     /// What implicit integrators did; left out where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solver: Option<SolverSummary>,
+    /// How good the cells of bodies are; left out where no body has any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cells: Vec<CellSummary>,
     /// What was odd, counted.
     pub warnings: Vec<WarningSummary>,
     /// The files that were written.
     pub files: Vec<String>,
+}
+
+/// How good the cells of a body are at rest; bodies of one mesh have one entry, by the name of the first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CellSummary {
+    /// The name of the body.
+    pub body: String,
+    /// How many cells it has.
+    pub cells: usize,
+    /// The smallest angle: between faces of tetrahedra, between sides of others [°].
+    pub smallest_angle: f64,
+    /// The largest angle [°].
+    pub largest_angle: f64,
+    /// The shortest straight edge [m].
+    pub shortest_edge: f64,
+    /// The longest straight edge [m].
+    pub longest_edge: f64,
 }
 
 /// Energies at the end, works and losses since the beginning [J].

@@ -306,6 +306,12 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
     }
     let (area, components, _) = map(&text, &format!("{flat}, feature = \"Islands\"")).expect("islands");
     assert!((area - 2.0).abs() < 1e-9 && components == 2, "{area}, {components}");
+    // A road is there, but has no area; nor is it what one may have meant.
+    let error = &map(&text, ", feature = \"Road\"").expect_err("a line")[0];
+    assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
+    assert_eq!(error.message, "`Road` is nothing but points and lines");
+    let error = &map(&text, ", feature = \"Roar\"").expect_err("misspelt")[0];
+    assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
     let error = &map(&text, ", feature = \"Island\"").expect_err("misspelt")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", Some("did you mean `Islands`?")));
     // Both together share ground.

@@ -146,3 +146,39 @@ fn spot_is_remeshed_where_the_length_keeps_its_shape() {
     assert!(error.code == "scene.shape" && error.message.contains("of its volume"), "{error}");
     assert!(error.hint.as_deref().is_some_and(|hint| hint.contains("remesh")), "{error}");
 }
+
+/// Tetrahedra cut sharp edges off: what that costs is told with figures and a spacing that does not, and refused where it is much; of surfaces from
+/// files and of those that are made.
+#[test]
+fn what_tetrahedra_lose_of_the_volume_is_told_and_refused_where_it_is_much() {
+    let (file, cube) = ("kind = \"surface\", file = \"a.obj\"", format!("{}{}", vertices(0.0, 1.0), faces(0)));
+    for (shape, whole) in [(file, 1.0), ("kind = \"box\", size = [1.2, 1, 0.8], cells = [1, 1, 1]", 0.96)] {
+        let of = |spacing: f64| {
+            let shape = format!("{shape}, filling = \"tetrahedra\", spacing = {spacing}");
+            space(&shape, &[("a.obj", cube.as_bytes())])
+        };
+        let (mut told, mut refused) = (0, 0);
+        for spacing in [0.08, 0.13, 0.2, 0.28, 0.35, 0.45, 0.55, 0.65, 0.8] {
+            let (mesh, notices) = match of(spacing) {
+                Ok(made) => made,
+                Err(errors) => {
+                    let message = &errors[0].message;
+                    assert!(errors[0].code == "scene.shape", "{spacing}: {}", errors[0]);
+                    refused += usize::from(message.contains("of the volume"));
+                    continue;
+                }
+            };
+            let kept = mesh.measure().expect("a volume").value() / whole;
+            assert!((kept - 1.0).abs() <= 0.25, "{spacing}: {kept}");
+            assert_eq!(notices.len(), usize::from((kept - 1.0).abs() > 0.05), "{spacing}: {kept}");
+            let Some(notice) = notices.first() else { continue };
+            told += 1;
+            let value: f64 = notice.about.value.as_deref().and_then(|v| v.parse().ok()).expect("a number");
+            assert!(notice.about.code == "shape.lost_volume" && (value - kept).abs() < 1e-3, "{notice}");
+            assert!(notice.about.message.contains(" m³ (") && notice.about.message.ends_with(" m³ lost"), "{notice}");
+            let hint = notice.about.hint.as_deref().and_then(|hint| hint.split(['=', '`']).nth(2)).expect("a spacing");
+            assert!(of(hint.trim().parse().expect("a number")).expect("a filling").1.is_empty(), "{hint}");
+        }
+        assert!(told > 0 && refused > 0, "{shape}: {told} told, {refused} refused");
+    }
+}

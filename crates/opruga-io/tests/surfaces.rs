@@ -29,6 +29,35 @@ fn every_format_gives_the_same_cube() {
     is_cube(&space("kind = \"surface\", file = \"m/a.gltf\"", &files).expect("with its buffer").0);
 }
 
+/// What a file holds besides its triangles and a body cannot have: how the cube changes, what is told, how often.
+#[test]
+fn what_surfaces_cannot_have_is_left_out_and_counted() {
+    let cube = gltf(&format!("\"uri\":\"data:;base64,{}\",", base64(&buffer())));
+    let turned = cube.replace("\"nodes\":[0]}", "\"nodes\":[0]},{\"nodes\":[]},{}");
+    let skinned = cube.replace("\"mesh\":0,", "\"mesh\":0,\"skin\":0,\"weights\":[0.5],");
+    let morphed = cube.replace("\"indices\":1}", "\"indices\":1,\"targets\":[{\"POSITION\":0},{\"POSITION\":0}]}");
+    let animated = cube.replace("\"scene\":0", "\"scene\":0,\"animations\":[{\"channels\":[]},{\"channels\":[]},{}]");
+    let elements = |format: &str, bytes: &[u8]| {
+        let (plain, header) =
+            (ply(format), "element edge 2\nproperty short a\nelement none 0\nproperty int b\nend_header\n");
+        let end = plain.windows(11).position(|w| w == b"end_header\n").expect("a header");
+        [&plain[..end], header.as_bytes(), &plain[end + 11..], bytes].concat()
+    };
+    for (name, bytes, code, count) in [
+        ("scenes.gltf", turned.into_bytes(), "gltf.scenes", "2"),
+        ("skin.gltf", skinned.into_bytes(), "gltf.skin", "1"),
+        ("morph.gltf", morphed.into_bytes(), "gltf.morph", "1"),
+        ("animation.gltf", animated.into_bytes(), "gltf.animation", "3"),
+        ("text.ply", elements("ascii", b"7\n8\n"), "ply.element", "2"),
+        ("little.ply", elements("binary_little_endian", &[7, 0, 8, 0]), "ply.element", "2"),
+    ] {
+        let (mesh, notices) = surface(name, &bytes).unwrap_or_else(|e| panic!("{name}: {}", e[0]));
+        is_cube(&mesh);
+        let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref())).collect();
+        assert_eq!(told, [(code, Some(count))], "{name}");
+    }
+}
+
 #[test]
 fn named_parts_are_groups() {
     let (mesh, _) = surface("a.obj", obj().as_bytes()).expect("a cube");
@@ -185,13 +214,13 @@ fn bad_stl_and_ply_files_are_refused_with_their_place() {
         ("property float x", "property quad x", "ply.syntax", Some(6)),
         ("property float x", "property float u", "ply.syntax", None),
         ("list uchar int", "list float int", "ply.syntax", Some(10)),
-        ("4 0 3 2 1", "4 0 3 2 8", "mesh.index", Some(22)),
-        ("4 0 3 2 1", "4 0 3 2 -1", "mesh.index", Some(22)),
-        ("4 0 3 2 1", "2 0 3", "mesh.degenerate_face", Some(22)),
-        ("4 0 3 2 1", "400 0 3 2 1", "ply.size", Some(22)),
-        ("255 1 1 1", "255 1 1 x", "shape.number", Some(20)),
-        ("255 1 1 1", "255 1 nan 1", "scene.not_finite", Some(20)),
-        ("\n7\n", "\n7\n8\n", "ply.size", Some(28)),
+        ("4 0 3 2 1", "4 0 3 2 8", "mesh.index", Some(20)),
+        ("4 0 3 2 1", "4 0 3 2 -1", "mesh.index", Some(20)),
+        ("4 0 3 2 1", "2 0 3", "mesh.degenerate_face", Some(20)),
+        ("4 0 3 2 1", "400 0 3 2 1", "ply.size", Some(20)),
+        ("255 1 1 1", "255 1 1 x", "shape.number", Some(18)),
+        ("255 1 1 1", "255 1 nan 1", "scene.not_finite", Some(18)),
+        ("4 3 0 4 7\n", "4 3 0 4 7\n8\n", "ply.size", Some(25)),
     ] {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text, "{from}");
@@ -243,9 +272,9 @@ fn late_errors_have_a_place_in_every_format() {
         let text = String::from_utf8_lossy(&ply(format)).into_owned();
         let good = ply(format);
         let header = text.find("end_header\n").expect("a header") + "end_header\n".len();
-        let (face, tail) = if format == "ascii" { (10, 2) } else { (17, 2) };
-        let at = good.len() - tail - face;
-        let mut bad = good[..good.len() - tail].to_vec();
+        let face = if format == "ascii" { 10 } else { 17 };
+        let at = good.len() - face;
+        let mut bad = good.clone();
         bad.extend_from_slice(&good[at..]);
         let text = core::str::from_utf8(&bad[..header]).expect("ascii").replace("element face 6", "element face 7");
         let bad = [text.as_bytes(), &bad[header..]].concat();
@@ -253,7 +282,7 @@ fn late_errors_have_a_place_in_every_format() {
         assert_eq!(error.code, "mesh.duplicate_element", "{format}: {error}");
         match format {
             "ascii" => assert_eq!(error.line, Some(header_lines(&text) + 8 + 7), "{error}"),
-            _ => assert!(error.message.ends_with(&format!("at byte {}", bad.len() - tail - face)), "{format}: {error}"),
+            _ => assert!(error.message.ends_with(&format!("at byte {}", bad.len() - face)), "{format}: {error}"),
         }
     }
     let uri = format!("\"uri\":\"data:;base64,{}\",", base64(&buffer()));

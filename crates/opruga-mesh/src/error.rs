@@ -178,6 +178,16 @@ pub enum MeshError {
         /// Closed surfaces around them.
         parts: usize,
     },
+    /// A filling has far less or more volume than its surface encloses: it is too coarse.
+    #[error("with a spacing of {} m the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
+    Lost {
+        /// Side of the cubes of the lattice [m].
+        spacing: f64,
+        /// The volume of the filling over that of the surface.
+        kept: f64,
+        /// A spacing that keeps the volume, if one is known [m].
+        finer: Option<f64>,
+    },
     /// An element of space in a plane mesh, or a filled plane cell in a mesh of space.
     #[error("a {element} has no place in a mesh of {dimension} dimensions")]
     WrongDimension {
@@ -243,4 +253,9 @@ pub enum MeshError {
         /// The other.
         second: Element,
     },
+}
+
+/// Which spacing would keep the volume.
+fn keeps(finer: Option<f64>) -> String {
+    finer.map_or(String::new(), |spacing| format!("; {} m would keep it", number(spacing)))
 }

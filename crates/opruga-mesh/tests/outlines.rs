@@ -1,8 +1,8 @@
 //! Closed curves: holes, spacing, fillings, overlaps.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
-use opruga_mesh::outline::{self, OutlineError, Overlap, Ring};
-use opruga_mesh::signed_volume;
+use opruga_mesh::outline::{self, Cause, OutlineError, Overlap, Ring, Thin};
+use opruga_mesh::{CellQuality, Mesh, signed_volume};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -14,6 +14,15 @@ fn circle(center: [f64; 2], radius: f64, n: u32) -> Ring {
 
 fn square(low: f64, high: f64, part: u32) -> Ring {
     Ring { points: vec![[low, low], [high, low], [high, high], [low, high]], part }
+}
+
+fn quality(mesh: &Mesh<2>) -> CellQuality {
+    mesh.cell_quality().expect("triangles")
+}
+
+/// Whether the refinement of a filling came to its end.
+fn complete(thin: Option<Thin>) -> bool {
+    thin.is_none_or(|thin| thin.cause != Cause::Unfinished)
 }
 
 fn total(rings: &[Ring]) -> f64 {
@@ -111,11 +120,12 @@ fn a_spacing_that_makes_edges_cross_is_refused() {
 fn a_filled_disc_has_the_area_of_its_outline_and_good_angles() {
     for spacing in [0.3, 0.1, 0.05, 0.02] {
         let rings = outline::resampled(&[circle([1.0, -2.0], 1.0, 2000)], spacing).expect("a circle");
-        let (mesh, quality) = outline::filled(&rings, spacing).expect("a filling");
+        let (mesh, thin) = outline::filled(&rings, spacing).expect("a filling");
+        let quality = quality(&mesh);
         let area = mesh.measure().expect("an area").value();
         assert!((area / total(&rings) - 1.0).abs() < 1e-12, "{area}");
         assert!((signed_volume(&mesh.facets, &mesh.positions) / area - 1.0).abs() < 1e-12);
-        assert!(quality.complete && quality.smallest_angle >= 25.0 / 180.0 * PI, "{quality:?}");
+        assert!(thin.is_none() && quality.smallest_angle >= 25.0 / 180.0 * PI, "{quality:?}");
         assert!(quality.longest_edge < 1.75 * spacing && quality.shortest_edge > 0.4 * spacing, "{quality:?}");
         assert_eq!(mesh.check(), [], "spacing {spacing}");
         // One disc: V − E + T = 1.
@@ -131,9 +141,9 @@ fn holes_stay_empty_and_islands_in_holes_are_filled() {
     let mut rings = vec![circle([0.0; 2], 1.0, 300), circle([0.0; 2], 0.6, 200), circle([0.0; 2], 0.3, 100)];
     outline::nest(&mut rings).expect("rings");
     let rings = outline::resampled(&rings, 0.05).expect("rings");
-    let (mesh, quality) = outline::filled(&rings, 0.05).expect("a filling");
+    let (mesh, thin) = outline::filled(&rings, 0.05).expect("a filling");
     assert!((mesh.measure().expect("an area").value() - total(&rings)).abs() < 1e-12);
-    assert!(quality.smallest_angle >= 25.0 / 180.0 * PI);
+    assert!(thin.is_none() && quality(&mesh).smallest_angle >= 25.0 / 180.0 * PI);
     let edges = mesh.edges(opruga_mesh::EdgeSet::All).len();
     assert_eq!(mesh.nodes() as i64 - edges as i64 + mesh.cells.len() as i64, 1, "an annulus (0) and a disc (1)");
 }
@@ -152,7 +162,8 @@ fn a_thin_slanted_outline_is_filled_in_time_with_its_length() {
     let (far, wide) = (2e3, 3.0);
     let strip = Ring { points: vec![[0.0, 0.0], [far, far], [far, far + wide], [0.0, wide]], part: 0 };
     let rings = outline::resampled(&[strip], 1.0).expect("a strip");
-    let (mesh, quality) = outline::filled(&rings, 1.0).expect("a filling");
+    let (mesh, _) = outline::filled(&rings, 1.0).expect("a filling");
+    let quality = quality(&mesh);
     let area = mesh.measure().expect("an area").value();
     assert!((area / total(&rings) - 1.0).abs() < 1e-9, "{area}, {}, {}", total(&rings), far * wide);
     assert!(quality.smallest_angle > 10.0 / 180.0 * PI, "{quality:?}");
@@ -192,10 +203,11 @@ fn body_of(rings: &[Ring], how: Overlap, wanted: f64, pieces: usize) -> Vec<Ring
     let spacing = 0.05 * (high[0] - low[0]);
     let coarse = outline::resampled(&made, spacing).expect("equal edges");
     for rings in [&made, &coarse] {
-        let (filling, quality) = outline::filled(rings, spacing).expect("a filling");
+        let (filling, thin) = outline::filled(rings, spacing).expect("a filling");
+        let quality = quality(&filling);
         let area = filling.measure().expect("an area").value();
         assert!((area / total(rings) - 1.0).abs() < 1e-9, "{how:?}: {area} instead of {}", total(rings));
-        assert!(quality.complete && quality.smallest_angle > 0.1, "{quality:?}");
+        assert!(complete(thin) && quality.smallest_angle > 0.1, "{quality:?}");
         assert_eq!(filling.chambers().expect("closed").len(), pieces, "{how:?}");
     }
     made
@@ -319,10 +331,15 @@ proptest! {
         let mut rings = vec![Ring { points: points.collect(), part: 0 }];
         prop_assume!(outline::nest(&mut rings).is_ok());
         let Ok(rings) = outline::resampled(&rings, spacing) else { return Ok(()) };
-        let (mesh, quality) = outline::filled(&rings, spacing).expect("rings that do not cross are filled");
+        let (mesh, thin) = outline::filled(&rings, spacing).expect("rings that do not cross are filled");
+        let quality = quality(&mesh);
         prop_assert!((mesh.measure().expect("an area").value() / total(&rings) - 1.0).abs() < 1e-9);
         prop_assert!(mesh.chambers().is_ok());
         prop_assert!(quality.smallest_angle > 0.0 && quality.longest_edge < 4.0 * spacing, "{:?}", quality);
+        // What is thinner than promised is told, with the angle that is there.
+        let least = quality.smallest_angle.to_degrees();
+        prop_assert_eq!(thin.is_some(), least < outline::SMALLEST_ANGLE - 1e-6, "{}", least);
+        prop_assert!(thin.is_none_or(|thin| (thin.angle - least).abs() < 1e-9 && thin.count > 0), "{:?}", thin);
     }
 
     /// Wherever it lies and however large it is, a filling has the same triangles.
@@ -337,6 +354,22 @@ proptest! {
     }
 }
 
+/// Triangles thinner than promised are told with the place of the thinnest, and why it is there.
+#[test]
+fn thin_triangles_are_told_with_their_cause() {
+    // A wedge of 15°: no triangle in its tip has a larger angle.
+    let wedge = ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0 * 15f64.to_radians().tan()]]);
+    let rings = outline::resampled(&[wedge], 0.5).expect("a wedge");
+    let thin = outline::filled(&rings, 0.5).expect("a filling").1.expect("thin triangles");
+    assert!(thin.count > 0 && thin.angle <= 15.0 + 1e-9 && thin.place[0] < 0.5, "{thin:?}");
+    assert!(matches!(thin.cause, Cause::Corner(corner) if (corner - 15.0).abs() < 1e-6), "{thin:?}");
+    // A slit that is far thinner than the spacing: its corners are right angles.
+    let slit =
+        ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.01, 2.0], [2.01, 0.5], [2.0, 0.5], [2.0, 2.0], [0.0, 2.0]]);
+    let thin = outline::filled(&[slit], 1.0).expect("a filling").1.expect("thin triangles");
+    assert!(thin.angle < 5.0 && thin.cause == Cause::Finer, "{thin:?}");
+}
+
 /// A strip whose one side has twenty thousand points. (That their number costs no more than itself is tested where they are
 /// triangulated.)
 #[test]
@@ -345,7 +378,7 @@ fn long_straight_sides_are_filled() {
     let side = f64::from(count);
     let mut points: Vec<[f64; 2]> = (0..count).map(|k| [f64::from(k), 0.0]).collect();
     points.extend([[side, 0.0], [side, 1.0], [0.0, 1.0]]);
-    let (mesh, quality) = outline::filled(&[Ring { points, part: 0 }], 1.0).expect("a strip");
+    let (mesh, thin) = outline::filled(&[Ring { points, part: 0 }], 1.0).expect("a strip");
     assert!((mesh.measure().expect("an area").value() - side).abs() < 1e-6 * side);
-    assert!(quality.complete && mesh.check().is_empty());
+    assert!(complete(thin) && mesh.check().is_empty());
 }

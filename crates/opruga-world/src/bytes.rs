@@ -1,6 +1,6 @@
 //! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
 
-use crate::build::BodyHistory;
+use crate::carried::BodyHistory;
 use crate::changes::{Source, Told};
 use crate::error::WorldError;
 use opruga_core::spec::Value;

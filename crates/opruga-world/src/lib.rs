@@ -3,6 +3,7 @@
 pub mod blueprint;
 mod build;
 mod bytes;
+mod carried;
 mod changes;
 mod commands;
 mod compiled_once;

@@ -1,7 +1,8 @@
 //! Islands are built anew where the scene changed; all others stay as they are.
 
 use crate::blueprint::BodyBlueprint;
-use crate::build::{BodyHistory, BodyState, Builder, build_integrator, group};
+use crate::build::{Builder, build_integrator, group};
+use crate::carried::{BodyHistory, BodyState};
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::world::World;

@@ -1,7 +1,9 @@
 //! The shapes that a scene can name: their parameters, how many nodes they have, and their meshes.
 
+mod filling;
 mod from_files;
 
+pub use filling::{Filling, LOST_AND_TOLD, Loss, filling};
 pub use from_files::is_from_file;
 use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
@@ -290,6 +292,8 @@ pub struct Made<const D: usize> {
     pub mesh: Mesh<D>,
     /// Whether its points ran clockwise, so that its edges run against them.
     pub flipped: bool,
+    /// What its filling has lost of the volume, if that is worth telling.
+    pub loss: Option<Loss>,
 }
 
 /// Makes the mesh of a shape, scaled and turned about the origin of its own coordinates.
@@ -379,7 +383,7 @@ fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError
         _ => either(shape)?,
     };
     place(&mut mesh, transform)?;
-    Ok(Made { mesh, flipped })
+    Ok(Made { mesh, flipped, loss: None })
 }
 
 fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError> {
@@ -395,54 +399,12 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
         }
         _ => either(shape)?,
     };
+    let mut loss = None;
     if let Some(filling) = filling(shape)? {
-        mesh = filling.of(&mesh)?;
+        (mesh, loss) = filling.of(&mesh)?;
     }
     place(&mut mesh, transform)?;
-    Ok(Made { mesh, flipped: false })
-}
-
-/// What fills a closed surface: how, and with cubes of which side [m].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Filling {
-    /// Equal tetrahedra that reach a little beyond the surface and carry it as a skin.
-    Lattice(f64),
-    /// Tetrahedra whose boundary follows the surface.
-    Tetrahedra(f64),
-}
-
-impl Filling {
-    /// The filled body.
-    ///
-    /// # Errors
-    /// What [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`] refuse.
-    pub fn of(self, surface: &Mesh<3>) -> Result<Mesh<3>, MeshError> {
-        match self {
-            Filling::Lattice(spacing) => surface.lattice_filling(spacing),
-            Filling::Tetrahedra(spacing) => surface.tetrahedra_filling(spacing),
-        }
-    }
-
-    /// Side of the cubes [m].
-    pub fn spacing(self) -> f64 {
-        match self {
-            Filling::Lattice(spacing) | Filling::Tetrahedra(spacing) => spacing,
-        }
-    }
-}
-
-/// The filling that a shape in space asks for.
-///
-/// # Errors
-/// [`MeshError::Missing`] for a filling without `spacing`.
-pub fn filling(shape: &Values) -> Result<Option<Filling>, MeshError> {
-    let make = match shape.text("filling") {
-        Some("lattice") => Filling::Lattice,
-        Some("tetrahedra") => Filling::Tetrahedra,
-        _ => return Ok(None),
-    };
-    let why = "the side of the cubes that the filling is made of [m]";
-    shape.number("spacing").map(|spacing| Some(make(spacing))).ok_or(MeshError::Missing { what: "spacing", why })
+    Ok(Made { mesh, flipped: false, loss })
 }
 
 /// The shapes of both dimensions.

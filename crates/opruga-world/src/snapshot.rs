@@ -1,8 +1,8 @@
 //! The whole state of a world in bytes, and back.
 
 use crate::blueprint::CommandBlueprint;
-use crate::build::BodyState;
 use crate::bytes::{Reader, Writer};
+use crate::carried::BodyState;
 use crate::changes::{Change, Source, Told};
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;

@@ -30,6 +30,7 @@ use opruga_world::blueprint::{
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
 use reader::{Reader, join};
+pub use shape::of_fields as shape_of_fields;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,10 +1,13 @@
 //! The shape of a body: its file, if it has one, and its mesh.
 
-use super::place_of;
 use super::reader::{Reader, join};
-use crate::document::{Node, Place};
-use crate::problem::{SceneError, visible};
-use crate::shapes::Loaded;
+use super::{Options, place_of};
+use crate::catalogue::Catalogue;
+use crate::document::{Data, Entry, Node, Place};
+use crate::overrides;
+use crate::problem::{Notice, SceneError, visible};
+use crate::shapes::{Loaded, told};
+use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::Mesh;
 use opruga_world::shapes;
@@ -56,26 +59,68 @@ pub(super) fn mesh<const D: usize>(
         Some(loaded) => loaded.mesh::<D>(transform),
         // Why there is no file was told.
         None if shapes::is_from_file(shape.kind()) => return None,
-        None => {
-            shapes::mesh::<D>(shape, transform).map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))
-        }
+        None => generated::<D>(shape, transform, at.name),
     };
-    let made = match made {
+    let (mesh, notices) = match made {
         Ok(made) => made,
         Err(error) => {
             reader.report(at.place, error.path(&at.path));
             return None;
         }
     };
-    if made.flipped {
-        let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(at.name)));
-        reader.notice(at.place, notice.path(&at.path).hint("its edges run against them"));
+    for notice in notices {
+        reader.notice(at.place, notice.path(&at.path));
     }
     // Large factors may leave the range of numbers.
-    if let Some(x) = made.mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
+    if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
         let error = SceneError::new("scene.shape", format!("a coordinate of the shape is {x}")).path(&at.path);
         reader.report(at.place, error.allowed("finite coordinates"));
         return None;
     }
-    Some(made.mesh)
+    Some(mesh)
+}
+
+/// A shape without a file, and what is odd about it.
+fn generated<const D: usize>(
+    shape: &Values,
+    transform: &shapes::Transform<'_>,
+    name: &str,
+) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
+    let made = shapes::mesh::<D>(shape, transform);
+    let made = made.map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))?;
+    let mut notices = Vec::new();
+    if made.flipped {
+        let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(name)));
+        notices.push(notice.hint("its edges run against them"));
+    }
+    notices.extend(made.loss.map(|loss| told::lost_volume(&made.mesh, loss, 1.0)));
+    Ok((made.mesh, notices))
+}
+
+/// A shape by its fields alone, each a name and a value as `--set NAME=VALUE` gives them; later ones replace earlier ones.
+///
+/// # Errors
+/// All that scenes are refused for, each with the field that it is about.
+pub fn of_fields(
+    kind: &str,
+    dimension: usize,
+    fields: &[(String, String)],
+) -> Result<(Values, Vec<Notice>), Vec<SceneError>> {
+    let (source, options) = (Source { file: kind, text: "" }, Options::default());
+    let catalogue = Catalogue { models: Vec::new(), integrators: Vec::new(), colliders: Vec::new() };
+    let options = Options { overrides: fields.to_vec(), ..options };
+    let mut table = Node { place: Place::Bytes(0, 0), data: Data::Table(Vec::new()) };
+    overrides::apply_all(&mut table, &options.overrides)?;
+    let word = Node { place: Place::Bytes(0, 0), data: Data::Text(kind.to_string()) };
+    if let Data::Table(entries) = &mut table.data {
+        entries.retain(|entry| entry.key != "kind");
+        entries.push(Entry { key: "kind".into(), place: word.place, value: word });
+    }
+    let mut reader = Reader::new(&source, &catalogue, &options, Vec::new());
+    reader.dimension = dimension;
+    let values = reader.kind_table(&table, "", "shape", &shapes::all());
+    match (values, reader.finish()) {
+        (Some(values), (errors, notices)) if errors.is_empty() => Ok((values, notices)),
+        (_, (errors, _)) => Err(errors),
+    }
 }

@@ -128,10 +128,15 @@ impl Curves {
         }));
     }
 
-    /// How many points are joined by straight lines.
-    pub(super) fn corners(&self) -> usize {
-        let lines = |contour: &Contour| contour.segments.iter().filter(|s| matches!(s, Segment::Line(_))).count();
-        self.contours.iter().map(lines).sum()
+    /// How many points lines and curves join; one that repeats the start of its contour is not counted twice.
+    pub(super) fn points(&self) -> usize {
+        let of = |contour: &Contour| {
+            let end = contour.segments.last().map(|segment| match *segment {
+                Segment::Line(to) | Segment::Cubic(_, _, to) => to,
+            });
+            1 + contour.segments.len() - usize::from(end == Some(contour.start))
+        };
+        self.contours.iter().map(of).sum()
     }
 
     /// The larger side of the box around all points and control points.

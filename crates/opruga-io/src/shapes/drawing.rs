@@ -2,7 +2,7 @@
 
 use super::curves::{Curves, larger};
 use super::rules::{self, Rule};
-use super::{Content, Loaded, Problem};
+use super::{Content, Loaded, Problem, told};
 use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_core::spec::Values;
@@ -12,9 +12,6 @@ use opruga_mesh::{Mesh, MeshError};
 
 /// Curves are followed within this part of the spacing.
 const TOLERANCE: f64 = 0.002;
-
-/// An outline that has so many times more points in its file than nodes loses detail that one may look for.
-const THINNED: usize = 4;
 
 /// What a reader found.
 pub(super) struct Drawing<'a> {
@@ -72,21 +69,22 @@ impl Outline {
         }
     }
 
-    /// The body, with what it carries.
+    /// The body, with what it carries; and which of its triangles are thinner than promised.
     ///
     /// # Errors
     /// What fillings refuse.
-    pub(super) fn mesh(&self) -> Result<Mesh<2>, SceneError> {
+    pub(super) fn mesh(&self) -> Result<(Mesh<2>, Option<SceneError>), SceneError> {
         let too_many = |e: MeshError| refused(&OutlineError::Mesh(e));
-        let mut mesh = match self.inside {
-            Inside::Nothing => outline::skin(&self.rings).map_err(too_many)?,
-            Inside::Triangles(spacing) => outline::filled(&self.rings, spacing).map_err(|e| refused(&e))?.0,
-            Inside::Squares(spacing) => outline::squares(&self.rings, spacing).map_err(|e| refused(&e))?,
+        let (mut mesh, thin) = match self.inside {
+            Inside::Nothing => (outline::skin(&self.rings).map_err(too_many)?, None),
+            Inside::Triangles(spacing) => outline::filled(&self.rings, spacing).map_err(|e| refused(&e))?,
+            Inside::Squares(spacing) => (outline::squares(&self.rings, spacing).map_err(|e| refused(&e))?, None),
         };
+        let thin = thin.map(|thin| told::thin(&mesh, &thin));
         if !self.painted.is_empty() {
             outline::carry(&mut mesh, &self.rings, &self.painted).map_err(|e| refused(&e))?;
         }
-        Ok(mesh)
+        Ok((mesh, thin))
     }
 }
 
@@ -149,12 +147,14 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         }
         _ => Inside::Nothing,
     };
-    let given = if drawing.source.is_some() { drawing.curves.corners() } else { 0 };
-    let rings = outline::resampled(&rings, spacing).map_err(|e| {
+    // Points of a contour or a font are not what one has drawn.
+    let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
+    let before = rings;
+    let rings = outline::resampled(&before, spacing).map_err(|e| {
         let hint = "take a smaller `spacing`, a larger `size`, `drop_below`, or `filling = \"lattice\"`";
         Problem::new("spacing", refused(&e).value(spacing.to_string()).hint(hint))
     })?;
-    drawing.notices.extend(thinned(given, &rings, spacing));
+    drawing.notices.extend(told::thinned(given, &before, &rings, spacing));
     let outline = Outline { rings, inside, painted };
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
 }
@@ -204,16 +204,6 @@ fn changed(rings: &[Ring], together: &[Ring]) -> usize {
         kept[first..].iter().take_while(|(other, _)| *other <= area + off).any(|(_, other)| same_box(ring, other))
     };
     rings.iter().filter(|ring| !is_kept(ring)).count()
-}
-
-/// That most points of an outline are left out, as the spacing of its nodes wants it.
-fn thinned(given: usize, rings: &[Ring], spacing: f64) -> Option<SceneError> {
-    let nodes: usize = rings.iter().map(|ring| ring.points.len()).sum();
-    (given > THINNED * nodes).then(|| {
-        let message = format!("{given} points of the file become {nodes} nodes, {spacing} m apart");
-        let hint = "a smaller `spacing` keeps finer detail, `filling = \"lattice\"` carries all of it";
-        SceneError::new("shape.thinned", message).value(given.to_string()).hint(hint)
-    })
 }
 
 /// The parts of a drawing that have a colour, in the order in which they are painted.

@@ -1,7 +1,8 @@
 //! glTF 2.0: the triangles of a scene, as .gltf with its buffers or as one .glb.
 //!
-//! Read are meshes of triangles with positions in 32-bit numbers, through the tree of nodes with their transforms. Materials, normals, skins, cameras and
-//! animations carry nothing for a body; compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
+//! Read are meshes of triangles with positions in 32-bit numbers, through the tree of nodes of one scene with their transforms. Materials, normals and
+//! cameras carry nothing for a body. What would move its vertices, skins, shapes to morph into and animations, is left out, and so are other scenes; all of
+//! it is counted. Compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
 //!
 //! # Source
 //! The Khronos Group, glTF 2.0 Specification (2021).
@@ -39,6 +40,8 @@ struct Root<'a> {
     views: Vec<Raw<'a>>,
     #[serde(borrow, default)]
     buffers: Vec<Raw<'a>>,
+    #[serde(borrow, default)]
+    animations: Vec<Raw<'a>>,
     #[serde(default, rename = "extensionsRequired")]
     extensions: Vec<String>,
 }
@@ -58,6 +61,7 @@ struct Scene {
 struct Node {
     name: Option<String>,
     mesh: Option<usize>,
+    skin: Option<usize>,
     #[serde(default)]
     children: Vec<usize>,
     matrix: Option<[f64; 16]>,
@@ -74,10 +78,13 @@ struct Mesh<'a> {
 }
 
 #[derive(Deserialize)]
-struct Primitive {
+struct Primitive<'a> {
     attributes: std::collections::BTreeMap<String, usize>,
     indices: Option<usize>,
     mode: Option<u32>,
+    /// Shapes to morph into.
+    #[serde(borrow, default)]
+    targets: Vec<Raw<'a>>,
 }
 
 #[derive(Deserialize)]
@@ -127,50 +134,6 @@ fn after(outer: &Map, inner: &Map) -> Map {
     })
 }
 
-/// The JSON of a file, and the binary chunk of a .glb.
-pub(super) fn chunks<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
-    }
-    let named = |error: SceneError| SceneError { file: file.to_string(), ..error };
-    let word = |at: usize| bytes.get(at..at + 4).map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
-    let size = |what: &str, value: u64| {
-        named(SceneError::new("gltf.size", format!("{what}: {value}, but the file has {} bytes", bytes.len())))
-            .value(value.to_string())
-            .hint("the file is cut off")
-    };
-    match (word(4), word(8)) {
-        (Some(2), Some(length)) if length == bytes.len() as u64 => {}
-        (Some(2), Some(length)) => return Err(size("at byte 8, the length of the file", length)),
-        (version, _) => {
-            let version = version.unwrap_or(0);
-            let error = SceneError::new("gltf.version", format!("at byte 4, version {version}"));
-            return Err(named(error.value(version.to_string()).allowed("2")));
-        }
-    }
-    let (mut at, mut json, mut binary) = (12usize, None, None);
-    while at < bytes.len() {
-        let (Some(length), Some(kind)) = (word(at), word(at + 4)) else {
-            return Err(size("a chunk begins at byte", at as u64));
-        };
-        let Some(chunk) = usize::try_from(length).ok().and_then(|n| bytes.get(at + 8..(at + 8).checked_add(n)?)) else {
-            return Err(size(&format!("at byte {at}, the length of a chunk"), length));
-        };
-        match kind {
-            0x4E4F_534A if json.is_none() => json = Some(chunk),
-            0x004E_4942 if binary.is_none() => binary = Some(chunk),
-            _ => {}
-        }
-        at += 8 + chunk.len();
-    }
-    match json {
-        Some(json) => Ok((json, binary)),
-        None => Err(named(
-            SceneError::new("gltf.size", "the file has no JSON chunk").value("0").allowed("a chunk `JSON` at byte 12"),
-        )),
-    }
-}
-
 struct Reader<'a, 's, 'o, 'f> {
     source: &'s Source<'s>,
     root: Root<'a>,
@@ -181,6 +144,10 @@ struct Reader<'a, 's, 'o, 'f> {
     /// For every triangle the byte of the text where its primitive begins.
     starts: Vec<u32>,
     others: usize,
+    /// Nodes whose vertices would follow bones.
+    skinned: usize,
+    /// Primitives with shapes to morph into.
+    morphed: usize,
 }
 
 /// Reads the triangles of the default scene, or of all meshes where there is no scene.
@@ -212,8 +179,10 @@ pub(super) fn read<'a>(
         (None, Some(first)) => Some(first.nodes.clone()),
         (None, None) => None,
     };
+    let (scenes, animations) = (root.scenes.len(), root.animations.len());
+    let found = Triangles::default();
     let mut reader =
-        Reader { source, root, buffers, binary, open, found: Triangles::default(), starts: Vec::new(), others: 0 };
+        Reader { source, root, buffers, binary, open, found, starts: Vec::new(), others: 0, skinned: 0, morphed: 0 };
     match start {
         Some(start) => {
             for node in start {
@@ -237,6 +206,27 @@ pub(super) fn read<'a>(
     if reader.others > 0 {
         let message = format!("{} left out", counted(reader.others as u64, "line or point is", "lines and points are"));
         reader.found.notices.push(SceneError::new("mesh.strokes", message).value(reader.others.to_string()));
+    }
+    for (count, code, one, many) in [
+        (scenes.saturating_sub(1), "gltf.scenes", "other scene is", "other scenes are"),
+        (
+            reader.skinned,
+            "gltf.skin",
+            "skin, by which vertices follow bones, is",
+            "skins, by which vertices follow bones, are",
+        ),
+        (
+            reader.morphed,
+            "gltf.morph",
+            "part with shapes to morph into has them",
+            "parts with shapes to morph into have them",
+        ),
+        (animations, "gltf.animation", "animation is", "animations are"),
+    ] {
+        if count > 0 {
+            let message = format!("{} left out", counted(count as u64, one, many));
+            reader.found.notices.push(SceneError::new(code, message).value(count.to_string()));
+        }
     }
     reader.found.places = Places::Lines(reader.starts);
     Ok(reader.found)
@@ -283,6 +273,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         };
         let map = after(map, &own);
         if let Some(mesh) = node.mesh {
+            self.skinned += usize::from(node.skin.is_some());
             self.mesh(mesh, node.name.as_deref(), &map)?;
         }
         for child in node.children {
@@ -306,7 +297,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
     }
 
     fn primitive(&mut self, raw: Raw<'a>, map: &Map) -> Result<(), SceneError> {
-        let primitive: Primitive = parse(self.source, raw.get())?;
+        let primitive: Primitive<'a> = parse(self.source, raw.get())?;
         match primitive.mode {
             None | Some(4) => {}
             Some(0..=3) => {
@@ -318,6 +309,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
                 return Err(refuse(self.source, raw.get(), error.value(mode.to_string()).allowed("4 (triangles)")));
             }
         }
+        self.morphed += usize::from(!primitive.targets.is_empty());
         let Some(place) = primitive.attributes.get("POSITION") else {
             let error = SceneError::new("gltf.syntax", "a primitive has no POSITION");
             return Err(refuse(self.source, raw.get(), error.allowed("an attribute POSITION")));

@@ -58,6 +58,8 @@ struct Reader<'a, 's> {
     arcs: Option<Vec<Vec<Point>>>,
     polygons: Vec<(Polygon, Raw<'a>)>,
     names: Vec<String>,
+    /// Geometries with area that the scene does not want.
+    areas: usize,
     /// Objects that the scene's name means.
     meant: usize,
     /// Points and lines, which have no area.
@@ -75,8 +77,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
     let raw: Raw<'_> = parse(source, text)?;
     let top: Object<'_> = parse(source, raw.get())?;
     let wanted = shape.text("feature");
-    let mut reader =
-        Reader { source, wanted, arcs: None, polygons: Vec::new(), names: Vec::new(), meant: 0, others: 0, empty: 0 };
+    let (polygons, names) = (Vec::new(), Vec::new());
+    let mut reader = Reader { source, wanted, arcs: None, polygons, names, areas: 0, meant: 0, others: 0, empty: 0 };
     if top.kind == "Topology" {
         let topology: Topology<'_> = parse(source, raw.get())?;
         reader.arcs = Some(arcs(source, &topology)?);
@@ -189,6 +191,7 @@ impl<'a> Reader<'a, '_> {
             return Ok(());
         }
         let object: Object<'a> = parse(self.source, raw.get())?;
+        let (before, named) = (self.areas + self.polygons.len(), self.names.len());
         let meant = self.wanted.is_some() && self.is_wanted(&object);
         self.meant += usize::from(meant && !taken);
         let taken = taken || meant;
@@ -207,7 +210,7 @@ impl<'a> Reader<'a, '_> {
                 Some(geometry) => self.object(geometry, taken, depth + 1)?,
                 None => self.empty += usize::from(taken),
             },
-            "Polygon" | "MultiPolygon" if !taken => {}
+            "Polygon" | "MultiPolygon" if !taken => self.areas += 1,
             "Polygon" => {
                 let rings = self.rings(raw, &object)?;
                 let polygon = self.polygon(raw, rings)?;
@@ -227,6 +230,10 @@ impl<'a> Reader<'a, '_> {
                     .allowed("FeatureCollection, Feature, GeometryCollection, Polygon, MultiPolygon, Topology");
                 return Err(refuse(self.source, &raw.get()[..1], error));
             }
+        }
+        // Nobody can mean what has no area.
+        if self.areas + self.polygons.len() == before {
+            self.names.truncate(named);
         }
         Ok(())
     }
@@ -344,6 +351,15 @@ impl<'a> Reader<'a, '_> {
     /// Why no polygon was found.
     fn nothing(&self, raw: Raw<'_>) -> SceneError {
         let error = match self.wanted {
+            Some(name) if self.meant > 0 => {
+                let what = match (self.others, self.empty) {
+                    (0, 0) => "nothing",
+                    (0, _) => "a feature without geometry",
+                    _ => "nothing but points and lines",
+                };
+                let error = SceneError::new("map.unknown_feature", format!("`{}` is {what}", visible(name)));
+                error.value(visible(name)).allowed("features with polygons")
+            }
             Some(name) => SceneError::new("map.unknown_feature", format!("no polygon belongs to `{}`", visible(name)))
                 .value(visible(name))
                 .allowed("the `id` of a feature, or a text among its properties")

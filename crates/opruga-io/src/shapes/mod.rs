@@ -10,6 +10,7 @@
 mod bitmap;
 mod curves;
 mod drawing;
+mod glb;
 mod globe;
 mod gltf;
 mod json;
@@ -20,11 +21,13 @@ mod remeshing;
 mod rules;
 mod stl;
 mod svg;
+mod svg_elements;
 mod svg_fill;
 mod svg_path;
 mod svg_style;
 mod svg_xml;
 mod text;
+pub(crate) mod told;
 mod triangles;
 mod volume;
 
@@ -35,7 +38,7 @@ use crate::scene::{Cost, Limits};
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_mesh::{Mesh, MeshError};
-use opruga_world::shapes::{self, Filling, Made, Transform};
+use opruga_world::shapes::{self, Filling, Transform};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -123,9 +126,9 @@ pub fn body<const D: usize>(
     let loaded = load(shape, D, &mut |name| files.read(name, limits.shape_bytes))?;
     let dense = if shape.get("spacing").is_some() { "spacing" } else { "file" };
     Cost::default().add::<D>(1, loaded.node_count(), 0, limits).map_err(|about| Problem::new(dense, about))?;
-    let made =
+    let (mesh, made) =
         loaded.mesh::<D>(&Transform { scale: 1.0, rotation: &[] }).map_err(|about| Problem::new(dense, about))?;
-    Ok((made.mesh, loaded.notices))
+    Ok((mesh, [loaded.notices, made].concat()))
 }
 
 /// The kind of shape that a file of this name is made for; none where the name does not tell.
@@ -162,7 +165,7 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
             triangles::loaded(found, name, source.as_ref(), shape)
         }
         "gltf" | "glb" => {
-            let (json, binary) = gltf::chunks(name, bytes)?;
+            let (json, binary) = glb::chunks(name, bytes)?;
             let source = text_of(name, json)?;
             triangles::loaded(gltf::read(&source, binary, open)?, name, Some(&source), shape)
         }
@@ -206,22 +209,38 @@ impl Loaded {
         }
     }
 
-    /// The mesh, scaled and turned.
+    /// The mesh, scaled and turned; and what was lost when it was made, counted.
     ///
     /// # Errors
     /// What fillings refuse.
-    pub(crate) fn mesh<const D: usize>(&self, transform: &Transform<'_>) -> Result<Made<D>, SceneError> {
+    pub(crate) fn mesh<const D: usize>(
+        &self,
+        transform: &Transform<'_>,
+    ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
         let refuse = |refusal: MeshError| SceneError::new("scene.shape", refusal.to_string());
+        let mut told = Vec::new();
         let made: Box<dyn Any> = match &self.content {
-            Content::Outline(outline) => Box::new(outline.mesh()?),
+            Content::Outline(outline) => {
+                let (mesh, thin) = outline.mesh()?;
+                told.extend(thin);
+                Box::new(mesh)
+            }
             Content::Surface { mesh, remesh, filling } => {
                 let surface = match remesh {
                     None => (**mesh).clone(),
-                    Some(length) => remeshing::remeshed(mesh, *length)?,
+                    Some(length) => {
+                        let made = remeshing::remeshed(mesh, *length)?;
+                        told.extend(told::remeshed(&made, mesh, *length, transform.scale));
+                        made
+                    }
                 };
                 Box::new(match filling {
                     None => surface,
-                    Some(filling) => filling.of(&surface).map_err(refuse)?,
+                    Some(filling) => {
+                        let (body, loss) = filling.of(&surface).map_err(refuse)?;
+                        told.extend(loss.map(|loss| told::lost_volume(&body, loss, transform.scale)));
+                        body
+                    }
                 })
             }
             Content::Plane(mesh) => mesh.clone(),
@@ -231,6 +250,6 @@ impl Loaded {
             return Err(SceneError::new("scene.dimension", format!("this shape does not exist in {D}D")));
         };
         shapes::place(&mut mesh, transform).map_err(refuse)?;
-        Ok(Made { mesh: *mesh, flipped: false })
+        Ok((*mesh, told))
     }
 }

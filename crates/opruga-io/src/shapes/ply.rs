@@ -1,7 +1,7 @@
 //! PLY: elements with properties, as text or as bytes of either order.
 //!
 //! Read are the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons become fans. Other
-//! properties and elements are passed over by the sizes that the header gives.
+//! properties, which say how vertices look, are passed over by the sizes that the header gives, and so are other elements, which are counted.
 //!
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).
@@ -163,11 +163,16 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                     }
                 }
             }
-            _ => {
+            name => {
                 for _ in 0..element.count {
                     for property in &element.properties {
                         values.property(property)?;
                     }
+                }
+                if element.count > 0 {
+                    let are = if element.count == 1 { "is" } else { "are" };
+                    let message = format!("{} of `{}` {are} left out", element.count, visible(name));
+                    found.notices.push(SceneError::new("ply.element", message).value(element.count.to_string()));
                 }
             }
         }

@@ -2,24 +2,23 @@
 //!
 //! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, the first suitable one in `switch`, and through `use`,
 //! with `transform`. What carries no outline (`title`, `defs`, gradients …) is passed over, and what is not displayed; what would be drawn but has no
-//! outline here (`text`, `image`, strokes, markers, clips and masks) is refused or counted, and so is what style sheets say. Every part of the drawing
+//! outline here (`text`, `image`, strokes, markers, filters, animations, clips and masks) is refused or counted, and so is what style sheets say. Every part of the drawing
 //! follows the even-odd rule, or the non-zero rule where its `fill-rule` says so. Fill colours are read where the scene wants them.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.
 
-use super::curves::{Affine, Curves, IDENTITY, Point, after, smaller};
+use super::curves::{Affine, Curves, IDENTITY, Point, after};
 use super::drawing::Drawing;
+use super::svg_elements::units;
 use super::svg_fill::{Fill, Fills};
-use super::svg_path::Pen;
-use super::svg_style::{has_markers, is_clear, is_hidden, style, unread};
+use super::svg_style::{ANIMATIONS, animations_of, has_markers, has_stroke, is_clear, is_hidden, style, unread};
 use super::svg_xml::document;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
 use opruga_math::words::counted;
-use roxmltree::{Attribute, Document, Node};
-use svgtypes::{LengthUnit, PathParser, PointsParser, TransformListParser, TransformListToken};
+use roxmltree::{Document, Node};
 
 /// Elements may be nested this deep, `use` included.
 const DEEPEST: usize = 128;
@@ -28,7 +27,7 @@ const DEEPEST: usize = 128;
 const MOST_PARTS: usize = 1 << 18;
 
 /// Elements inside which nothing is drawn.
-const NOT_DRAWN: [&str; 17] = [
+const NOT_DRAWN: [&str; 15] = [
     "title",
     "desc",
     "metadata",
@@ -44,8 +43,6 @@ const NOT_DRAWN: [&str; 17] = [
     "marker",
     "filter",
     "view",
-    "animate",
-    "set",
 ];
 
 /// Reads a whole drawing, or the element with an id; its fill colours too where they are wanted.
@@ -68,6 +65,9 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
         images: 0,
         hidden: 0,
         markers: 0,
+        filters: 0,
+        strokes: 0,
+        animations: animations_of(root),
     };
     reader.canvas = reader.canvas_of(root)?;
     match id {
@@ -98,6 +98,11 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     let hidden = ["element that cannot be seen is", "elements that cannot be seen are"];
     notice(reader.hidden, "svg.hidden", hidden, "left out");
     notice(reader.markers, "svg.marker", ["element has markers", "elements have markers"], "which are left out");
+    let filters = ["element has a filter", "elements have a filter"];
+    notice(reader.filters, "svg.filter", filters, "which is not applied");
+    let strokes = ["filled shape has a stroke", "filled shapes have a stroke"];
+    notice(reader.strokes, "svg.stroke", strokes, "which is left out: the outline runs along its middle");
+    notice(reader.animations, "svg.animation", ["animation is", "animations are"], "left out");
     let gradients = ["gradient is", "gradients are"];
     notice(reader.fills.gradients, "svg.gradient", gradients, "painted in the mean of the colours");
     let styled = ["element has a style sheet", "elements have a style sheet"];
@@ -107,24 +112,27 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     Ok(Drawing { curves, y_down: true, source: Some(source), places, painted, rules, notices })
 }
 
-struct Reader<'a, 'd> {
-    source: &'a Source<'a>,
+pub(super) struct Reader<'a, 'd> {
+    pub(super) source: &'a Source<'a>,
     document: &'d Document<'a>,
     curves: Curves,
     /// Where each part stands in the file.
     places: Vec<(usize, usize)>,
     fills: Fills<'a, 'd>,
     /// Width and height that per cent refer to; none where the drawing does not say.
-    canvas: Option<Point>,
-    open: usize,
+    pub(super) canvas: Option<Point>,
+    pub(super) open: usize,
     unfilled: usize,
     images: usize,
     hidden: usize,
     markers: usize,
+    filters: usize,
+    strokes: usize,
+    animations: usize,
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
-    fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
+    pub(super) fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
         let range = node.range();
         // The tag alone, not all that it holds.
         let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
@@ -217,7 +225,7 @@ impl<'a, 'd> Reader<'a, 'd> {
                 .value(name)
                 .allowed(format!("at most {DEEPEST} levels")));
         }
-        if style(node, "display") == Some("none") || NOT_DRAWN.contains(&name) {
+        if style(node, "display") == Some("none") || NOT_DRAWN.contains(&name) || ANIMATIONS.contains(&name) {
             return Ok(());
         }
         let leaf = !matches!(name, "svg" | "g" | "a" | "switch" | "use");
@@ -231,6 +239,8 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Err(error.value(visible(value)).hint("apply it in the drawing program"));
         }
         self.markers += usize::from(leaf && has_markers(node));
+        self.filters += usize::from(style(node, "filter").is_some_and(|value| value != "none"));
+        self.animations += animations_of(node);
         let fill = self.fills.within(node, fill)?;
         let map = after(map, &self.transform(node)?);
         let id = node.id().get_usize();
@@ -263,6 +273,7 @@ impl<'a, 'd> Reader<'a, 'd> {
                     _ => self.points(node, name, &mut curves)?,
                 }
                 self.unfilled += usize::from(!fill.filled);
+                self.strokes += usize::from(fill.filled && has_stroke(node));
                 self.fills.paint(fill);
                 self.curves.append(curves, &map);
                 let range = node.range();
@@ -311,6 +322,7 @@ impl<'a, 'd> Reader<'a, 'd> {
                 return Err(error.value("viewBox").hint("make it a group <g>"));
             }
             path.push(goal.id().get_usize());
+            self.animations += animations_of(goal);
             self.children(goal, &map, path, fill)?;
             path.pop();
             return Ok(());
@@ -320,191 +332,5 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Err(self.error(node, "shape.too_large", "the drawing has too many parts".into()).value(id));
         }
         self.element_at(goal, &map, path, fill)
-    }
-
-    /// Where a part of an attribute's value stands in the file.
-    fn in_attribute(&self, attribute: &Attribute<'_, '_>, at: Option<usize>, error: SceneError) -> SceneError {
-        let range = attribute.range_value();
-        match at {
-            // Positions count characters from 1.
-            Some(k) => {
-                let text = &self.source.text[range.clone()];
-                let from = range.start + text.char_indices().nth(k.saturating_sub(1)).map_or(text.len(), |(k, _)| k);
-                self.source.mark(error, from, from + 1)
-            }
-            None => self.source.mark(error, range.start, range.end),
-        }
-    }
-
-    /// A value that the SVG grammar refuses.
-    fn refused(&self, attribute: &Attribute<'_, '_>, error: &svgtypes::Error) -> SceneError {
-        use svgtypes::Error as E;
-        let at = match error {
-            E::UnexpectedData(k) | E::InvalidChar(_, k) | E::InvalidString(_, k) | E::InvalidNumber(k) => Some(*k),
-            E::UnexpectedEndOfStream => Some(attribute.value().chars().count() + 1),
-            _ => None,
-        };
-        let text = error.to_string();
-        let what = text.split(" at position").next().unwrap_or(&text);
-        let found: String = match at {
-            Some(k) => attribute.value().chars().skip(k.saturating_sub(1)).take(12).collect(),
-            None => attribute.value().chars().take(40).collect(),
-        };
-        let message = format!("`{}` cannot be read: {}", attribute.name(), visible(what));
-        self.in_attribute(attribute, at, SceneError::new("svg.syntax", message)).value(visible(&found))
-    }
-
-    fn transform(&self, node: Node<'_, '_>) -> Result<Affine, SceneError> {
-        let Some(attribute) = node.attribute_node("transform") else { return Ok(IDENTITY) };
-        let mut map = IDENTITY;
-        for token in TransformListParser::from(attribute.value()) {
-            let degrees = |angle: f64| angle / 180.0 * core::f64::consts::PI;
-            let next = match token.map_err(|e| self.refused(&attribute, &e))? {
-                TransformListToken::Matrix { a, b, c, d, e, f } => [a, b, c, d, e, f],
-                TransformListToken::Translate { tx, ty } => [1.0, 0.0, 0.0, 1.0, tx, ty],
-                TransformListToken::Scale { sx, sy } => [sx, 0.0, 0.0, sy, 0.0, 0.0],
-                TransformListToken::Rotate { angle } => {
-                    let (s, c) = (libm::sin(degrees(angle)), libm::cos(degrees(angle)));
-                    [c, s, -s, c, 0.0, 0.0]
-                }
-                TransformListToken::SkewX { angle } => [1.0, 0.0, libm::tan(degrees(angle)), 1.0, 0.0, 0.0],
-                TransformListToken::SkewY { angle } => [1.0, libm::tan(degrees(angle)), 0.0, 1.0, 0.0, 0.0],
-            };
-            map = after(&map, &next);
-        }
-        if map.iter().any(|x| !x.is_finite()) {
-            let error = SceneError::new("svg.number", "the transform leaves the range of numbers");
-            return Err(self.in_attribute(&attribute, None, error).value(visible(attribute.value())));
-        }
-        Ok(map)
-    }
-
-    /// A length in user units.
-    fn number(&self, node: Node<'_, '_>, name: &str, default: f64) -> Result<f64, SceneError> {
-        let Some(attribute) = node.attribute_node(name) else { return Ok(default) };
-        let length: svgtypes::Length = attribute.value().parse().map_err(|e| self.refused(&attribute, &e))?;
-        let share = |along: Point| match name {
-            "x" | "cx" | "width" | "rx" => along[0],
-            "y" | "cy" | "height" | "ry" => along[1],
-            _ => (0.5 * (along[0] * along[0] + along[1] * along[1])).sqrt(),
-        };
-        let unit = match length.unit {
-            LengthUnit::Percent => self.canvas.map(|canvas| 0.01 * share(canvas)),
-            unit => units(unit),
-        };
-        let value = unit.map(|unit| unit * length.number).filter(|value| value.is_finite());
-        value.ok_or_else(|| {
-            let error = SceneError::new("svg.unsupported", format!("`{name}` is no length that can be read"));
-            let error = self.in_attribute(&attribute, None, error).value(visible(attribute.value()));
-            error.allowed(
-                "a finite number without unit, or in px, pt, pc, mm, cm, in, or in % of a drawing with a `viewBox`",
-            )
-        })
-    }
-
-    /// A length that must not be negative.
-    fn size(&self, node: Node<'_, '_>, name: &str) -> Result<f64, SceneError> {
-        let value = self.number(node, name, 0.0)?;
-        match node.attribute_node(name) {
-            Some(attribute) if value < 0.0 => {
-                let error = SceneError::new("svg.number", format!("`{name}` is negative"));
-                Err(self.in_attribute(&attribute, None, error).value(value.to_string()).allowed("0 or more"))
-            }
-            _ => Ok(value),
-        }
-    }
-
-    fn rectangle(&self, node: Node<'_, '_>, curves: &mut Curves) -> Result<(), SceneError> {
-        let (x, y) = (self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?);
-        let (w, h) = (self.size(node, "width")?, self.size(node, "height")?);
-        // One radius stands for both.
-        let (rx, ry) = (self.size(node, "rx")?, self.size(node, "ry")?);
-        let rx = if node.has_attribute("rx") { rx } else { ry };
-        let ry = if node.has_attribute("ry") { ry } else { rx };
-        let (rx, ry) = (smaller(rx, 0.5 * w), smaller(ry, 0.5 * h));
-        if rx == 0.0 || ry == 0.0 {
-            curves.polygon(&[[x, y], [x + w, y], [x + w, y + h], [x, y + h]]);
-            return Ok(());
-        }
-        curves.move_to([x + rx, y]);
-        let corners = [
-            ([x + w - rx, y], [x + w, y + ry]),
-            ([x + w, y + h - ry], [x + w - rx, y + h]),
-            ([x + rx, y + h], [x, y + h - ry]),
-            ([x, y + ry], [x + rx, y]),
-        ];
-        for (from, to) in corners {
-            curves.line_to(from);
-            curves.arc_to([rx, ry], 0.0, false, true, to);
-        }
-        Ok(())
-    }
-
-    fn ellipse(&self, node: Node<'_, '_>, name: &str, curves: &mut Curves) -> Result<(), SceneError> {
-        let (x, y) = (self.number(node, "cx", 0.0)?, self.number(node, "cy", 0.0)?);
-        let (rx, ry) = match name {
-            "circle" => (self.size(node, "r")?, self.size(node, "r")?),
-            _ => (self.size(node, "rx")?, self.size(node, "ry")?),
-        };
-        curves.move_to([x + rx, y]);
-        curves.arc_to([rx, ry], 0.0, false, true, [x - rx, y]);
-        curves.arc_to([rx, ry], 0.0, false, true, [x + rx, y]);
-        Ok(())
-    }
-
-    fn points(&mut self, node: Node<'_, '_>, name: &str, curves: &mut Curves) -> Result<(), SceneError> {
-        let Some(attribute) = node.attribute_node("points") else {
-            return Err(self.error(node, "svg.syntax", format!("<{name}> has no `points`")).value(name));
-        };
-        let points: Vec<Point> = PointsParser::from(attribute.value()).map(|(x, y)| [x, y]).collect();
-        // The library stops in silence at what it cannot read.
-        let numbers = svgtypes::NumberListParser::from(attribute.value());
-        let mut count = 0;
-        for number in numbers {
-            number.map_err(|e| self.refused(&attribute, &e))?;
-            count += 1;
-        }
-        if count != 2 * points.len() {
-            let error = SceneError::new("svg.syntax", format!("`points` has {count} numbers, which is odd"));
-            return Err(self
-                .in_attribute(&attribute, None, error)
-                .value(count.to_string())
-                .allowed("pairs of numbers"));
-        }
-        if name == "polyline" && points.first() != points.last() {
-            self.open += 1;
-        }
-        curves.polygon(&points);
-        Ok(())
-    }
-
-    fn path(&mut self, node: Node<'_, '_>, curves: &mut Curves) -> Result<(), SceneError> {
-        let Some(attribute) = node.attribute_node("d") else {
-            return Err(self.error(node, "svg.syntax", "<path> has no `d`".into()).value("path"));
-        };
-        let mut pen = Pen::on(curves);
-        for segment in PathParser::from(attribute.value()) {
-            pen.draw(segment.map_err(|e| self.refused(&attribute, &e))?);
-        }
-        pen.leave();
-        self.open += pen.open;
-        if !pen.at.iter().all(|x| x.is_finite()) {
-            let error = SceneError::new("svg.number", "the path leaves the range of numbers");
-            return Err(self.in_attribute(&attribute, None, error).value("inf"));
-        }
-        Ok(())
-    }
-}
-
-/// How many user units an absolute unit has, 96 to the inch; none for those that depend on something.
-fn units(unit: LengthUnit) -> Option<f64> {
-    match unit {
-        LengthUnit::None | LengthUnit::Px => Some(1.0),
-        LengthUnit::In => Some(96.0),
-        LengthUnit::Cm => Some(96.0 / 2.54),
-        LengthUnit::Mm => Some(96.0 / 25.4),
-        LengthUnit::Pt => Some(96.0 / 72.0),
-        LengthUnit::Pc => Some(16.0),
-        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => None,
     }
 }

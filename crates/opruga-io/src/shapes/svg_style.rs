@@ -171,3 +171,20 @@ pub(super) fn has_markers(node: Node<'_, '_>) -> bool {
         .iter()
         .any(|name| style(node, name).is_some_and(|value| value != "none"))
 }
+
+/// Elements that change others in time: the drawing is read as it is without them.
+pub(super) const ANIMATIONS: [&str; 6] =
+    ["animate", "animateColor", "animateMotion", "animateTransform", "discard", "set"];
+
+/// How many animations stand in an element itself.
+pub(super) fn animations_of(node: Node<'_, '_>) -> usize {
+    node.children().filter(|child| ANIMATIONS.contains(&child.tag_name().name())).count()
+}
+
+/// Whether a stroke would be drawn along an element, which makes it larger by half of its width. Strokes are inherited.
+pub(super) fn has_stroke(node: Node<'_, '_>) -> bool {
+    let said = |name: &str| node.ancestors().find_map(|node| style(node, name).filter(|value| *value != "inherit"));
+    let nothing = |value: &str| value.trim_end_matches(|c: char| c == '%' || c.is_alphabetic()).parse() == Ok(0.0);
+    let drawn = said("stroke").is_some_and(|paint| !matches!(paint, "none" | "transparent"));
+    drawn && !["stroke-width", "stroke-opacity"].into_iter().any(|name| said(name).is_some_and(nothing))
+}

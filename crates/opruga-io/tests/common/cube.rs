@@ -55,14 +55,14 @@ pub(crate) fn stl_bytes() -> Vec<u8> {
 
 pub(crate) fn ply(format: &str) -> Vec<u8> {
     let mut bytes = format!(
-        "ply\nformat {format} 1.0\ncomment a cube\nelement vertex 8\nproperty uchar red\nproperty float x\nproperty double y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nelement edge 1\nproperty short a\nend_header\n"
+        "ply\nformat {format} 1.0\ncomment a cube\nelement vertex 8\nproperty uchar red\nproperty float x\nproperty double y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n"
     )
     .into_bytes();
     if format == "ascii" {
         let mut text = String::new();
         CORNERS.iter().for_each(|[x, y, z]| text += &format!("255 {x} {y} {z}\n"));
         SQUARES.iter().for_each(|[a, b, c, d]| text += &format!("4 {a} {b} {c} {d}\n"));
-        bytes.extend((text + "7\n").bytes());
+        bytes.extend(text.bytes());
         return bytes;
     }
     let big = format == "binary_big_endian";
@@ -83,7 +83,6 @@ pub(crate) fn ply(format: &str) -> Vec<u8> {
         put(&[4]);
         square.iter().for_each(|c| put(&(*c as i32).to_le_bytes()));
     }
-    put(&7i16.to_le_bytes());
     bytes
 }
 

@@ -1,9 +1,10 @@
 //! The inside of closed curves as triangles.
 
+use super::constrained::constrained;
+use super::thin::Thin;
 use super::{OutlineError, Ring, distance};
 use crate::{MAXIMUM_NODES, Mesh};
-use spade::handles::FixedVertexHandle;
-use spade::{AngleLimit, ConstrainedDelaunayTriangulation, HasPosition, Point2, RefinementParameters, Triangulation};
+use spade::{AngleLimit, Point2, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
 
 /// The smallest angle [°] of triangles inside, but where the outline is finer than the spacing or its corners are sharper themselves.
@@ -21,19 +22,6 @@ const CLEARANCE: f64 = 0.6;
 /// Triangles of less than this times the spacing squared are not divided any more: an equilateral one has 0.43.
 const SMALLEST_AREA: f64 = 0.1;
 
-/// How good the triangles of a filling are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quality {
-    /// The smallest angle of all triangles [rad].
-    pub smallest_angle: f64,
-    /// Whether the refinement came to its end.
-    pub complete: bool,
-    /// Length of the shortest edge [m].
-    pub shortest_edge: f64,
-    /// Length of the longest edge [m].
-    pub longest_edge: f64,
-}
-
 /// About how many nodes a filling has: those of the rings, and one for every two triangles inside.
 pub fn node_estimate(rings: &[Ring], spacing: f64) -> u64 {
     let inside: f64 = rings.iter().map(Ring::area).sum::<f64>() / (HEIGHT * spacing * spacing);
@@ -45,14 +33,14 @@ pub fn node_estimate(rings: &[Ring], spacing: f64) -> u64 {
 ///
 /// Nodes of the rings come first and keep their order; edges of the rings may be halved where a triangle would else be too thin. Inside, the nodes lie
 /// on a regular triangular lattice; between it and the outline lies a constrained Delaunay triangulation, refined until no angle is below
-/// [`SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time.
+/// [`SMALLEST_ANGLE`] but in triangles too small to be divided: small triangles would take small steps of time. What came out below it is told.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] where edges of the rings cross, [`OutlineError::TooFine`] where the mesh would be too large.
 ///
 /// # Source
 /// J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", J. Algorithms 18 (1995); library spade.
-pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), OutlineError> {
+pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), OutlineError> {
     let estimate = node_estimate(rings, spacing);
     if estimate > MAXIMUM_NODES {
         return Err(OutlineError::TooFine { spacing, nodes: estimate });
@@ -63,7 +51,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
     // The library wants numbers of ordinary size: the drawing is brought to the unit square and back.
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, place| OutlineError::TooCoarse { spacing, parts: [part; 2], place };
-    let (mut triangulation, border) = constrained(rings, &lattice(rings, low, high, spacing), shrink, failed)?;
+    let (mut triangulation, given) = constrained(rings, &lattice(rings, low, high, spacing), shrink, failed)?;
     let parameters = RefinementParameters::<f64>::new()
         .with_angle_limit(AngleLimit::from_radius_to_shortest_edge_ratio(RADIUS_TO_EDGE))
         .with_min_required_area(SMALLEST_AREA * (spacing / extent) * (spacing / extent))
@@ -71,30 +59,33 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
         .exclude_outer_faces(true);
     let refined = triangulation.refine(parameters);
 
-    // Nodes: those of the rings, then those inside in the order of their insertion.
+    // Nodes: those of the rings, those of the lattice, then those of the refinement in the order of their insertion.
     let mut outside = refined.excluded_faces;
     outside.sort_unstable();
+    let number = |index: usize| given.get(index).copied().unwrap_or(index);
     let mut triangles: Vec<[u32; 3]> = triangulation
         .inner_faces()
         .filter(|face| outside.binary_search(&face.fix()).is_err())
-        .map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32))
+        .map(|face| face.vertices().map(|vertex| number(vertex.fix().index()) as u32))
         .collect();
     let mut used = vec![false; triangulation.num_vertices()];
     triangles.iter().flatten().for_each(|node| used[*node as usize] = true);
-    if !used[..border].iter().all(|u| *u) {
+    let border: Vec<[f64; 2]> = rings.iter().flat_map(|ring| ring.points.iter().copied()).collect();
+    if !used[..border.len()].iter().all(|u| *u) {
         return Err(failed(0, low));
     }
+    let mut places = vec![[0.0; 2]; used.len()];
+    for vertex in triangulation.vertices() {
+        let p = vertex.position();
+        places[number(vertex.fix().index())] = [low[0] + p.x * extent, low[1] + p.y * extent];
+    }
+    // Points of the rings keep their bits.
+    places[..border.len()].copy_from_slice(&border);
     let mut numbers = vec![0u32; used.len()];
     let mut positions = Vec::new();
-    let given: Vec<[f64; 2]> = rings.iter().flat_map(|ring| ring.points.iter().copied()).collect();
-    for vertex in triangulation.fixed_vertices() {
-        let index = vertex.index();
-        if used[index] {
-            numbers[index] = positions.len() as u32;
-            let p = triangulation.vertex(vertex).position();
-            // Points of the rings keep their bits.
-            positions.push(given.get(index).copied().unwrap_or([low[0] + p.x * extent, low[1] + p.y * extent]));
-        }
+    for (index, place) in places.into_iter().enumerate().filter(|(index, _)| used[*index]) {
+        numbers[index] = positions.len() as u32;
+        positions.push(place);
     }
     triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
     for triangle in &mut triangles {
@@ -105,8 +96,8 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Quality), Outlin
     let mut mesh = Mesh::<2> { positions, ..Mesh::default() };
     mesh.cells.triangles = triangles;
     mesh.facets = mesh.facets_from_cells()?;
-    let quality = quality(&mesh, refined.refinement_complete);
-    Ok((mesh, quality))
+    let thin = Thin::of(&mesh, rings, spacing, refined.refinement_complete);
+    Ok((mesh, thin))
 }
 
 /// The inside of rings that do not meet as triangles between their points, which are counted ring by ring; no points are added.
@@ -118,68 +109,13 @@ pub(super) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, Outline
     let extent = distance(low, high);
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);
     let failed = |part: u32, place| OutlineError::TooCoarse { spacing: extent, parts: [part; 2], place };
-    let (mut triangulation, _) = constrained(rings, &[], shrink, failed)?;
+    let (mut triangulation, given) = constrained(rings, &[], shrink, failed)?;
     // A refinement that may add nothing tells which triangles lie outside.
     let nothing = RefinementParameters::<f64>::new().with_max_additional_vertices(0).exclude_outer_faces(true);
     let mut outside = triangulation.refine(nothing).excluded_faces;
     outside.sort_unstable();
     let inner = triangulation.inner_faces().filter(|face| outside.binary_search(&face.fix()).is_err());
-    Ok(inner.map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32)).collect())
-}
-
-/// The triangulation of rings and of points inside them, with the edges of the rings; and how many points the rings have.
-///
-/// All points are given at once: one by one, those of a long straight side have no triangle to lie in, and each new one
-/// would be looked for along all others.
-fn constrained<V: HasPosition<Scalar = f64>>(
-    rings: &[Ring],
-    inside: &[[f64; 2]],
-    shrink: impl Fn([f64; 2]) -> V,
-    failed: impl Fn(u32, [f64; 2]) -> OutlineError,
-) -> Result<(ConstrainedDelaunayTriangulation<V>, usize), OutlineError> {
-    let mut points: Vec<V> = Vec::new();
-    let mut edges: Vec<[usize; 2]> = Vec::new();
-    for ring in rings {
-        let first = points.len();
-        points.extend(ring.points.iter().map(|point| shrink(*point)));
-        edges.extend((first..points.len()).map(|k| [k, if k + 1 < points.len() { k + 1 } else { first }]));
-    }
-    let border = points.len();
-    points.extend(inside.iter().map(|point| shrink(*point)));
-    let count = points.len();
-    let ring_of = |number: usize| {
-        let mut number = number;
-        for ring in rings {
-            match ring.points.get(number) {
-                Some(point) => return (ring.part, *point),
-                None => number -= ring.points.len(),
-            }
-        }
-        (0, inside.first().copied().unwrap_or([0.0; 2]))
-    };
-    let mut crossing = None;
-    let made = ConstrainedDelaunayTriangulation::try_bulk_load_cdt(points, edges.clone(), |edge| {
-        crossing = crossing.or(Some(edge[0]));
-    });
-    let refuse = |number: usize| {
-        let (part, point) = ring_of(number);
-        Err(failed(part, point))
-    };
-    let Ok(triangulation) = made else { return refuse(0) };
-    // Points that fall together, edges that cross, and points that lie on an edge between two others.
-    if triangulation.num_vertices() < count {
-        return refuse(crossing.unwrap_or(0));
-    }
-    if let Some(number) = crossing {
-        return refuse(number);
-    }
-    for [from, to] in edges {
-        let ends = [from, to].map(FixedVertexHandle::from_index);
-        if !triangulation.exists_constraint(ends[0], ends[1]) {
-            return refuse(from);
-        }
-    }
-    Ok((triangulation, border))
+    Ok(inner.map(|face| face.vertices().map(|vertex| given[vertex.fix().index()] as u32)).collect())
 }
 
 /// Points of a triangular lattice inside the rings and clear of them, row by row.
@@ -255,71 +191,4 @@ fn distance_to_segment(point: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
     let t = if square > 0.0 { (u[0] * v[0] + u[1] * v[1]) / square } else { 0.0 };
     let t = t.clamp(0.0, 1.0);
     distance(point, [a[0] + t * u[0], a[1] + t * u[1]])
-}
-
-fn quality(mesh: &Mesh<2>, complete: bool) -> Quality {
-    let mut quality =
-        Quality { smallest_angle: f64::INFINITY, complete, shortest_edge: f64::INFINITY, longest_edge: 0.0 };
-    for triangle in &mesh.cells.triangles {
-        for corner in 0..3 {
-            let at = |k: usize| mesh.positions[triangle[(corner + k) % 3] as usize];
-            let (o, a, b) = (at(0), at(1), at(2));
-            let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
-            let angle = libm::atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
-            if angle < quality.smallest_angle {
-                quality.smallest_angle = angle;
-            }
-            let length = distance(o, a);
-            if length < quality.shortest_edge {
-                quality.shortest_edge = length;
-            }
-            if length > quality.longest_edge {
-                quality.longest_edge = length;
-            }
-        }
-    }
-    quality
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Ring, constrained};
-    use crate::outline::OutlineError;
-    use core::cell::Cell;
-    use spade::{HasPosition, Point2};
-
-    thread_local! {
-        /// How often the library has looked at a point.
-        static LOOKS: Cell<u64> = const { Cell::new(0) };
-    }
-
-    struct Counted(Point2<f64>);
-
-    impl HasPosition for Counted {
-        type Scalar = f64;
-        fn position(&self) -> Point2<f64> {
-            LOOKS.set(LOOKS.get() + 1);
-            self.0
-        }
-    }
-
-    /// Points of a straight side lie in no triangle before there is a corner. The library then looks at every point once for each
-    /// other, which is quick for tens of thousands, and must not become more.
-    #[test]
-    fn points_of_a_long_straight_side_are_looked_at_once_for_each_other_at_most() {
-        let looks = |count: u32| {
-            let side = f64::from(count);
-            let mut points: Vec<[f64; 2]> = (0..count).map(|k| [f64::from(k), 0.0]).collect();
-            points.extend([[side, 0.0], [side, 1.0], [0.0, 1.0]]);
-            let ring = Ring { points, part: 0 };
-            LOOKS.set(0);
-            let counted = |p: [f64; 2]| Counted(Point2::new(p[0] / side, p[1] / side));
-            constrained(&[ring], &[], counted, |_, _| OutlineError::Empty).expect("a strip");
-            LOOKS.get() as f64 / side
-        };
-        for count in [500, 2_000] {
-            let looks = looks(count);
-            assert!(looks > 1.0 && looks < 1.5 * f64::from(count), "{looks} looks at each of {count} points");
-        }
-    }
 }

@@ -9,6 +9,7 @@
 //! refused, or joined beforehand by [`joined`].
 
 mod carrying;
+mod constrained;
 mod crossing;
 mod error;
 mod filling;
@@ -16,16 +17,18 @@ mod nesting;
 mod overlap;
 mod resample;
 mod squares;
+mod thin;
 mod touching;
 
 pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
 pub use error::OutlineError;
-pub use filling::{Quality, SMALLEST_ANGLE, filled, node_estimate};
+pub use filling::{SMALLEST_ANGLE, filled, node_estimate};
 pub use nesting::nest;
 pub use overlap::{Overlap, joined, wound};
 pub use resample::resampled;
 pub use squares::{squares, squares_estimate};
+pub use thin::{Cause, Thin};
 
 use crate::{Mesh, MeshError};
 

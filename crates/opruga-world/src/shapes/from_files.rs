@@ -8,7 +8,7 @@ const SPACING: Field = Field::new(
     Allowed::POSITIVE,
     "m",
     Default::Required,
-    "The distance from node to node, before `scale`; finer detail is left out.",
+    "About the distance from node to node, before `scale`: between its corners, turns by more than 45° within a spacing, an outline is cut into equal pieces, as many as make their length along it come nearest to this, and three at least for a whole outline. Finer detail is left out; how much is told where the area changes by more than 5 %, or where the file has more than four points for a node. With `filling = \"lattice\"` it is the side of the squares, and the outline keeps all of its points.",
 );
 const SIZE: Field =
     Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
@@ -17,14 +17,14 @@ const FILLING: Field = Field::new(
     Allowed::Choice(&["none", "triangles", "lattice"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where the outline is finer than the spacing. `lattice`: equal squares that reach a little beyond the outline and carry it for drawing, however fine it is.",
+    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where corners of the outline are sharper or it is finer than the spacing, which is told. `lattice`: equal squares that reach a little beyond the outline and carry it for drawing, however fine it is.",
 );
 pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     "filling",
     Allowed::Choice(&["none", "lattice", "tetrahedra"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a spacing.",
+    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a spacing, and parts thinner than that may be lost. A volume that changes by more than 5 % is told, by more than 25 % an error.",
 );
 pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     "spacing",
