@@ -86,6 +86,8 @@ pub struct Solid<const D: usize> {
     /// What resists the volumes of nodes.
     volumes: Option<NodalVolumes<D>>,
     damped: bool,
+    /// What [`Potential::energy_parts`] tells [J].
+    energy_parts: f64,
 }
 
 fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
@@ -97,6 +99,11 @@ struct Built<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     inertia: Vec<(u32, u32, f64)>,
     volumes: Option<NodalVolumes<D>>,
+    energy_parts: f64,
+}
+
+impl<const D: usize> Built<D> {
+    const NOTHING: Built<D> = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None, energy_parts: 0.0 };
 }
 
 /// What is the same for all cells while a solid is built.
@@ -169,8 +176,9 @@ impl<'a, const D: usize> Builder<'a, D> {
             return Ok(());
         }
         let positions = &self.ingredients.mesh.positions;
+        let mut measures = Vec::with_capacity(cells.len());
         for cell in &cells {
-            self.check::<E, N>(cell, positions)?;
+            measures.push(self.check::<E, N>(cell, positions)?);
         }
         if let Some(density) = &self.density {
             for cell in &cells {
@@ -209,12 +217,23 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
             numbers
         };
+        if plan.law.cancels() {
+            let modulus = |cell: u32, body: usize| {
+                let [mu, lambda, ..] = numbers(cell, body);
+                2.0 * mu + lambda
+            };
+            let bodies = self.ingredients.values.len();
+            let of_cell = |(cell, measure): (&Cell<N>, &f64)| {
+                measure * (0..bodies).map(|body| modulus(cell.number, body)).sum::<f64>()
+            };
+            built.energy_parts += plan.thickness * cells.iter().zip(&measures).map(of_cell).sum::<f64>();
+        }
         built.parts.push(Box::new(Section::<E, D, N>::new(plan, cells, &numbers)));
         Ok(())
     }
 
-    /// Refuses a cell that is flat or turned inside out at rest.
-    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<(), BuildError> {
+    /// Refuses a cell that is flat or turned inside out at rest; returns its volume, in the plane its area.
+    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<f64, BuildError> {
         let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
         let mut longest = 0.0;
         for a in &rest {
@@ -227,7 +246,8 @@ impl<'a, const D: usize> Builder<'a, D> {
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
         // Boxes are looked at in the middle too.
         let middle = E::BOX.then(|| E::at([0.0; 3]).1);
-        for slopes in E::SLOPES.iter().chain(&middle) {
+        let mut measure = 0.0;
+        for (slopes, weight) in E::SLOPES.iter().chain(&middle).zip(E::WEIGHTS.iter().chain(&[0.0])) {
             let (_, determinant) = rest_gradient(&rest, slopes);
             if !(determinant.is_finite() && determinant > least) {
                 let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
@@ -237,12 +257,13 @@ impl<'a, const D: usize> Builder<'a, D> {
                 );
                 return Err(refuse("model.inverted_cell", message));
             }
+            measure += weight * determinant;
         }
-        Ok(())
+        Ok(measure)
     }
 
     fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {
-        let Built { parts, inertia, volumes } = built;
+        let Built { parts, inertia, volumes, energy_parts } = built;
         if self.locking() == "nodal_volume" && (self.stress || volumes.is_none()) {
             let message = if self.stress {
                 "`locking` is `nodal_volume`; allowed in plane stress: `refuse` or `accept`, since nothing locks where the thickness is free"
@@ -265,7 +286,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
         let damped = self.numbers.damped;
-        Ok(Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped }))
+        Ok(Box::new(Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped, energy_parts }))
     }
 }
 
@@ -299,7 +320,7 @@ impl Model<2> for FemModel {
         let (law, space) =
             if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
+        let mut built = Built::NOTHING;
         builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
         let mut first = cells.triangles.len();
         builder.add::<Quadrilateral, 4>(&mut built, &cells.quadrilaterals, first, law, space)?;
@@ -317,7 +338,7 @@ impl Model<3> for FemModel {
         let builder = Builder::new(ingredients)?;
         let law = builder.entry()?.space;
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
+        let mut built = Built::NOTHING;
         builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;
         let mut first = cells.tetrahedra.len();
         builder.add::<Hexahedron, 8>(&mut built, &cells.hexahedra, first, law, None)?;
@@ -391,6 +412,9 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     /// `prepare` has read all positions before any of them changes.
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    fn energy_parts(&self) -> f64 {
+        self.energy_parts
+    }
     fn shares_threads(&self) -> bool {
         self.shares.len() > 1
     }
