@@ -1,8 +1,4 @@
 //! Any bytes are a checkpoint or a typed error.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| {
-    let _ = opruga_io::checkpoint::Checkpoint::read(bytes);
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| opruga_fuzz::checkpoint(bytes));

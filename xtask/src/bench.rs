@@ -64,6 +64,8 @@ pub(crate) fn compare() -> Result<(), String> {
     }
     programs.threads(sets[0])?;
     programs.sphere(sets[0])?;
+    programs.spot(sets[0])?;
+    programs.triangles()?;
     let bytes = number(&programs.row((1, 100_000), sets[0], &[])?, "heap_bytes_per_vertex")?;
     say("heap of a ring of 100,000, bytes per vertex", &format!("{bytes:.0}"), "≤ 200", 200.0 / bytes);
     let start = programs.start_time()?;
@@ -140,6 +142,15 @@ fn output(command: &mut Command) -> Result<Vec<u8>, String> {
     Ok(output.stdout)
 }
 
+/// The first row of what `opruga bench … --json` prints.
+fn first_row(call: &mut Command) -> Result<Value, String> {
+    let mut report: Value = serde_json::from_slice(&output(call)?).map_err(|e| format!("opruga bench: {e}"))?;
+    match report["rows"].get_mut(0) {
+        Some(row) => Ok(row.take()),
+        None => Err(format!("opruga bench: {report}")),
+    }
+}
+
 impl Programs {
     fn build() -> Result<Programs, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
@@ -177,8 +188,7 @@ impl Programs {
         let mut call = Command::new(&self.opruga);
         call.args(["bench", "vertices", "--json", "--only", &only, "--seconds", &SECONDS.to_string()]);
         call.args(more).env("OPRUGA_SIMD", simd);
-        let report: Value = serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
-        report["rows"].get(0).cloned().ok_or_else(|| format!("opruga bench: {report}"))
+        first_row(&mut call)
     }
 
     fn nanoseconds(&self, rings: (usize, usize), simd: &str, more: &[&str]) -> Result<f64, String> {
@@ -204,13 +214,11 @@ impl Programs {
         let once = || -> Result<f64, String> {
             let mut call = Command::new(&self.opruga);
             call.args(["bench", "scene"]).arg(&scene).args(["--frames", "8", "--json"]).env("OPRUGA_SIMD", simd);
-            let report: Value =
-                serde_json::from_slice(&output(&mut call)?).map_err(|e| format!("opruga bench: {e}"))?;
-            let row = &report["rows"][0];
+            let row = first_row(&mut call)?;
             if row["nodes"].as_f64() != Some(nodes) || row["substeps"].as_f64() != Some(steps) {
                 return Err(format!("{} is another scene: {row}", scene.display()));
             }
-            Ok(number(row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
+            Ok(number(&row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
         };
         let [baseline, time, ratio] = by_turns(|| self.baseline(1, 16_384), once)?;
         let what = format!(
@@ -227,6 +235,32 @@ impl Programs {
         let list: Vec<String> = ratios.iter().map(|ratio| format!("{ratio:.4}")).collect();
         let what = format!("V/V_rest in balance from 162 to 10242 vertices ({}), varies by %", list.join(", "));
         say(&what, &format!("{spread:.2}"), "< 1.5", 1.5 / spread);
+        Ok(())
+    }
+
+    /// Spot as a balloon, against the clock.
+    fn spot(&self, simd: &str) -> Result<(), String> {
+        let scene = self.root.join("benches/scenes/spot.toml");
+        let mut call = Command::new(&self.opruga);
+        call.args(["bench", "scene"]).arg(&scene).args(["--allow-outside", "--frames", "240", "--json"]);
+        let row = first_row(call.env("OPRUGA_SIMD", simd))?;
+        let (nodes, time) = (number(&row, "nodes")?, number(&row, "mean_milliseconds")?);
+        let pace = 1e3 / 60.0 / time;
+        let what = format!(
+            "Spot as a balloon of {nodes} vertices, times real time at 60 frames a second ({time:.2} ms a frame)"
+        );
+        say(&what, &format!("{pace:.1}"), "≥ 10", pace / 10.0);
+        Ok(())
+    }
+
+    /// A surface as scanners write it becomes a body.
+    fn triangles(&self) -> Result<(), String> {
+        let mut call = Command::new(&self.opruga);
+        let row = first_row(call.args(["bench", "load", "--json"]))?;
+        let (triangles, time) = (number(&row, "triangles")?, number(&row, "wall_seconds")?);
+        let plain = number(&row, "plain_read_seconds")?;
+        let what = format!("binary STL of {triangles} triangles made a checked body, s (its bytes alone {plain:.2} s)");
+        say(&what, &format!("{time:.2}"), "< 2", 2.0 / time);
         Ok(())
     }
 

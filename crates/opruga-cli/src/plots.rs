@@ -65,7 +65,8 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
     if panels.is_empty() {
         panels.push(panel("energy", &energy, vec![run.line(1, "kinetic")]));
     }
-    Chart { title: name.to_string(), x: Axis::linear("time", "s"), panels, ..Chart::default() }.to_svg()
+    let x = Axis::linear("time", "s");
+    Chart { title: name.into(), x, panels, credit: columns.credit.clone(), ..Chart::default() }.to_svg()
 }
 
 impl Run<'_> {

@@ -57,6 +57,8 @@ pub(crate) struct Columns {
     pub(crate) probes: Vec<Recorded>,
     pub(crate) dimension: usize,
     pub(crate) length_unit: String,
+    /// Whose drawings, maps or surfaces the scene shows.
+    pub(crate) credit: String,
     /// Whether y counts downwards in pictures.
     pub(crate) y_down: bool,
     /// Bodies with columns of their own: their thickness [m], and whether they are those of the thesis, whose volume
@@ -132,6 +134,7 @@ impl Recorder {
                 probes,
                 dimension: D,
                 length_unit: world.blueprint().length_unit.clone(),
+                credit: world.blueprint().credit.clone(),
                 y_down: scenery.as_ref().is_some_and(Scenery::y_down),
                 bodies: meanings,
             },

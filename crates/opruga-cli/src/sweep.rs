@@ -47,9 +47,9 @@ pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
     let work = Work { sweep: &sweep, points: &points, folder: &folder, threads, simd };
     let start = Instant::now();
     let rows = work.all(known)?;
-    let length_unit = length_unit(&sweep);
+    let (length_unit, credit) = said_of(&sweep);
     let mut files = vec![TABLE.to_string(), QUESTION.into()];
-    match plots(&sweep, &rows, &length_unit) {
+    match plots(&sweep, &rows, &length_unit, &credit) {
         Ok(plots) => {
             for (name, text) in plots {
                 folder.write(&name, true, |out| out.write_all(text.as_bytes()))?;
@@ -90,8 +90,8 @@ fn exit_code(rows: &[Row]) -> u8 {
     rows.iter().map(code).max().unwrap_or(0)
 }
 
-/// What the scene calls its unit of length.
-fn length_unit(sweep: &Sweep) -> String {
+/// What the scene calls its unit of length, and whose drawings it shows.
+fn said_of(sweep: &Sweep) -> (String, String) {
     use opruga::blueprint::AnyBlueprint;
     let options = opruga::io::scene::Options {
         lenient: sweep.lenient,
@@ -100,9 +100,9 @@ fn length_unit(sweep: &Sweep) -> String {
         ..opruga::io::scene::Options::default()
     };
     match opruga::io::scene::read(sweep.text.as_bytes(), &sweep.file, &opruga::catalogue(), &options) {
-        Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint.length_unit,
-        Ok((AnyBlueprint::Space(blueprint), _)) => blueprint.length_unit,
-        Err(_) => "m".into(),
+        Ok((AnyBlueprint::Plane(blueprint), _)) => (blueprint.length_unit, blueprint.credit),
+        Ok((AnyBlueprint::Space(blueprint), _)) => (blueprint.length_unit, blueprint.credit),
+        Err(_) => ("m".into(), String::new()),
     }
 }
 

@@ -6,19 +6,28 @@
 
 mod common;
 use common::*;
-use opruga::blueprint::AnyBlueprint;
+use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::recording::{Ending, Recording};
 use opruga::io::scene;
+use opruga::recordings::Playback;
 use opruga::{Options, World, catalogue, scenes};
+use std::io::Cursor;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const RECORDINGS: u64 = 200;
 const CHECKPOINTS: u64 = 120;
 const SWEEPS: u64 = 80;
+
+fn blueprint() -> Blueprint<2> {
+    let text = scenes::find("pressures").expect("a scene");
+    let read = scene::read(text.as_bytes(), "pressures", &catalogue(), &scene::Options::default());
+    let Ok((AnyBlueprint::Plane(blueprint), _)) = read else { panic!("a scene of the plane") };
+    blueprint
+}
 
 /// The hashes and states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
 struct Undisturbed(Mutex<(World<2>, Vec<Frame>)>);
@@ -28,10 +37,7 @@ type Frame = (u64, Vec<u8>);
 
 impl Undisturbed {
     fn new() -> Undisturbed {
-        let text = scenes::find("pressures").expect("a scene");
-        let read = scene::read(text.as_bytes(), "pressures", &catalogue(), &scene::Options::default());
-        let Ok((AnyBlueprint::Plane(blueprint), _)) = read else { panic!("a scene of the plane") };
-        let world = World::new(blueprint, Options::default()).expect("a world");
+        let world = World::new(blueprint(), Options::default()).expect("a world");
         let first = (world.frame_hash(), world.snapshot());
         Undisturbed(Mutex::new((world, vec![first])))
     }
@@ -55,17 +61,20 @@ impl Undisturbed {
     }
 }
 
-/// Waits until a file is there (every fourth time it does not), then a time that follows from a number alone, up to the
-/// longest [µs], and kills.
+/// A number below another that follows from a round alone (SplitMix64).
+fn random(round: u64, below: u64) -> u64 {
+    let mut z = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (z ^ (z >> 27)) % below.max(1)
+}
+
+/// Waits until a file is there (every fourth time it does not), then a random time up to the longest [µs], and kills.
 fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64, longest: u64) {
     let mut child = program(folder, arguments).spawn().expect("the program runs");
     if !round.is_multiple_of(4) {
         until(file, || folder.join(file).exists() || child.try_wait().is_ok_and(|ended| ended.is_some()));
     }
-    // SplitMix64.
-    let mut z = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    std::thread::sleep(Duration::from_micros((z ^ (z >> 27)) % longest));
+    std::thread::sleep(Duration::from_micros(random(round, longest)));
     child.kill().expect("it is killed");
     child.wait().expect("it ends");
 }
@@ -88,31 +97,114 @@ fn rounds(count: u64, each: impl Fn(u64) + Sync) {
     });
 }
 
+/// A run of a tenth of a second that records, from its first file to its last.
+struct Recorded {
+    every: &'static str,
+    /// The recording that it leaves where nobody kills it.
+    whole: Vec<u8>,
+    /// How long it takes then.
+    takes: Duration,
+}
+
+impl Recorded {
+    fn call<'a>(every: &'a str, out: &'a str, file: &'a str) -> [&'a str; 8] {
+        ["run", "pressures", "--seconds=3", "--no-pictures", every, "--out", out, file]
+    }
+
+    /// Nobody kills it.
+    fn new(folder: &Path, every: &'static str) -> Recorded {
+        let name = format!("whole{every}");
+        let begun = Instant::now();
+        let output = opruga(folder, &Recorded::call(every, &format!("o{name}"), &format!("--record={name}")));
+        let takes = begun.elapsed();
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        Recorded { every, whole: std::fs::read(folder.join(name)).expect("a recording"), takes }
+    }
+
+    /// The bytes of the chunk that begins at a place: 48 of its head, which says how many follow; of the last one also those of
+    /// the end, which are written with it.
+    fn chunk_at(&self, place: u64) -> u64 {
+        let head = &self.whole[place as usize..];
+        let payload = head[24..32].iter().rev().fold(0, |all, byte| all << 8 | u64::from(*byte));
+        let behind = 48 + payload;
+        if head.starts_with(b"INDX") { head.len() as u64 } else { behind }
+    }
+
+    /// Kills it: half of the times at any moment, a quarter of them when so many bytes are there, a quarter of them while the
+    /// end is written or shortly behind it. Says whether it was still at work.
+    fn killed(&self, folder: &Path, round: u64) -> bool {
+        let (out, file) = (format!("o{round}"), format!("r{round}"));
+        let call = Recorded::call(self.every, &out, &format!("--record={file}")).map(String::from);
+        let call: Vec<&str> = call.iter().map(String::as_str).collect();
+        let mut child = program(folder, &call).spawn().expect("the program runs");
+        let length = self.whole.len() as u64;
+        let (bytes, pause) = match round % 4 {
+            0 | 1 => (0, random(round, self.takes.as_micros() as u64)),
+            2 => (random(round, length), 0),
+            _ => (length - random(round, 400), random(!round, 10_000)),
+        };
+        let there = || std::fs::metadata(folder.join(&file)).map_or(0, |about| about.len());
+        let begun = Instant::now();
+        while there() < bytes && child.try_wait().is_ok_and(|ended| ended.is_none()) {
+            assert!(begun.elapsed() < Duration::from_secs(60), "round {round}: {bytes} bytes are never there");
+            std::thread::yield_now();
+        }
+        std::thread::sleep(Duration::from_micros(pause));
+        child.kill().expect("it is killed, or has ended");
+        !child.wait().expect("it ends").success()
+    }
+}
+
+/// What a kill leaves is the beginning of what the whole run leaves, byte by byte. All of its chunks but one that was not
+/// written to its end are read, and are right; and its last frame can be played.
 #[test]
 fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
     let folder = tempfile::tempdir().expect("a folder");
     let (folder, undisturbed) = (folder.path(), Undisturbed::new());
-    let (begun, most) = (AtomicU64::new(0), AtomicU64::new(0));
+    let ways = ["--record-every=1", "--record-every=3", "--record-every=1000"];
+    let ways = ways.map(|every| Recorded::new(folder, every));
+    let counts: [AtomicU64; 4] = Default::default();
     rounds(RECORDINGS, |round| {
-        let (out, file) = (format!("o{round}"), format!("r{round}"));
-        let every = ["--record-every=1", "--record-every=3", "--record-every=1000"][round as usize % 3];
-        let call = ["run", "pressures", "--seconds=1e5", "--no-pictures", "--out", &out, "--record", &file, every];
-        killed(folder, &call, &file, round, 60_000);
-        // It gets its name with its head.
-        let Ok(file) = std::fs::File::open(folder.join(&file)) else { return };
-        let mut recording = Recording::open(file).unwrap_or_else(|error| panic!("round {round}: {error}"));
-        assert!(matches!(recording.ending(), Ending::Open { .. }), "round {round}: {:?}", recording.ending());
+        let way = &ways[round as usize % ways.len()];
+        let at_work = way.killed(folder, round);
+        let count = |which: usize| counts[which].fetch_add(1, Ordering::Relaxed);
+        // It gets its name with its head: before that there is nothing, and nothing else under its name.
+        let Ok(bytes) = std::fs::read(folder.join(format!("r{round}"))) else {
+            assert!(at_work, "round {round}: a run that has ended has left no recording");
+            count(0);
+            return;
+        };
+        assert!(way.whole.starts_with(&bytes), "round {round}: {} bytes are not those of the whole run", bytes.len());
+        let mut recording = Recording::open(Cursor::new(&bytes)).unwrap_or_else(|e| panic!("round {round}: {e}"));
+        match recording.ending() {
+            Ending::Closed => {
+                assert_eq!(bytes.len(), way.whole.len(), "round {round}");
+                count(if at_work { 3 } else { 2 });
+            }
+            Ending::Open { lost } => {
+                assert!(at_work, "round {round}: a run that has ended has not closed its recording");
+                let chunk = way.chunk_at(bytes.len() as u64 - lost);
+                assert!(*lost < chunk, "round {round}: {lost} bytes are lost, of a chunk of {chunk}");
+                count(1);
+            }
+            Ending::Damaged(error) => panic!("round {round}: {error}"),
+        }
         for frame in recording.frames() {
             let hash = recording.hash(frame).expect("a whole frame");
             let kept = recording.kept(frame) == Ok(frame);
             let state = kept.then(|| recording.read(frame).expect("a whole state"));
             assert!(undisturbed.is(frame, hash, state), "round {round}, frame {frame}");
         }
-        begun.fetch_add(1, Ordering::Relaxed);
-        most.fetch_max(recording.frames().end, Ordering::Relaxed);
+        let Some(last) = recording.frames().next_back() else { return };
+        let mut playback = Playback::<_, 2>::of(recording, last).expect("what the program did");
+        let mut world = World::new(blueprint(), Options::default()).expect("a world");
+        playback.show(&mut world, last).unwrap_or_else(|error| panic!("round {round}: {error}"));
+        assert!(undisturbed.is(last, world.frame_hash(), Some(&world.snapshot())), "round {round}, frame {last}");
     });
-    let (begun, most) = (begun.into_inner(), most.into_inner());
-    assert!(begun > RECORDINGS / 2 && most > 3, "{begun} recordings had begun, with up to {most} frames");
+    let [before, within, after, closed] = counts.map(AtomicU64::into_inner);
+    println!("{before} before the file had its name, {within} within it, {closed} behind its end, {after} had ended");
+    assert_eq!(before + within + after + closed, RECORDINGS);
+    assert!(within > RECORDINGS / 4, "{before} {within} {closed} {after}");
 }
 
 #[test]

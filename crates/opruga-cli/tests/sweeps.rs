@@ -5,6 +5,7 @@ mod common;
 use common::{code, contents, opruga, printed, program, said, until};
 use serde_json::Value;
 use std::path::Path;
+use std::process::Output;
 
 /// Twelve short runs of the ball.
 const CALL: [&str; 11] = [
@@ -28,6 +29,15 @@ fn table(folder: &Path) -> String {
 fn swept(folder: &Path, more: &[&str]) {
     let output = opruga(folder, &[&CALL, more].concat());
     assert_eq!(code(&output), 0, "{}", said(&output));
+}
+
+/// Sweeps the ball over stiffnesses of which some are refused, into the folder `o`; it ends with that exit code.
+fn swept_over_stiffness(values: &str, exit: i32, more: &[&str]) -> (tempfile::TempDir, Output) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let set = format!("--set=body.ball.models.mass_spring.stiffness={values}");
+    let output = opruga(folder.path(), &[&["sweep", "ball", &set, "--metric=energy_drift", "--out=o"], more].concat());
+    assert_eq!(code(&output), exit, "{}", said(&output));
+    (folder, output)
 }
 
 #[test]
@@ -135,12 +145,8 @@ fn bad_calls_are_refused_before_anything_is_written() {
 
 #[test]
 fn a_failed_point_is_counted_and_the_others_are_run() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let set = "--set=body.ball.models.mass_spring.stiffness=100,1e9";
-    let call = ["sweep", "ball", set, "--metric=energy_drift", "--seconds=0.1", "--json", "--out=o"];
     // As a run of that point would end: an unstable step is a bad call.
-    let output = opruga(folder.path(), &call);
-    assert_eq!(code(&output), 2, "{}", said(&output));
+    let (folder, output) = swept_over_stiffness("100,1e9", 2, &["--seconds=0.1", "--json"]);
     assert_eq!(
         code(&opruga(folder.path(), &["sweep", "--resume=o"])),
         2,
@@ -156,14 +162,15 @@ fn a_failed_point_is_counted_and_the_others_are_run() {
 /// A run that diverges is exit code 3, whatever else was refused; every other point has its row.
 #[test]
 fn a_point_that_diverges_is_told_by_the_exit_code() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let set = "--set=body.ball.models.mass_spring.stiffness=100,-1,1e9";
-    let call = ["sweep", "ball", set, "--metric=energy_drift", "--seconds=0.5", "--allow-unstable", "--out=o"];
-    let output = opruga(folder.path(), &call);
-    assert_eq!(code(&output), 3, "{}", said(&output));
+    let (folder, _) = swept_over_stiffness("100,-1,1e9", 3, &["--seconds=0.5", "--allow-unstable"]);
     let table = table(&folder.path().join("o"));
-    for (row, word) in [(1, "0,100,done,"), (2, "1,-1,scene.range,"), (3, "2,1e9,run.diverged,")] {
-        assert!(table.lines().nth(row).is_some_and(|line| line.starts_with(word)), "{table}");
+    for (row, word, what) in [
+        (1, "0,100,done,", ""),
+        (2, "1,-1,scene.range,", "`stiffness` is -1; allowed: "),
+        (3, "2,1e9,run.diverged,", "diverged"),
+    ] {
+        let line = table.lines().nth(row).unwrap_or_default();
+        assert!(line.starts_with(word) && line.contains(what), "{table}");
     }
 }
 
@@ -212,6 +219,8 @@ fn a_scene_with_a_file_is_swept_and_goes_on_where_the_file_is_gone() {
     assert_eq!(code(&output), 0, "{}", said(&output));
     let whole = table(&folder.join("s"));
     assert_eq!(whole.lines().count(), 3, "{whole}");
+    let plots = std::fs::read_to_string(folder.join("s/plots.svg")).expect("plots");
+    assert!(plots.contains("Twemoji") && plots.contains("CC-BY 4.0"), "whose drawing it is");
     // A part of the table is lost, and the drawing too.
     let kept: String = whole.lines().take(2).map(|line| format!("{line}\n")).collect();
     std::fs::write(folder.join("s/results.csv"), kept).expect("a file");

@@ -198,6 +198,11 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
+    /// The size of the parts whose difference U is at rest, of all bodies together [J]: rounding of these is no energy. Zero
+    /// where U is a sum of squares.
+    fn energy_parts(&self) -> f64 {
+        0.0
+    }
     /// Delivers ∂²U/∂x∂x, after `prepare` in the same state.
     fn hessian(&self, _view: &View<D>, _scratch: &[f64], _keep: Definiteness, _sink: &mut dyn Sink<D>) {}
     /// Delivers −∂F/∂v, the matrix of damping, after `prepare` in the same state.

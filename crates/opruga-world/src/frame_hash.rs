@@ -1,27 +1,15 @@
-//! A hash of all positions and velocities that is quick enough for every frame.
+//! A hash of all positions and velocities that is quick enough for every frame: it costs less than a substep, also of
+//! scenes that have few of them.
 
 use crate::world::World;
 use opruga_core::state::Layout;
 use opruga_core::system::System;
-use opruga_math::WIDTH;
+use opruga_math::{Pack, WIDTH, Work};
 
 /// An odd factor: the golden ratio in 64 bits.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Hashes one number into a lane. It can be undone, so a number that differs alone is never missed; the rotation brings the
-/// upper bits back to where a product spreads them.
-#[inline(always)]
-fn mix(lane: u64, number: f64) -> u64 {
-    (lane ^ number.to_bits()).wrapping_mul(GOLDEN).rotate_left(29)
-}
-
-/// Hashes a hash into another.
-fn join(hash: u64, other: u64) -> u64 {
-    let hash = (hash ^ other).wrapping_mul(GOLDEN);
-    hash ^ hash >> 32
-}
-
-/// Where the lanes of a body begin: each at another number.
+/// Where the sums of the lanes begin: each at another number.
 const START: [u64; WIDTH] = {
     let mut start = [0; WIDTH];
     let mut lane = 0;
@@ -32,51 +20,112 @@ const START: [u64; WIDTH] = {
     start
 };
 
-/// The hashes of the bodies of a system, which lie in the lanes of a batch or alone in the first. Node i of a body goes to its
-/// lane i modulo eight, coordinate by coordinate, positions first, whichever the layout.
-fn of_bodies<const D: usize>(system: &System<D>) -> [u64; WIDTH] {
-    let columns = [&system.state.x, &system.state.v].into_iter().flat_map(|columns| columns.slices());
-    match system.layout {
-        Layout::Single => {
-            let mut lanes = START;
-            for column in columns {
-                let (packs, rest) = column[..system.nodes].as_chunks::<WIDTH>();
-                for pack in packs {
-                    for (lane, number) in lanes.iter_mut().zip(pack) {
-                        *lane = mix(*lane, *number);
-                    }
-                }
-                lanes.iter_mut().zip(rest).for_each(|(lane, number)| *lane = mix(*lane, *number));
-            }
-            let mut out = [0; WIDTH];
-            out[0] = lanes.into_iter().fold(system.nodes as u64, join);
-            out
+/// Hashes a hash into another.
+#[inline(always)]
+fn join(hash: u64, other: u64) -> u64 {
+    let hash = (hash ^ other).wrapping_mul(GOLDEN);
+    hash ^ hash >> 32
+}
+
+/// Eight sums of the bits of numbers, and as many of these sums, which see the order (Fletcher): additions alone, which every
+/// set of vector instructions has for 64 bits.
+///
+/// The upper half of a number is laid over its lower one, so that numbers that differ have terms that differ below 2³².
+/// Two of them in a lane then never cancel out: where their terms add up to nothing, the sums of sums are off by one of them
+/// times the distance, which is no multiple of 2⁶⁴. More than two cancel by chance alone.
+struct Sums {
+    first: [u64; WIDTH],
+    second: [u64; WIDTH],
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, pack: &[f64; WIDTH]) {
+        for lane in 0..WIDTH {
+            let bits = pack[lane].to_bits();
+            self.first[lane] = self.first[lane].wrapping_add(bits ^ bits >> 32);
+            self.second[lane] = self.second[lane].wrapping_add(self.first[lane]);
         }
-        Layout::Batch => {
-            // A row for each lane, in it a hash for each body.
-            let mut lanes = START.map(|start| [start; WIDTH]);
-            for column in columns {
-                let (packs, _) = column[..system.nodes * WIDTH].as_chunks::<WIDTH>();
-                for eight in packs.chunks(WIDTH) {
-                    for (row, pack) in lanes.iter_mut().zip(eight) {
-                        for (lane, number) in row.iter_mut().zip(pack) {
-                            *lane = mix(*lane, *number);
+    }
+
+    /// One hash for each lane.
+    #[inline(always)]
+    fn hashes(&self) -> [u64; WIDTH] {
+        let mut out = [0; WIDTH];
+        for lane in 0..WIDTH {
+            out[lane] = join(join(0, self.first[lane]), self.second[lane]);
+        }
+        out
+    }
+}
+
+/// The hashes of the bodies of a system, which lie in the lanes of a batch or alone in the first. Node i of a body goes to its
+/// sums i modulo eight, coordinate by coordinate, positions first, whichever the layout.
+struct OfBodies<'a, const D: usize>(&'a System<D>);
+
+impl<const D: usize> Work for OfBodies<'_, D> {
+    type Output = [u64; WIDTH];
+    #[inline(always)]
+    fn run<P: Pack>(self) -> [u64; WIDTH] {
+        let system = self.0;
+        let (positions, velocities) = (system.state.x.slices(), system.state.v.slices());
+        match system.layout {
+            Layout::Single => {
+                let mut sums = Sums { first: START, second: [0; WIDTH] };
+                for columns in [&positions, &velocities] {
+                    for column in columns {
+                        let (packs, rest) = column[..system.nodes].as_chunks::<WIDTH>();
+                        for pack in packs {
+                            sums.add(pack);
+                        }
+                        if !rest.is_empty() {
+                            let mut last = [0.0; WIDTH];
+                            last[..rest.len()].copy_from_slice(rest);
+                            sums.add(&last);
                         }
                     }
                 }
+                let mut out = [0; WIDTH];
+                out[0] = system.nodes as u64;
+                for hash in sums.hashes() {
+                    out[0] = join(out[0], hash);
+                }
+                out
             }
-            let mut out = [system.nodes as u64; WIDTH];
-            for (body, hash) in out.iter_mut().enumerate() {
-                *hash = lanes.iter().fold(*hash, |hash, row| join(hash, row[body]));
+            Layout::Batch => {
+                let mut out = [system.nodes as u64; WIDTH];
+                // Row by row: the sums of all of them would not fit into registers.
+                for row in 0..WIDTH {
+                    let mut sums = Sums { first: [START[row]; WIDTH], second: [0; WIDTH] };
+                    for columns in [&positions, &velocities] {
+                        for column in columns {
+                            let (packs, _) = column[..system.nodes * WIDTH].as_chunks::<WIDTH>();
+                            let mut node = row;
+                            while node < system.nodes {
+                                sums.add(&packs[node]);
+                                node += WIDTH;
+                            }
+                            // As behind the last node of a body alone.
+                            if node < system.nodes.next_multiple_of(WIDTH) {
+                                sums.add(&[0.0; WIDTH]);
+                            }
+                        }
+                    }
+                    let hashes = sums.hashes();
+                    for body in 0..WIDTH {
+                        out[body] = join(out[body], hashes[body]);
+                    }
+                }
+                out
             }
-            out
         }
     }
 }
 
 impl<const D: usize> World<D> {
     pub(crate) fn frame_hash_here(&self) -> u64 {
-        let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| of_bodies(&island.system)).collect();
+        let hash = |system: &System<D>| system.simd.run(OfBodies(system));
+        let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();
         let there = (0..self.alive.len()).filter(|body| self.alive[*body]);
         there.fold(0, |hash, body| {
             let (island, lane) = self.place[body];

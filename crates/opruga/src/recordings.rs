@@ -51,20 +51,21 @@ const BYTE: f64 = 2.1;
 /// What it takes to keep a state, however small [ns].
 const STATE: f64 = 3_000.0;
 /// What a frame takes, however small [ns].
-const FRAME: f64 = 20_000.0;
+const FRAME: f64 = 4_000.0;
 /// What a node, a cell and a facet of space add to a step of an explicit rule, at least [ns].
-const WORK: [f64; 3] = [1.3, 3.0, 4.0];
+const WORK: [f64; 3] = [1.0, 3.0, 4.0];
 /// How much more a step of an implicit rule takes, at least.
 const IMPLICIT: f64 = 500.0;
-/// The part of a run that its recording may take.
-const SHARE: f64 = 0.06;
-/// The most frames from one state to the next: as many are computed to see one of them.
-const FARTHEST: f64 = 32.0;
+/// The part of a run that keeping its states may take; the hashes of all frames take another.
+const SHARE: f64 = 0.05;
+/// The work that a kill may cost [ns]: to give each of many small frames to the system would take as long as to compute it.
+const TOGETHER: f64 = 100_000.0;
+/// The most frames from one state to the next: what the head of a recording can say.
+const FARTHEST: f64 = u32::MAX as f64;
 
-/// How many frames a state is to be kept, where nobody says it: so many that a run is less than a tenth slower by it, but
-/// at most 32. It follows from the scene alone, by what work and writing take on a common machine: the same run gives the
+/// What a frame of a world takes on a common machine, at least [ns]. It follows from the scene alone: the same run gives the
 /// same recording everywhere.
-pub fn states_apart<const D: usize>(world: &World<D>) -> u64 {
+fn work<const D: usize>(world: &World<D>) -> f64 {
     let blueprint = world.blueprint();
     let registry = Registry::<D>::default();
     let implicit = |values: &Values| {
@@ -79,12 +80,24 @@ pub fn states_apart<const D: usize>(world: &World<D>) -> u64 {
         let rule = body.integrator.as_ref().unwrap_or(&blueprint.integrator);
         if implicit(rule) { IMPLICIT * work } else { work }
     };
-    let frame = FRAME + f64::from(blueprint.time.substeps) * blueprint.bodies.iter().map(step).sum::<f64>();
-    let nodes: usize = blueprint.bodies.iter().map(|body| body.mesh.nodes()).sum();
+    FRAME + f64::from(blueprint.time.substeps) * blueprint.bodies.iter().map(step).sum::<f64>()
+}
+
+/// How many frames a state is to be kept, where nobody says it: so many that a run is less than a tenth slower by it and
+/// by the hashes of all frames. To see a frame that is not kept takes as many frames at most, which is some twenty times
+/// what it took to keep a state, whatever the scene: a twentieth of a second for a hundred thousand numbers.
+pub fn states_apart<const D: usize>(world: &World<D>) -> u64 {
+    let nodes: usize = world.blueprint().bodies.iter().map(|body| body.mesh.nodes()).sum();
     // Positions and velocities.
     let state = STATE + BYTE * (nodes * 2 * D * 8) as f64;
-    let apart = (state / (SHARE * frame)).ceil();
+    let apart = (state / (SHARE * work(world))).ceil();
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
+}
+
+/// How many frames go to the system together at most: what a kill costs. One, but of small scenes a tenth of a millisecond.
+pub fn frames_together<const D: usize>(world: &World<D>) -> u64 {
+    let together = TOGETHER / work(world);
+    if together > 1.0 { together as u64 } else { 1 }
 }
 
 /// A recording that is being written: states of a world, and what the program does to it.
@@ -94,6 +107,8 @@ pub struct Tape {
     path: PathBuf,
     /// From one frame whose state is kept to the next.
     every: u64,
+    /// Frames that go to the system together.
+    together: u64,
     /// The first frame.
     first: u64,
     /// The last frame whose state was kept.
@@ -129,8 +144,8 @@ impl Tape {
         let file = RecordingFile::create(path, force, header)?;
         world.keep_inputs();
         drop(world.take_inputs());
-        let first = world.frames();
-        let mut tape = Tape { file, path: path.to_path_buf(), every: header.every, first, kept: first };
+        let (first, together) = (world.frames(), frames_together(world));
+        let mut tape = Tape { file, path: path.to_path_buf(), every: header.every, together, first, kept: first };
         tape.keep(world)?;
         Ok(tape)
     }
@@ -152,10 +167,12 @@ impl Tape {
     /// has made itself (`recording.input`), and for a frame that is not the next one. The frames before are whole.
     pub fn push<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), WriteError> {
         self.inputs(world, world.frames())?;
-        match world.frames().saturating_sub(self.first).is_multiple_of(self.every) {
-            true => self.keep(world),
-            false => self.file.push(world.frames(), world.frame_hash()),
+        let frames = world.frames().saturating_sub(self.first);
+        if frames.is_multiple_of(self.every) {
+            return self.keep(world);
         }
+        self.file.push(world.frames(), world.frame_hash())?;
+        if frames.is_multiple_of(self.together) { self.file.flush() } else { Ok(()) }
     }
 
     fn keep<const D: usize>(&mut self, world: &World<D>) -> Result<(), WriteError> {

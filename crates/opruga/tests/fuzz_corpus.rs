@@ -1,6 +1,11 @@
 //! The inputs that the fuzz targets of recordings, checkpoints and sweeps begin from: made here, and compared with those of
 //! `fuzz/corpus`. `OPRUGA_CORPUS=write cargo test --test fuzz_corpus` writes them anew after a change of format.
 
+// The bodies of the targets, which the fuzzer calls with other bytes.
+#[path = "../../../fuzz/src/lib.rs"]
+#[allow(unreachable_pub, reason = "it is a crate of its own there")]
+mod targets;
+
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::checkpoint::Checkpoint;
 use opruga::io::recording::{Asset, Ending, Header, Recording};
@@ -135,6 +140,35 @@ fn the_corpus_is_that_of_this_version() {
                 let end = bytes.iter().position(|byte| *byte == 0).expect("a zero");
                 assert!(Question::read(&bytes[..end]).expect("a question").same(&question()));
             }
+        }
+    }
+}
+
+/// Every target has a body, a file that the fuzzer builds and a corpus to begin from; and takes all of that as it will.
+#[test]
+fn every_target_takes_its_corpus() {
+    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
+    let names = |folder: &str| {
+        let entries =
+            std::fs::read_dir(fuzz.join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());
+        let mut names: Vec<String> =
+            entries.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
+        names.sort();
+        names
+    };
+    let known = targets::TARGETS.map(|(name, _)| name);
+    assert_eq!(
+        (names("fuzz_targets"), names("corpus")),
+        (known.map(String::from).into(), known.map(String::from).into())
+    );
+    for (name, target) in targets::TARGETS {
+        let built = std::fs::read_to_string(fuzz.join(format!("fuzz_targets/{name}.rs"))).expect("a target");
+        assert!(built.contains(&format!("opruga_fuzz::{name}(bytes)")), "{built}");
+        for file in std::fs::read_dir(fuzz.join("corpus").join(name)).expect("a corpus") {
+            let bytes = std::fs::read(file.expect("an entry").path()).expect("a file");
+            target(&bytes);
+            // Cut off, as a fuzzer begins.
+            target(&bytes[..bytes.len() / 2]);
         }
     }
 }

@@ -201,19 +201,26 @@ fn what_cannot_be_recorded_is_an_error_and_the_frames_before_stay() {
     std::fs::remove_file(path).expect("the file is there");
 }
 
-/// States are kept as far apart as a run's speed asks for: the crowd's are, those of a slow scene are not.
+/// States are kept as far apart as a run's speed asks for: the crowd's are, those of a slow scene are not, and with a quarter
+/// of the steps four times as far. From one to the next it is the same work: a frame between two is soon there.
 #[test]
 fn states_of_fast_scenes_are_kept_farther_apart() {
-    let apart = |name: &str| opruga::recordings::states_apart(&world(name));
-    assert!(
-        apart("thousand-balls") > 8 && apart("heart-solid") == 1,
-        "{} {}",
-        apart("thousand-balls"),
-        apart("heart-solid")
-    );
+    let apart = |name: &str, substeps: Option<u32>| {
+        let mut blueprint = blueprint(name);
+        blueprint.time.substeps = substeps.unwrap_or(blueprint.time.substeps);
+        let options = Options { allow_unstable: true, ..Options::default() };
+        let world = World::new(blueprint, options).expect("a world");
+        (opruga::recordings::states_apart(&world), opruga::recordings::frames_together(&world))
+    };
+    let [(many, _), (few, _)] = [32, 8].map(|substeps| apart("thousand-balls", Some(substeps)));
+    assert!(many > 8 && few.abs_diff(4 * many) <= 4, "{many} {few}");
+    assert_eq!(apart("heart-solid", None), (1, 1));
     for name in ["ball", "heart", "giant-ring"] {
-        assert!((1..=32).contains(&apart(name)), "{name}: {}", apart(name));
+        let (apart, together) = apart(name, None);
+        assert!((1..=64).contains(&apart) && (1..=20).contains(&together), "{name}: {apart} {together}");
     }
+    // What a kill costs is bounded for the smallest frames too.
+    assert!((2..=25).contains(&apart("ball", Some(1)).1));
 }
 
 /// A state that differs in motion alone is put into the islands that are there; the bits are those of islands built anew.

@@ -182,7 +182,7 @@ fn one_parameter_is_drawn_as_lines_and_two_as_a_map_with_failures_marked() {
         question.fixed.push(("time.seconds".into(), "0.8".into()));
         question.design = design;
         let rows = rows(&question);
-        opruga::sweep::plots(&question, &rows, "m").expect("plots")
+        opruga::sweep::plots(&question, &rows, "m", "by somebody, CC-BY 4.0").expect("plots")
     };
     let (restitution, stiffness) =
         ("collider.0.restitution=0,0.5,1", "body.drop.models.mass_spring.stiffness=0,1,1e12");
@@ -194,6 +194,9 @@ fn one_parameter_is_drawn_as_lines_and_two_as_a_map_with_failures_marked() {
     let each = of(&[restitution, stiffness], Design::Each);
     let names: Vec<&str> = each.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["plots-restitution.svg", "plots-stiffness.svg"]);
+    for (name, text) in lines.iter().chain(&map).chain(&each) {
+        assert!(text.contains("by somebody, CC-BY 4.0"), "{name}");
+    }
     let words = of(&["integrator.kind=verlet,heun"], Design::Grid);
     assert!(words[0].1.contains("1 verlet, 2 heun"));
 }

@@ -14,8 +14,7 @@ use opruga::math::{WIDTH, calibration};
 pub(crate) fn processor_time() -> f64 {
     #[cfg(unix)]
     {
-        let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-        now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
+        seconds(rustix::time::ClockId::ThreadCPUTime)
     }
     #[cfg(not(unix))]
     {
@@ -24,6 +23,22 @@ pub(crate) fn processor_time() -> f64 {
         static START: OnceLock<Instant> = OnceLock::new();
         START.get_or_init(Instant::now).elapsed().as_secs_f64()
     }
+}
+
+/// Processor time of all threads of this program [s]; that of this one where the system has no such clock.
+pub(crate) fn processor_time_of_all() -> f64 {
+    #[cfg(unix)]
+    {
+        seconds(rustix::time::ClockId::ProcessCPUTime)
+    }
+    #[cfg(not(unix))]
+    processor_time()
+}
+
+#[cfg(unix)]
+fn seconds(clock: rustix::time::ClockId) -> f64 {
+    let now = rustix::time::clock_gettime(clock);
+    now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
 }
 
 /// The middle one of some numbers.

@@ -1,19 +1,20 @@
 //! `opruga bench record`: what recording costs, beside the same run without, in one call.
 
-use super::{Machine, median, processor_time};
+use super::{Machine, median, processor_time_of_all};
 use crate::arguments::BenchRecord;
 use crate::checkpoints::Calling;
 use crate::failure::{Failure, print_data};
 use crate::recordings;
-use crate::source::{Opened, Source, open};
-use opruga::World;
+use crate::source::{Opened, open};
+use opruga::WorldError;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::math::words::counted;
+use opruga::recordings::TapeError;
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 
-/// Times of the frames of one run: of this thread on the processor, and by the clock on the wall [ms].
+/// Times of one run: of all threads on the processor, and by the clock on the wall [ms].
 type Times = [f64; 2];
 
 /// Runs a scene again and again, with and without a recording, and prints what that adds.
@@ -42,20 +43,35 @@ fn of_scene<const D: usize>(
     let every = call.every.map_or_else(|| opruga::recordings::states_apart(&first), u64::from);
     let nodes: usize = first.bodies().map(|body| first.node_count(body)).sum();
     drop(first);
-    let (mut without, mut with, mut closing, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let frames = call.frames.map_or_else(|| whole_run(blueprint), u64::from);
+    let (mut without, mut with, mut around, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for round in 0..2 * call.rounds {
         let mut world = new()?;
+        let failed = |error: WorldError, time: f64| source.run_error(&error, time);
+        let start = now();
         // One of a pair comes first as often as the other.
         if round % 4 == 0 || round % 4 == 3 {
-            without.push(frames(call, source, &mut world, |world| Ok(world.frame()?))?);
+            for _ in 0..frames {
+                world.frame().map_err(|error| failed(error, world.time()))?;
+            }
+            without.push(since(start));
             continue;
         }
         let calling = Calling { overrides: reading.overrides.clone(), ..Calling::default() };
         let mut tape = recordings::begin(path, true, Some(every as u32), source, &calling, &mut world)?;
-        with.push(frames(call, source, &mut world, |world| tape.step(world))?);
-        let start = Instant::now();
+        let beginning = since(start);
+        for _ in 0..frames {
+            tape.step(&mut world).map_err(|error| match error {
+                TapeError::World(error) => failed(error, world.time()),
+                error => error.into(),
+            })?;
+        }
+        let end = now();
         bytes = tape.finish(&mut world)?;
-        closing.push(start.elapsed().as_secs_f64() * 1e3);
+        around.push([0, 1].map(|clock| beginning[clock] + since(end)[clock]));
+        with.push(since(start));
+        // One that takes the place of another is made to last first.
+        let _ = std::fs::remove_file(path);
     }
     let of = |times: &[Times], clock: usize| median(&times.iter().map(|times| times[clock]).collect::<Vec<_>>());
     let added = |clock: usize| {
@@ -63,14 +79,15 @@ fn of_scene<const D: usize>(
             with.iter().zip(&without).map(|(with, plain)| with[clock] / plain[clock] - 1.0).collect();
         median(&shares)
     };
-    let per_frame = |milliseconds: f64| milliseconds / f64::from(call.frames);
+    let per_frame = |milliseconds: f64| milliseconds / frames as f64;
     let row = json!({
-        "scene": source.name, "nodes": nodes, "frames": call.frames, "rounds": call.rounds, "every": every,
+        "scene": source.name, "nodes": nodes, "frames": frames, "rounds": call.rounds, "every": every,
         "bytes": bytes,
         "without": {"processor_milliseconds_per_frame": per_frame(of(&without, 0)), "wall_milliseconds_per_frame": per_frame(of(&without, 1))},
         "with": {"processor_milliseconds_per_frame": per_frame(of(&with, 0)), "wall_milliseconds_per_frame": per_frame(of(&with, 1))},
         "added": {"processor": added(0), "wall": added(1)},
-        "closing_milliseconds": median(&closing), "calibration": machine,
+        "begin_and_close": {"processor_milliseconds": of(&around, 0), "wall_milliseconds": of(&around, 1)},
+        "calibration": machine,
     });
     if call.json {
         print_data(&format!("{}\n", json!({ "rows": [row] })))?;
@@ -79,37 +96,37 @@ fn of_scene<const D: usize>(
     print_data(&format!(
         "{}: {}, {} in each of {}, with and without a recording in turns\n  \
          without {:.4} ms of the processor per frame, with it {:.4}: {:+.1} % (median of the pairs; by the clock {:+.1} %)\n  \
-         one state in {} kept, {:.2} MB; closing the file took {:.1} ms\n  {}\n",
+         in that beginning and closing the file, {:.2} ms of the processor and {:.1} ms by the clock for the whole run\n  \
+         one state in {} kept, {:.2} MB\n  {}\n",
         source.name,
         counted(nodes as u64, "node", "nodes"),
-        counted(call.frames.into(), "frame", "frames"),
+        counted(frames, "frame", "frames"),
         counted(call.rounds.into(), "pair of runs", "pairs of runs"),
         per_frame(of(&without, 0)),
         per_frame(of(&with, 0)),
         100.0 * added(0),
         100.0 * added(1),
+        of(&around, 0),
+        of(&around, 1),
         counted(every, "frame", "frames"),
         bytes as f64 * 1e-6,
-        median(&closing),
         machine.sentence(),
     ))?;
     Ok(0)
 }
 
-/// The time of the frames of a run.
-fn frames<const D: usize>(
-    call: &BenchRecord,
-    source: &Source,
-    world: &mut World<D>,
-    mut frame: impl FnMut(&mut World<D>) -> Result<(), opruga::recordings::TapeError>,
-) -> Result<Times, Failure> {
-    use opruga::recordings::TapeError;
-    let (wall, start) = (Instant::now(), processor_time());
-    for _ in 0..call.frames {
-        frame(world).map_err(|error| match error {
-            TapeError::World(error) => source.run_error(&error, world.time()),
-            error => error.into(),
-        })?;
-    }
-    Ok([processor_time() - start, wall.elapsed().as_secs_f64()].map(|seconds| seconds * 1e3))
+/// The frames of the run that a scene asks for.
+fn whole_run<const D: usize>(blueprint: &Blueprint<D>) -> u64 {
+    let frames = (blueprint.time.seconds / blueprint.time.frame - 1e-9).ceil();
+    if frames > 1.0 { frames as u64 } else { 1 }
+}
+
+/// What both clocks show.
+fn now() -> (f64, Instant) {
+    (processor_time_of_all(), Instant::now())
+}
+
+/// What both clocks have gone on.
+fn since((processor, wall): (f64, Instant)) -> Times {
+    [processor_time_of_all() - processor, wall.elapsed().as_secs_f64()].map(|seconds| seconds * 1e3)
 }

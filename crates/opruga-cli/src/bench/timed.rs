@@ -90,6 +90,9 @@ impl<const D: usize> Potential<D> for Timed<D> {
     fn bonds(&self) -> &[[u32; 2]] {
         self.inner.bonds()
     }
+    fn inertia(&self) -> &[(u32, u32, f64)] {
+        self.inner.inertia()
+    }
     fn initial_memory(&self) -> Vec<f64> {
         self.inner.initial_memory()
     }
@@ -110,6 +113,9 @@ impl<const D: usize> Potential<D> for Timed<D> {
     }
     fn energy(&self, simd: Simd, view: &View<D>, scratch: &[f64]) -> [f64; WIDTH] {
         count(&self.spent.forces, || self.inner.energy(simd, view, scratch))
+    }
+    fn energy_parts(&self) -> f64 {
+        self.inner.energy_parts()
     }
     fn hessian(&self, view: &View<D>, scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         count(&self.spent.matrices, || self.inner.hessian(view, scratch, keep, sink));

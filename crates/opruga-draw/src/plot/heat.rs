@@ -53,7 +53,7 @@ pub(super) fn write(map: &HeatMap) -> String {
         svg.text(&notes.join("    "), [left, y + 4.0], TICK_SIZE, "start", SOFT_INK, "");
         y += 18.0;
     }
-    document(&svg, map.width, y)
+    document(svg, map.width, y, &map.credit, left)
 }
 
 /// All cells: column and row.

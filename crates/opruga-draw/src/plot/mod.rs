@@ -17,11 +17,13 @@ pub struct Chart {
     pub x: Axis,
     /// The panels from the top.
     pub panels: Vec<Panel>,
+    /// Whose data are behind it, small below everything; empty where nobody asks for it.
+    pub credit: String,
 }
 
 impl Default for Chart {
     fn default() -> Chart {
-        Chart { title: String::new(), width: 720.0, x: Axis::default(), panels: Vec::new() }
+        Chart { title: String::new(), width: 720.0, x: Axis::default(), panels: Vec::new(), credit: String::new() }
     }
 }
 
@@ -125,6 +127,8 @@ pub struct HeatMap {
     pub y: Vec<String>,
     /// The panels from the top.
     pub panels: Vec<HeatPanel>,
+    /// Whose data are behind it, small below everything; empty where nobody asks for it.
+    pub credit: String,
 }
 
 impl Default for HeatMap {
@@ -137,6 +141,7 @@ impl Default for HeatMap {
             y_label: String::new(),
             y: Vec::new(),
             panels: Vec::new(),
+            credit: String::new(),
         }
     }
 }

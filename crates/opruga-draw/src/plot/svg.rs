@@ -116,11 +116,16 @@ pub(crate) fn write(chart: &Chart) -> String {
         y += panel.height + if last { 0.0 } else { GAP };
     }
     svg.text(&axis_text(&chart.x), [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
-    document(&svg, chart.width, y + 56.0)
+    document(svg, chart.width, y + 56.0, &chart.credit, left)
 }
 
-/// A whole SVG file: white, with what was drawn on it.
-pub(super) fn document(svg: &Svg, width: f64, height: f64) -> String {
+/// A whole SVG file: white, with what was drawn on it, and below that a credit, no longer than the file is wide.
+pub(super) fn document(mut svg: Svg, width: f64, mut height: f64, credit: &str, left: f64) -> String {
+    if !credit.is_empty() {
+        let size = TICK_SIZE * ((width - left - 8.0) / width_of(credit, TICK_SIZE).max(1.0)).min(1.0);
+        svg.text(credit, [left, height + 4.0], size, "start", SOFT_INK, "");
+        height += 18.0;
+    }
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"Inter, Helvetica, Arial, sans-serif\">\n  \
@@ -344,6 +349,23 @@ fn path_text(points: impl Iterator<Item = Option<[f64; 2]>>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_credit_stands_on_a_line_of_its_own_within_the_plot() {
+        let height =
+            |text: &str| text.split("height=\"").nth(1).and_then(|rest| rest.split('"').next()?.parse::<f64>().ok());
+        let line = Line { points: vec![[0.0, 0.0], [1.0, 1.0]], ..Line::default() };
+        let bare = Chart { panels: vec![Panel { lines: vec![line], ..Panel::default() }], ..Chart::default() };
+        let long = "Drawing: Twemoji, © Twitter, Inc and other contributors, CC-BY 4.0, ".repeat(3);
+        for credit in ["Spot: Keenan Crane, public domain", &long] {
+            let told = Chart { credit: credit.into(), ..bare.clone() }.to_svg().unwrap();
+            let line = told.lines().find(|line| line.contains(credit)).expect("the credit");
+            let size: f64 =
+                line.split("font-size=\"").nth(1).and_then(|rest| rest.split('"').next()?.parse().ok()).unwrap();
+            assert!(width_of(credit, size) < bare.width && size <= TICK_SIZE, "{line}");
+            assert_eq!(height(&told), height(&bare.to_svg().unwrap()).map(|height| height + 18.0));
+        }
+    }
 
     #[test]
     fn names_are_escaped() {

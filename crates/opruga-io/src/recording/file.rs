@@ -13,10 +13,12 @@ use std::time::Duration;
 /// What a loss of power may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// A recording that is being written. Every frame goes to the system as soon as it is added, so that a process that is killed
-/// leaves all of them but one that it was just adding. A loss of power costs the last five seconds.
+/// A recording that is being written. A frame whose state is kept goes to the system as soon as it is added, with those before
+/// it; others when their owner says so. A process that is killed leaves all that has gone there, and a part of what was just
+/// going. A loss of power costs the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
+    folder: PathBuf,
     writer: Writer<Box<dyn Target + Send>>,
     /// Room for the bytes of a state.
     state: Vec<u8>,
@@ -54,7 +56,8 @@ impl RecordingFile {
     ) -> Result<RecordingFile, WriteError> {
         let failed = |e: io::Error| WriteError::failed(path, 0, &e);
         // Held until the new file has the name.
-        let _earlier = earlier(path, force)?;
+        let earlier = earlier(path, force)?;
+        let replaces = earlier.is_some();
         let name =
             path.file_name().ok_or_else(|| WriteError::new("write.failed", path, "this is no name of a file"))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -73,27 +76,44 @@ impl RecordingFile {
             lock(&held)?;
             let target: Box<dyn Target + Send> = Box::new(wrap(file));
             let writer = Writer::new(target, header)?;
+            // Only what takes the place of another file must be on the disk before it does.
+            if replaces {
+                writer.sync()?;
+            }
             fs::rename(&aside, path)?;
-            sync_folder(folder)?;
             Ok((held, writer))
         };
-        let begun = begin().and_then(|(held, writer)| Ok((Syncing::begin(held)?, writer)));
+        let begun = begin().and_then(|(held, writer)| Ok((Syncing::begin(held, folder)?, writer)));
         let (syncing, writer) = begun.map_err(|e| {
             let _ = fs::remove_file(&aside);
             failed(e)
         })?;
-        Ok(RecordingFile { path: path.to_path_buf(), writer, state: Vec::new(), syncing: Some(syncing), ended: false })
+        drop(earlier);
+        Ok(RecordingFile {
+            path: path.to_path_buf(),
+            folder: folder.to_path_buf(),
+            writer,
+            state: Vec::new(),
+            syncing: Some(syncing),
+            ended: false,
+        })
     }
 
-    /// Adds the next frame, whose state is not kept, with its hash.
+    /// Adds the next frame, whose state is not kept, with its hash; it goes to the system with [`RecordingFile::flush`], or
+    /// with the next frame whose state is kept.
     ///
     /// # Errors
     /// [`WriteError`] once the file could not be written, or if a frame is out of its order; the frames before are whole.
     pub fn push(&mut self, frame: u64, hash: u64) -> Result<(), WriteError> {
-        self.write(|file| {
-            file.writer.push(frame, hash)?;
-            file.writer.flush()
-        })
+        self.write(|file| file.writer.push(frame, hash))
+    }
+
+    /// Gives all frames so far to the system: from then on they outlive the process.
+    ///
+    /// # Errors
+    /// [`WriteError`] once the file could not be written.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        self.write(|file| file.writer.flush())
     }
 
     /// Adds the next frame with its hash and its state, whose bytes `state` appends; or the state of the last frame, which
@@ -142,7 +162,11 @@ impl RecordingFile {
 
     fn end(&mut self) -> Result<u64, WriteError> {
         let synced = |file: &mut RecordingFile| file.syncing.take().map_or(Ok(()), Syncing::end);
-        let outcome = self.write(|file| synced(file).and_then(|()| file.writer.finish()));
+        let outcome = self.write(|file| {
+            synced(file)?;
+            file.writer.finish()?;
+            sync_folder(&file.folder)
+        });
         self.ended = true;
         outcome.map(|()| self.writer.bytes())
     }
@@ -165,11 +189,14 @@ struct Syncing {
 
 impl Syncing {
     /// The file is held, with its lock, until the end.
-    fn begin(file: File) -> io::Result<Syncing> {
+    fn begin(file: File, folder: &Path) -> io::Result<Syncing> {
         let (stop, stopped) = channel::<()>();
+        let mut folder = Some(folder.to_path_buf());
         let run = move || {
             while let Err(RecvTimeoutError::Timeout) = stopped.recv_timeout(SYNCED) {
                 file.sync_data()?;
+                // Its name too, once.
+                folder.take().map_or(Ok(()), |folder| sync_folder(&folder))?;
             }
             Ok(())
         };

@@ -30,7 +30,7 @@ pub struct Writer<W> {
 }
 
 impl<W: Target> Writer<W> {
-    /// Writes the header, and makes it last.
+    /// Writes the header.
     ///
     /// # Errors
     /// Those of the target.
@@ -48,7 +48,6 @@ impl<W: Target> Writer<W> {
             inputs: Vec::new(),
         };
         writer.flush()?;
-        writer.sync()?;
         Ok(writer)
     }
 

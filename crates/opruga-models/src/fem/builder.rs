@@ -84,8 +84,9 @@ impl<'a, const D: usize> Builder<'a, D> {
             return Ok(());
         }
         let positions = &self.ingredients.mesh.positions;
+        let mut measures = Vec::with_capacity(cells.len());
         for cell in &cells {
-            self.check::<E, N>(cell, positions)?;
+            measures.push(self.check::<E, N>(cell, positions)?);
         }
         if let Some(density) = &self.density {
             for cell in &cells {
@@ -117,6 +118,17 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
             numbers
         };
+        if plan.law.cancels() {
+            let modulus = |cell: u32, body: usize| {
+                let [mu, lambda, ..] = numbers(cell, body);
+                2.0 * mu + lambda
+            };
+            let bodies = self.ingredients.values.len();
+            let of_cell = |(cell, measure): (&Cell<N>, &f64)| {
+                measure * (0..bodies).map(|body| modulus(cell.number, body)).sum::<f64>()
+            };
+            built.energy_parts += plan.thickness * cells.iter().zip(&measures).map(of_cell).sum::<f64>();
+        }
         let section = Section::<E, D, N>::new(plan, cells, &numbers);
         if nodal {
             let lame = |cell: u32, body: usize| {
@@ -131,8 +143,8 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    /// Refuses a cell that is flat or turned inside out at rest.
-    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<(), BuildError> {
+    /// Refuses a cell that is flat or turned inside out at rest; returns its volume, in the plane its area.
+    fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<f64, BuildError> {
         let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
         let mut longest = 0.0;
         for a in &rest {
@@ -145,7 +157,8 @@ impl<'a, const D: usize> Builder<'a, D> {
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
         // Boxes are looked at in the middle too.
         let middle = E::BOX.then(|| E::at([0.0; 3]).1);
-        for slopes in E::SLOPES.iter().chain(&middle) {
+        let mut measure = 0.0;
+        for (slopes, weight) in E::SLOPES.iter().chain(&middle).zip(E::WEIGHTS.iter().chain(&[0.0])) {
             let (_, determinant) = rest_gradient(&rest, slopes);
             if !(determinant.is_finite() && determinant > least) {
                 let what = if determinant < -least { "is turned inside out" } else { "has no volume" };
@@ -155,8 +168,9 @@ impl<'a, const D: usize> Builder<'a, D> {
                 );
                 return Err(refuse("model.inverted_cell", message));
             }
+            measure += weight * determinant;
         }
-        Ok(())
+        Ok(measure)
     }
 
     pub(super) fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {

@@ -34,6 +34,8 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool;
     /// Whether it knows of rotations.
     fn turns(&self) -> bool;
+    /// Whether its energy at rest is a difference of parts as large as the moduli.
+    fn cancels(&self) -> bool;
 }
 
 /// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
@@ -60,6 +62,9 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
     }
     fn turns(&self) -> bool {
         M::TURNS
+    }
+    fn cancels(&self) -> bool {
+        M::CANCELS
     }
 }
 

@@ -28,6 +28,9 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     const NAME: &'static str;
     /// Whether a turned body has no energy: all but the law of small rotation.
     const TURNS: bool = true;
+    /// Whether ψ at rest is a difference of parts as large as the moduli, and no sum of squares: rounding leaves something of
+    /// these parts.
+    const CANCELS: bool = false;
     /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The singular vectors of F, and the second derivatives by principal stretches: ∂P/∂F in their frame [Pa].

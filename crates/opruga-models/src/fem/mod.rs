@@ -74,7 +74,7 @@ impl Model<2> for FemModel {
         let (law, space) =
             if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
+        let mut built = Built::NOTHING;
         builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
         let mut first = cells.triangles.len();
         builder.add::<Quadrilateral, 4>(&mut built, &cells.quadrilaterals, first, law, space)?;
@@ -92,7 +92,7 @@ impl Model<3> for FemModel {
         let builder = Builder::new(ingredients)?;
         let law = builder.entry()?.space;
         let cells = &ingredients.mesh.cells;
-        let mut built = Built { parts: Vec::new(), inertia: Vec::new(), volumes: None };
+        let mut built = Built::NOTHING;
         builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;
         let mut first = cells.tetrahedra.len();
         builder.add::<Hexahedron, 8>(&mut built, &cells.hexahedra, first, law, None)?;

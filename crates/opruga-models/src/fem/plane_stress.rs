@@ -100,6 +100,9 @@ impl Law<2> for PlaneStress {
     fn turns(&self) -> bool {
         self.0.turns()
     }
+    fn cancels(&self) -> bool {
+        self.0.cancels()
+    }
 }
 
 /// One Newton iteration for the thickness; whether all are found. At the `last` call what is not found is not a number.

@@ -28,6 +28,8 @@ pub struct Solid<const D: usize> {
     /// What resists the volumes of nodes.
     volumes: Option<NodalVolumes<D>>,
     damped: bool,
+    /// What [`Potential::energy_parts`] tells [J].
+    energy_parts: f64,
 }
 
 /// What a solid is built of.
@@ -35,6 +37,12 @@ pub(super) struct Built<const D: usize> {
     pub(super) parts: Vec<Box<dyn Part<D>>>,
     pub(super) inertia: Vec<(u32, u32, f64)>,
     pub(super) volumes: Option<NodalVolumes<D>>,
+    pub(super) energy_parts: f64,
+}
+
+impl<const D: usize> Built<D> {
+    pub(super) const NOTHING: Built<D> =
+        Built { parts: Vec::new(), inertia: Vec::new(), volumes: None, energy_parts: 0.0 };
 }
 
 /// A share of one of the parts, and where its scratch lies.
@@ -101,6 +109,9 @@ impl<const D: usize> Potential<D> for Solid<D> {
     }
     /// `prepare` has read all positions before any of them changes.
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
+    fn energy_parts(&self) -> f64 {
+        self.energy_parts
+    }
     fn shares_threads(&self) -> bool {
         self.shares.len() > 1
     }
@@ -238,7 +249,7 @@ impl<const D: usize> Potential<D> for Solid<D> {
 impl<const D: usize> Solid<D> {
     /// Of some kinds of cells.
     pub(super) fn new(layout: Layout, nodes: usize, built: Built<D>, damped: bool) -> Self {
-        let Built { parts, inertia, mut volumes } = built;
+        let Built { parts, inertia, mut volumes, energy_parts } = built;
         let (mut shares, mut starts) = (Vec::<Task>::new(), Vec::new());
         let mut start = FORCES;
         for (part, own) in parts.iter().enumerate() {
@@ -258,7 +269,7 @@ impl<const D: usize> Solid<D> {
             volumes.locate(|pack| own.and_then(|(k, part)| Some(start(k) + part.grown_at(pack)?)));
         }
         let sums = Sums::new(layout, nodes, &parts, &shares);
-        Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped }
+        Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped, energy_parts }
     }
 
     /// The pressures of the nodes that resist volume, in their scratch; returns their energies [J].

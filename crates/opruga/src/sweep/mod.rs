@@ -150,7 +150,7 @@ impl Sweep {
             Ok(AnyBlueprint::Space(blueprint)) => run.measure(&blueprint),
             Err(errors) => {
                 let first = errors.into_iter().next();
-                Err(first.map_or_else(|| Failed::of("scene", ""), |e| Failed::of(e.code, &e.message)))
+                Err(first.map_or_else(|| Failed::of("scene", ""), Failed::from))
             }
         };
         let nothing = || vec![None; self.metrics.len()];
@@ -172,6 +172,17 @@ enum Failed {
 impl Failed {
     fn of(code: &str, message: &str) -> Failed {
         Failed::Refused(code.into(), message.into())
+    }
+}
+
+/// In one sentence, as errors of worlds have it: a row of a table has no lines for what is allowed and what helps.
+impl From<SceneError> for Failed {
+    fn from(error: SceneError) -> Failed {
+        let mut message = error.message;
+        for (word, what) in [("allowed", error.allowed), ("hint", error.hint)] {
+            message.extend(what.map(|what| format!("; {word}: {what}")));
+        }
+        Failed::of(error.code, &message)
     }
 }
 

@@ -7,12 +7,12 @@ use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Panel, for
 /// The names and texts (SVG) of all plots.
 ///
 /// One parameter, or one after the other: each metric over it. Two of a grid: a map for each metric, with marks where a run has
-/// failed. More, or a sample: each metric over each parameter, as points.
+/// failed. More, or a sample: each metric over each parameter, as points. A credit stands below each of them.
 ///
 /// # Errors
 /// [`DrawError`] where nothing can be drawn.
-pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str) -> Result<Vec<(String, String)>, DrawError> {
-    let sweep_plots = Plots { sweep, rows, length_unit };
+pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str, credit: &str) -> Result<Vec<(String, String)>, DrawError> {
+    let sweep_plots = Plots { sweep, rows, length_unit, credit };
     match (sweep.design, sweep.axes.as_slice()) {
         (Design::Grid, [x, y]) => Ok(vec![("plots.svg".into(), sweep_plots.map(x, y)?)]),
         (_, axes) => {
@@ -39,6 +39,7 @@ struct Plots<'a> {
     sweep: &'a Sweep,
     rows: &'a [Row],
     length_unit: &'a str,
+    credit: &'a str,
 }
 
 impl Plots<'_> {
@@ -90,7 +91,7 @@ impl Plots<'_> {
             label = format!("{label} ({})", named.join(", "));
         }
         let x = opruga_draw::Axis { logarithmic: axis.logarithmic(), ..opruga_draw::Axis::linear(label, "") };
-        Chart { title: self.sweep.name.clone(), x, panels, ..Chart::default() }.to_svg()
+        Chart { title: self.sweep.name.clone(), x, panels, credit: self.credit.into(), ..Chart::default() }.to_svg()
     }
 
     /// Every metric as a map over two parameters.
@@ -127,6 +128,7 @@ impl Plots<'_> {
             y_label,
             y: short_values(rows),
             panels,
+            credit: self.credit.into(),
             ..HeatMap::default()
         }
         .to_svg()

@@ -40,6 +40,7 @@ fn volumetric<S: Lane>(a: S, b: S, j: S) -> (S, S) {
 
 impl<const D: usize> Material<D> for MooneyRivlin {
     const NAME: &'static str = "mooney_rivlin";
+    const CANCELS: bool = true;
     #[inline(always)]
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
         let [c1, c2, a, b] = constants::<S, D>(p);

@@ -28,6 +28,7 @@ fn volumetric<S: Lane>(p: &Parameters<S>, j: S) -> (S, S) {
 
 impl<const D: usize> Material<D> for NeoHookean {
     const NAME: &'static str = "neo_hookean";
+    const CANCELS: bool = true;
     #[inline(always)]
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
         let half = S::splat(0.5);

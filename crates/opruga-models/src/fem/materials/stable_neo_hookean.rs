@@ -32,6 +32,7 @@ fn stretch<S: Lane, const D: usize>(f: &Matrix<S, D>) -> S {
 
 impl<const D: usize> Material<D> for StableNeoHookean {
     const NAME: &'static str = "stable_neo_hookean";
+    const CANCELS: bool = true;
     #[inline(always)]
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>) {
         let half = S::splat(0.5);
