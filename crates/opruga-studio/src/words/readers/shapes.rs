@@ -420,6 +420,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 /// Words for kinds of elements, for what has a size, and for what that must be.
 pub(super) const PARTS: &[(&str, &str)] = &[
     ("at most two", "najviše dva"),
+    ("{} m³ ({} %) of {} m³ lost", "{} m³ ({} %) od {} m³ manje"),
+    ("{} m³ ({} %) of {} m³ added", "{} m³ ({} %) od {} m³ više"),
+    ("{} m² ({} %) of {} m² lost", "{} m² ({} %) od {} m² manje"),
+    ("{} m² ({} %) of {} m² added", "{} m² ({} %) od {} m² više"),
+    ("{} triangles", "trokuta: {}"),
+    ("{} triangle", "trokuta: {}"),
     ("facet", "strana"),
     ("wire", "žica"),
     ("sheet triangle", "trokut opne"),
