@@ -424,8 +424,6 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("{} m³ ({} %) of {} m³ added", "{} m³ ({} %) od {} m³ više"),
     ("{} m² ({} %) of {} m² lost", "{} m² ({} %) od {} m² manje"),
     ("{} m² ({} %) of {} m² added", "{} m² ({} %) od {} m² više"),
-    ("{} triangles", "trokuta: {}"),
-    ("{} triangle", "trokuta: {}"),
     ("facet", "strana"),
     ("wire", "žica"),
     ("sheet triangle", "trokut opne"),
@@ -494,4 +492,6 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("length of the normal", "duljina normale"),
     ("rotation angle", "kut zakreta"),
     ("length of the rotation axis", "duljina osi zakreta"),
+    ("{} triangles", "trokuta: {}"),
+    ("{} triangle", "trokuta: {}"),
 ];
