@@ -38,6 +38,8 @@ pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
     /// What plots are drawn from: also rows within frames, where the run is small enough.
     pub(crate) seen: NumberTable,
+    /// Whether it is small enough for that.
+    pub(crate) looks_within: bool,
     pub(crate) columns: Columns,
     /// Bodies with columns of their own, and how many.
     bodies: Vec<(String, usize)>,
@@ -124,8 +126,9 @@ impl Recorder {
         if springs {
             scenery.iter_mut().for_each(|scenery| scenery.show_springs(world));
         }
-        if scenery.is_some() {
-            world.keep_looks(look_every(frames, world.blueprint().time.substeps, nodes as u64));
+        let looks = look_every(frames, world.blueprint().time.substeps, nodes as u64);
+        if drawn {
+            world.keep_looks(looks);
         }
         Ok(Recorder {
             table: NumberTable::new(columns.clone()),
@@ -140,6 +143,7 @@ impl Recorder {
             },
             bodies,
             scenery,
+            looks_within: drawn && looks > 0,
             moments: Vec::new(),
             every,
             frame,

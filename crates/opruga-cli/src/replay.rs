@@ -281,7 +281,13 @@ impl Job<'_> {
             if stop.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted);
             }
-            playback.show(world, frame).map_err(|error| self.failure(&error, frame))?;
+            // What happens within a frame is seen while it is computed, also where its state is kept.
+            let shown = if frame > first && recorder.looks_within && playback.keeps(frame) {
+                playback.step(world, frame).map_err(TapeError::from)
+            } else {
+                playback.show(world, frame)
+            };
+            shown.map_err(|error| self.failure(&error, frame))?;
             recorder.record(world);
             if !frame.is_multiple_of(recorder.every) {
                 continue;

@@ -49,7 +49,7 @@ fn a_replay_gives_the_files_of_its_run_again() {
         &["replay", "r", "--out", "again", "--vtk", "--vtu", "--obj", "--ply", "--gltf", "--pc2", "--mdd"],
     );
     assert_eq!(code(&output), 0, "{}", said(&output));
-    for name in ["strip.png", "video.mp4", "diagnostics.csv"] {
+    for name in ["strip.png", "video.mp4", "plots.svg", "diagnostics.csv"] {
         let of = |run: &str| std::fs::read(folder.join(run).join(name)).expect("a file");
         assert!(of("again") == of("o"), "{name} is another one");
     }

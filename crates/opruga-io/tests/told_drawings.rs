@@ -31,6 +31,10 @@ fn what_changes_a_drawing_without_an_outline_is_counted() {
         (format!("<g>{moved}{}</g><animate/>", path("")), vec![("svg.animation", "4")]),
         (format!("<defs><g>{moved}</g></defs>{}", path("")), vec![]),
         (
+            path("").replace("/>", "/><g display=\"none\"/><path visibility=\"hidden\" d=\"\"/>"),
+            vec![("svg.hidden", "2")],
+        ),
+        (
             format!("<symbol id=\"s\"><set/>{}</symbol><use href=\"#s\"><animateMotion/></use>", path("")),
             vec![("svg.animation", "2")],
         ),
@@ -38,6 +42,36 @@ fn what_changes_a_drawing_without_an_outline_is_counted() {
         let (_, notices) = svg(&drawing(&inside)).unwrap_or_else(|e| panic!("{inside}: {}", e[0]));
         let found: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref().unwrap_or(""))).collect();
         assert_eq!(found, told, "{inside}");
+    }
+}
+
+/// Inkscape and Illustrator write into drawings what only they read; a browser draws none of it either.
+#[test]
+fn elements_of_other_languages_are_no_part_of_a_drawing() {
+    let document = |inside: &str| {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<svg width=\"9mm\" height=\"9mm\" \
+             viewBox=\"0 0 9 9\" version=\"1.1\" id=\"svg1\" inkscape:version=\"1.3.2\" \
+             xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+             xmlns:sodipodi=\"http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd\" xmlns:i=\"http://ns.adobe.com/AdobeIllustrator/10.0/\" \
+             xmlns=\"http://www.w3.org/2000/svg\" xmlns:svg=\"http://www.w3.org/2000/svg\">\n\
+             <sodipodi:namedview id=\"namedview1\" pagecolor=\"#ffffff\" inkscape:zoom=\"2\"><inkscape:page x=\"0\" \
+             y=\"0\" width=\"9\" height=\"9\"/></sodipodi:namedview>\n<defs id=\"defs1\"/>\n\
+             <g inkscape:label=\"Layer 1\" inkscape:groupmode=\"layer\" id=\"layer1\">{inside}</g></svg>"
+        )
+    };
+    for inside in [
+        "<path id=\"p\" d=\"M1 1H5V5H1Z\"/>",
+        "<svg:path id=\"p\" d=\"M1 1H5V5H1Z\"/><i:path d=\"M5 1H9V5H5Z\"/>",
+        "<svg:path id=\"p\" d=\"M1 1H5V5H1Z\"/><i:pgf><path d=\"M5 1H9V5H5Z\"/></i:pgf>",
+    ] {
+        let (mesh, notices) = svg(&document(inside)).unwrap_or_else(|e| panic!("{inside}: {}", e[0]));
+        let size = |d: usize| {
+            let of = mesh.positions.iter().map(|x| x[d]);
+            of.clone().fold(f64::MIN, f64::max) - of.fold(f64::MAX, f64::min)
+        };
+        assert!((size(0) / size(1) - 1.0).abs() < 1e-12, "{inside}: {} by {}", size(0), size(1));
+        assert!(notices.is_empty(), "{inside}: {}", notices[0].about);
     }
 }
 

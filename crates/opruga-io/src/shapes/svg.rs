@@ -13,7 +13,7 @@ use super::drawing::Drawing;
 use super::svg_elements::units;
 use super::svg_fill::{Fill, Fills};
 use super::svg_style::{ANIMATIONS, animations_of, has_markers, has_stroke, is_clear, is_hidden, style, unread};
-use super::svg_xml::document;
+use super::svg_xml::{document, is_drawing};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
@@ -217,6 +217,10 @@ impl<'a, 'd> Reader<'a, 'd> {
         path: &mut Vec<usize>,
         fill: Fill,
     ) -> Result<(), SceneError> {
+        // What drawing programs note for themselves is in languages of their own.
+        if !is_drawing(node) {
+            return Ok(());
+        }
         let name = node.tag_name().name();
         if path.len() >= DEEPEST {
             let message = format!("elements are nested more than {DEEPEST} deep");
@@ -225,11 +229,11 @@ impl<'a, 'd> Reader<'a, 'd> {
                 .value(name)
                 .allowed(format!("at most {DEEPEST} levels")));
         }
-        if style(node, "display") == Some("none") || NOT_DRAWN.contains(&name) || ANIMATIONS.contains(&name) {
+        if NOT_DRAWN.contains(&name) || ANIMATIONS.contains(&name) {
             return Ok(());
         }
         let leaf = !matches!(name, "svg" | "g" | "a" | "switch" | "use");
-        if is_clear(node) || leaf && is_hidden(node) {
+        if style(node, "display") == Some("none") || is_clear(node) || leaf && is_hidden(node) {
             self.hidden += 1;
             return Ok(());
         }

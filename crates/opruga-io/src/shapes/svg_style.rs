@@ -1,5 +1,6 @@
 //! What styles of a drawing say about its outlines: refused where it would change them, else counted.
 
+use super::svg_xml::is_drawing;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node};
@@ -60,7 +61,7 @@ impl Sheets {
     /// `svg.style` for one that changes outlines.
     pub(super) fn of(document: &Document<'_>, source: &Source<'_>) -> Result<Sheets, SceneError> {
         let mut sheets = Sheets::default();
-        for node in document.descendants().filter(|node| node.tag_name().name() == "style") {
+        for node in document.descendants().filter(|node| is_drawing(*node) && node.tag_name().name() == "style") {
             let text: String = node.descendants().filter(Node::is_text).filter_map(|node| node.text()).collect();
             let text = without_comments(&text);
             let mut start = 0;

@@ -2,10 +2,15 @@
 
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
-use roxmltree::{Document, ParsingOptions};
+use roxmltree::{Document, Node, ParsingOptions};
 
 /// The largest number of elements and texts.
 const MOST_NODES: u32 = 4 << 20;
+
+/// Whether an element belongs to the drawing: one of SVG, or of no language at all.
+pub(super) fn is_drawing(node: Node<'_, '_>) -> bool {
+    matches!(node.tag_name().namespace(), None | Some("http://www.w3.org/2000/svg"))
+}
 
 /// Reads the elements of a drawing.
 ///

@@ -3,6 +3,11 @@
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 
+/// The part of the rest volume below which the pressure no longer rises, where a scene does not say: fifty times the pressure at
+/// rest. With a thousandth a ball that is thrown or shaken so hard that it is flattened gained energy without bound in steps of a
+/// fraction of the stable one, because they jump from one side of the passage to the other.
+pub(super) const SMALLEST_VOLUME: f64 = 0.02;
+
 /// How the temperature of the gas behaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Process {
@@ -67,7 +72,7 @@ impl Gas {
             amount: number("nRT").unwrap_or_else(|| number("pressure").unwrap_or(0.0) * rest_volume),
             rest_volume,
             ambient: number("ambient").unwrap_or(0.0),
-            smallest_volume: number("smallest_volume").unwrap_or(1e-3),
+            smallest_volume: number("smallest_volume").unwrap_or(SMALLEST_VOLUME),
             largest_pressure: number("largest_pressure"),
             ramp,
             leak,

@@ -318,7 +318,7 @@ impl<const D: usize> Potential<D> for Pressure {
         vec![
             counted(
                 "pressure.limited",
-                "a gas was held at its `largest_pressure`, counted per substep and body",
+                "a gas was held at its `largest_pressure`, or at that of its `smallest_volume`, counted per substep and body",
                 WIDTH,
             ),
             counted(

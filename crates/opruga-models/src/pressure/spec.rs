@@ -1,5 +1,6 @@
 //! Parameters of the gas.
 
+use super::gas::SMALLEST_VOLUME;
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// The parameters of `pressure`.
@@ -16,7 +17,8 @@ and the mean of their pressures weighed by volume. A body of several chambers ha
 `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on, in the order of the boundaries in the shape, that of a chamber being the first of its facets. \
 Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure stays P(V_s), through zero and for a body turned inside out: \
 U remains a function of V with continuous slope, so no energy is made; the passage is as short as V_s is small, and a step that does \
-not resolve it misses some per cent of the energy, which the ledger shows. Without ambient pressure U has no minimum in V. \
+not resolve it misses some per cent of the energy, which the ledger shows. A far smaller V_s than the default wants finer steps: one that \
+jumps from a thousandth of the volume to its other side feels a thousandfold push, and gains each time. Without ambient pressure U has no minimum in V. \
 Source: Matyka and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
@@ -96,7 +98,7 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             "smallest_volume",
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Open(1.0) },
             "",
-            Default::Number(1e-3),
+            Default::Number(SMALLEST_VOLUME),
             "Fraction of the rest volume below which the pressure no longer rises.",
         ),
     ],

@@ -309,8 +309,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          prekinuo{~}; savjet: drukčiji početak, ili materijal koji takve ćelije vraća (`fixed_corotated`)",
     ),
     (
-        "a gas was held at its `largest_pressure`, counted per substep and body",
-        "plin je zadržan na `largest_pressure`, brojano po podkoraku i tijelu",
+        "a gas was held at its `largest_pressure`, or at that of its `smallest_volume`, counted per substep and body",
+        "plin je zadržan na `largest_pressure`, ili na tlaku pri `smallest_volume`, brojano po podkoraku i tijelu",
     ),
     (
         "a chamber enclosed nothing or was turned inside out, counted per substep and body: its gas pushes it open as the \

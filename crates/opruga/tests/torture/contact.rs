@@ -23,11 +23,14 @@ fn rest_in_a_corner_is_rest() {
     assert!(moved < 1e-6 && speed < 1e-6, "{moved:e} m, {speed:e} m/s");
 }
 
+/// What a person does to a world.
+type Change<'a> = &'a dyn Fn(&mut World<2>);
+
 /// Row 71: what has come to rest moves when gravity or its gas changes, or when it is set down elsewhere.
 #[test]
 fn what_rests_wakes_when_something_changes() {
     let models = BALL.replace("damping = 1.0", "damping = 5.0");
-    let changes: [(&str, &dyn Fn(&mut World<2>)); 3] = [
+    let changes: [(&str, Change); 3] = [
         ("gravity", &|world| world.set("world.gravity", Value::Numbers(vec![0.0, 1.0])).expect("a parameter")),
         ("gas", &|world| world.set("body.b.models.pressure.nRT", Value::Number(60.0)).expect("a parameter")),
         ("place", &|world| {
