@@ -93,7 +93,7 @@ fn touching_outlines_are_apart_in_a_union() {
 fn styles_that_change_outlines_are_followed_refused_or_counted() {
     let square = "<rect x=\"60\" y=\"60\" width=\"20\" height=\"20\"/>";
     for (inside, told) in [
-        ("<rect width=\"50\" height=\"9\" display=\"none\"/>", &[][..]),
+        ("<rect width=\"50\" height=\"9\" display=\"none\"/>", &["svg.hidden"][..]),
         ("<rect width=\"50\" height=\"9\" visibility=\"hidden\"/>", &["svg.hidden"]),
         ("<g style=\"visibility: collapse\"><rect width=\"50\" height=\"9\"/></g>", &["svg.hidden"]),
         ("<g opacity=\"0\"><rect width=\"50\" height=\"9\"/></g>", &["svg.hidden"]),
