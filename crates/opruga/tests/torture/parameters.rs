@@ -224,7 +224,8 @@ fn a_ball_of_gas_that_is_flattened_gains_no_energy_without_bound() {
         let mut moving = 0.0f64;
         for _ in 0..480 {
             world.frame().expect("a frame");
-            moving = moving.max(world.energy().kinetic);
+            let now = world.energy().kinetic;
+            moving = if now > moving { now } else { moving };
             let unexplained = world.energy().loss_integrator;
             assert!(
                 moving < 2e4 && unexplained.abs() < 0.2 * moving + 10.0,
