@@ -44,7 +44,7 @@ pub fn checkpoint(bytes: &[u8]) {
 static EULER: Spec =
     Spec { kind: "symplectic_euler", summary: "", documentation: "", dimensions: &[2, 3], fields: &[] };
 
-include!("../shared/shapes.rs");
+include!("shape_kinds.rs");
 
 /// Any bytes are a shape that is sound, or an error that names the file. The first byte says which format.
 pub fn shape_files(bytes: &[u8]) {

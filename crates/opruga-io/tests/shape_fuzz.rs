@@ -13,7 +13,7 @@ use proptest::test_runner::RngSeed;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
-include!("../../../fuzz/shared/shapes.rs");
+include!("../../../fuzz/src/shape_kinds.rs");
 
 /// Larger files than those of the corpus: what they are read as, and their bytes.
 const LARGER: [(u8, &str, &str, &[u8]); 6] = [
