@@ -160,7 +160,7 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons, concave ones too, are cut into triangles inside them. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
