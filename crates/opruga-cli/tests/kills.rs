@@ -147,7 +147,8 @@ impl Recorded {
         let begun = Instant::now();
         while there() < bytes && child.try_wait().is_ok_and(|ended| ended.is_none()) {
             assert!(begun.elapsed() < Duration::from_secs(60), "round {round}: {bytes} bytes are never there");
-            std::thread::yield_now();
+            // Without a pause the look itself would take the processor from the run.
+            std::thread::sleep(Duration::from_micros(100));
         }
         std::thread::sleep(Duration::from_micros(pause));
         child.kill().expect("it is killed, or has ended");

@@ -77,7 +77,7 @@ fn hashes_come_back_in_any_order() {
 /// Row 82: as for states.
 #[test]
 fn a_flipped_bit_among_hashes_is_found() {
-    let good = in_memory(60..75);
+    let good = in_memory(60..77);
     for place in 250..good.len() {
         let mut bad = good.clone();
         bad[place] ^= 4;

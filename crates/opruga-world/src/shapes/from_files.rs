@@ -52,7 +52,7 @@ const DROP_BELOW: Field = Field::new(
 static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
-    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are not read.",
+    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are followed: rules behind names, classes and ids. A clip path that cuts nothing off changes nothing; one that does is an error.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The SVG file, looked up relative to the scene."),
