@@ -23,8 +23,11 @@ const ELSEWHERE: [&str; 5] = ["@font-face", "@keyframes", "@page", "@counter-sty
 pub(super) struct Sheets {
     rules: Vec<Rule>,
     /// What elements have been asked about: the rules that each obeys, with their weights.
-    obeyed: RefCell<BTreeMap<usize, Rc<[(Weight, usize)]>>>,
+    obeyed: RefCell<BTreeMap<usize, Obeyed>>,
 }
+
+/// The rules that an element obeys, by their numbers.
+type Obeyed = Rc<[(Weight, usize)]>;
 
 /// Which of two rules wins: the one with more ids, then with more classes, then with more names.
 type Weight = [usize; 3];
@@ -137,7 +140,7 @@ impl Sheets {
     }
 
     /// The rules that an element obeys.
-    fn obeyed(&self, node: Node<'_, '_>) -> Rc<[(Weight, usize)]> {
+    fn obeyed(&self, node: Node<'_, '_>) -> Obeyed {
         if self.rules.is_empty() {
             return Rc::from([]);
         }
@@ -147,7 +150,7 @@ impl Sheets {
         }
         let weight = |rule: &Rule| rule.selectors.iter().filter(|s| s.is_about(node)).map(Selector::weight).max();
         let found = self.rules.iter().enumerate().filter_map(|(number, rule)| Some((weight(rule)?, number)));
-        let found: Rc<[(Weight, usize)]> = found.collect();
+        let found: Obeyed = found.collect();
         self.obeyed.borrow_mut().insert(id, found.clone());
         found
     }
