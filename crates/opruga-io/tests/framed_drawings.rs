@@ -1,5 +1,6 @@
 //! What lies around the shapes of a drawing: clip paths, style sheets, drawings inside of it; and shapes that draw nothing.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
+#![allow(clippy::result_large_err, reason = "errors are what is looked at")]
 
 mod common;
 use common::shapes::{plane, svg};
@@ -246,9 +247,7 @@ fn drawings_inside_a_drawing_have_their_place_and_scale() {
         ),
         (
             "in per cent",
-            format!(
-                "<svg width=\"50%\" height=\"50%\" viewBox=\"0 0 20 20\"><rect width=\"50%\" height=\"50%\" x=\"10%\" y=\"5\"/></svg>"
-            ),
+            "<svg width=\"50%\" height=\"50%\" viewBox=\"0 0 20 20\"><rect width=\"50%\" height=\"50%\" x=\"10%\" y=\"5\"/></svg>".to_string(),
             [5.0, 12.5, 25.0],
         ),
         ("the whole", format!("<svg viewBox=\"0 0 50 50\">{square}</svg>"), [4.0, 6.0, 8.0]),

@@ -120,9 +120,9 @@ impl Sheets {
     /// A property in the `style` of an element, or by a sheet.
     pub(super) fn declared<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
         let own = node.attribute("style").and_then(|text| {
-            let pieces = text.split(';').filter_map(|piece| piece.split_once(':'));
             // Of two that say the same the later one counts.
-            let value = pieces.filter(|(word, _)| word.trim() == name).last()?.1;
+            let mut pieces = text.rsplit(';').filter_map(|piece| piece.split_once(':'));
+            let (_, value) = pieces.find(|(word, _)| word.trim() == name)?;
             Some(without_importance(value))
         });
         let own = own.map(|(value, important)| ((important, true, [0; 3], 0), value));
