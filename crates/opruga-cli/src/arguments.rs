@@ -108,6 +108,9 @@ pub(crate) struct Mesh {
     /// Replace files that are there
     #[arg(long)]
     pub(crate) force: bool,
+    /// Warnings are errors, and nothing is written
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Print what was found, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -359,6 +362,8 @@ pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
     /// Compute every frame again and compare its hash, and its whole state where that is kept; exit code 1 where one differs
+    ///
+    /// Alone it writes nothing. With --out or another option of what is written, that is written afterwards, if all frames are the same.
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
@@ -420,24 +425,11 @@ pub(crate) struct Replay {
 }
 
 impl Replay {
-    /// The first option of the call that says what is to be written.
-    pub(crate) fn option_of_writing(&self) -> Option<&'static str> {
-        let options = [
-            ("--out", self.out.is_some()),
-            ("--fps", self.fps.is_some()),
-            ("--gif", self.gif),
-            ("--arrows", self.arrows),
-            ("--springs", self.springs),
-            ("--no-pictures", self.no_pictures),
-            ("--vtk", self.vtk),
-            ("--vtu", self.vtu),
-            ("--obj", self.obj),
-            ("--ply", self.ply),
-            ("--gltf", self.gltf),
-            ("--pc2", self.pc2),
-            ("--mdd", self.mdd),
-        ];
-        options.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
+    /// Whether the call says what is to be written.
+    pub(crate) fn writes(&self) -> bool {
+        let given = self.out.is_some() || self.fps.is_some();
+        let drawn = self.gif || self.arrows || self.springs || self.no_pictures;
+        given || drawn || self.vtk || self.vtu || self.obj || self.ply || self.gltf || self.pc2 || self.mdd
     }
 
     /// What shall be seen.

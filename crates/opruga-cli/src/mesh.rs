@@ -219,6 +219,19 @@ fn finish<const D: usize>(
         written.extend(mesh.files.into_iter().map(|(ending, bytes)| (path.with_extension(ending), bytes)));
         left_out = mesh.left_out;
     }
+    if call.strict {
+        // What the call asks for is told, and no error.
+        let odd = notices.iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
+        let of_format = left_out.iter().map(|what| {
+            let error =
+                SceneError::new("mesh.left_out", format!("left out, since the format has no place for it: {what}"));
+            SceneError { file: out.as_ref().map_or(String::new(), |(path, _)| path.display().to_string()), ..error }
+        });
+        let errors: Vec<SceneError> = odd.map(|notice| notice.about.clone()).chain(of_format).collect();
+        if !errors.is_empty() {
+            return Err(Failure::Scene(errors));
+        }
+    }
     // The picture has the whole name of the mesh: each format of a mesh may lie beside the others with its own.
     let beside = || out.as_ref().map(|(path, ending)| path.with_extension(format!("{ending}.png")));
     if let Some(path) = call.picture.clone().or_else(beside) {

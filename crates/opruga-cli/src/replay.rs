@@ -19,24 +19,12 @@ use opruga::io::{SceneError, scene};
 use opruga::math::words::{counted, number};
 use opruga::recordings::{Playback, TapeError};
 use opruga::{Options, World};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fs::File;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Replays a recording.
 pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
-    if call.verify
-        && let Some(option) = call.option_of_writing()
-    {
-        return Err(Failure::Call {
-            message: format!(
-                "{option} has nothing to do with --verify, which computes the run again and writes nothing"
-            ),
-            hint: Some(
-                "call `opruga replay` twice: with --verify to compare, without it for pictures and files".into(),
-            ),
-        });
-    }
     for (option, time) in [("--from", call.from), ("--to", call.to)] {
         if let Some(time) = time.filter(|time| !(0.0..=1e9).contains(time)) {
             return Err(Failure::range(option, time, "0 to 1e9"));
@@ -157,14 +145,32 @@ struct Job<'a> {
 impl Job<'_> {
     fn run<const D: usize>(self, recording: Recording<File>, mut blueprint: Blueprint<D>) -> Result<u8, Failure> {
         blueprint.name.clone_from(&self.source.name);
-        let mut world = self.source.build(blueprint, &self.reading, &self.options)?;
+        let build = |blueprint| self.source.build(blueprint, &self.reading, &self.options);
         let stop = interrupt::asked_to_stop();
         let last = *self.frames.end();
-        let mut playback = Playback::of(recording, last).map_err(|error| self.failure(&error, last))?;
-        if self.call.verify {
-            self.verify(&mut world, &mut playback, stop)
-        } else {
-            self.show(&mut world, &mut playback, stop)
+        let play = |recording| Playback::of(recording, last).map_err(|error| self.failure(&error, last));
+        if !self.call.verify {
+            return self.show(&mut build(blueprint)?, &mut play(recording)?, stop, None);
+        }
+        // A folder that is not free is told before the work.
+        let writes = self.call.writes();
+        let folder = if writes { Some(self.folder()?) } else { None };
+        let verified = self.verify(&mut build(blueprint.clone())?, &mut play(recording)?, stop)?;
+        let same = verified["pass"] == true;
+        match folder.filter(|_| same) {
+            Some(folder) => {
+                // From its first frame again, in a world that knows nothing of the last one.
+                let (again, _) = recordings::open(&self.call.file)?;
+                self.show(&mut build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
+            }
+            None => {
+                if self.call.json {
+                    print_data(&format!("{verified}\n"))?;
+                } else if writes {
+                    eprintln!("nothing is written of a run that is not the recorded one; without --verify it is");
+                }
+                Ok(u8::from(!same))
+            }
         }
     }
 
@@ -182,13 +188,13 @@ impl Job<'_> {
     }
 
     /// Computes every frame again, from the beginning of the scene or from the first frame that is wanted. Of each the hash
-    /// is compared, and every number where its state is kept.
+    /// is compared, and every number where its state is kept. Says what was found, as `--json` prints it.
     fn verify<const D: usize>(
-        self,
+        &self,
         world: &mut World<D>,
         playback: &mut Playback<File, D>,
         stop: &AtomicBool,
-    ) -> Result<u8, Failure> {
+    ) -> Result<Value, Failure> {
         let (first, last) = (*self.frames.start(), *self.frames.end());
         if first > 0 {
             playback.show(world, first).map_err(|error| self.failure(&error, first))?;
@@ -220,11 +226,7 @@ impl Job<'_> {
         let span = json!({"first": first, "last": last, "from": time(first), "to": time(last)});
         let Some((frame, recorded, computed)) = different else {
             let same = hash(world.state_hash());
-            if self.call.json {
-                let row = json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": true,
-                                 "state_hash": same, "warnings": self.told});
-                print_data(&format!("{row}\n"))?;
-            } else {
+            if !self.call.json {
                 let count = counted(compared, "frame", "frames");
                 let states = match states == compared {
                     true => "by their whole states".into(),
@@ -238,36 +240,43 @@ impl Job<'_> {
                     self.source.name
                 );
             }
-            return Ok(0);
+            return Ok(
+                json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": true,
+                       "state_hash": same, "warnings": self.told}),
+            );
         };
         let time = time(frame);
-        if self.call.json {
-            let row = json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": false,
-                             "differs_at": {"frame": frame, "time": time, "recorded": hash(recorded), "computed": hash(computed)},
-                             "warnings": self.told});
-            print_data(&format!("{row}\n"))?;
-        } else {
+        if !self.call.json {
             let what = match recorded == computed {
                 true => "positions and velocities are the same, the rest of the state is not".to_string(),
                 false => format!("its hash was {} and is {} now", hash(recorded), hash(computed)),
             };
             eprintln!("{}: frame {frame}, t = {} s, is the first that differs: {what}", self.source.name, number(time));
         }
-        Ok(1)
+        Ok(
+            json!({"schema": 1, "scene": self.source.name, "frames": span, "compared": compared, "states": states, "pass": false,
+                   "differs_at": {"frame": frame, "time": time, "recorded": hash(recorded), "computed": hash(computed)},
+                   "warnings": self.told}),
+        )
     }
 
-    /// Tables, pictures and exported frames, from recorded states, and from steps between them.
+    /// Tables, pictures and exported frames, from recorded states, and from steps between them; with what was found where the run was computed again
+    /// before.
     fn show<const D: usize>(
-        self,
+        &self,
         world: &mut World<D>,
         playback: &mut Playback<File, D>,
         stop: &AtomicBool,
+        verified: Option<(OutputFolder, Value)>,
     ) -> Result<u8, Failure> {
         let call = self.call;
         let (first, last) = (*self.frames.start(), *self.frames.end());
         playback.show(world, first).map_err(|error| self.failure(&error, first))?;
         let mut recorder = Recorder::new(world, call.wanted(), last - first)?;
-        let folder = self.folder()?;
+        let (folder, verified) = match verified {
+            Some((folder, verified)) => (folder, Some(verified)),
+            None => (self.folder()?, None),
+        };
         let all = [Format::Vtk, Format::Vtu, Format::Obj, Format::Ply];
         let formats: Vec<Format> = [call.vtk, call.vtu, call.obj, call.ply]
             .into_iter()
@@ -332,9 +341,12 @@ impl Job<'_> {
         }
         if call.json {
             let (from, to) = (self.time(first), self.time(last));
-            let row = json!({"schema": 1, "scene": self.source.name, "warnings": self.told, "files": files,
+            let mut row = json!({"schema": 1, "scene": self.source.name, "warnings": self.told, "files": files,
                              "frames": {"first": first, "last": last, "from": from, "to": to},
                              "state_hash": format!("{:016x}", world.state_hash())});
+            for (word, found) in verified.iter().flat_map(Value::as_object).flatten() {
+                row[word] = found.clone();
+            }
             print_data(&format!("{row}\n"))?;
         } else {
             outputs.say_where();

@@ -14,6 +14,8 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_millis(100);
 /// How many looks in a row must show the same files: editors write in several steps.
 const SETTLED: u32 = 2;
+/// After so many looks a file that is missing is not just being replaced.
+const GONE: u32 = 5;
 
 /// Runs a scene, and again whenever it changes if that is asked for.
 pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
@@ -64,7 +66,7 @@ fn again_and_again(
         let (files, mut stamps) = named_files(scene, outside);
         stamps[0] = stamp;
         let (outcome, changed) = std::thread::scope(|scope| {
-            let watcher = scope.spawn(|| wait_for_change(&files, &stamps));
+            let watcher = scope.spawn(|| wait_for_change(&files, &stamps, json));
             let outcome = work();
             match &outcome {
                 Err(Failure::ClosedPipe) => interrupt::stop_work(),
@@ -109,14 +111,24 @@ fn named_files(scene: &str, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>)
 }
 
 /// Returns the number of a file once it is another one than it was and all of them stay so for a while; the work at hand is
-/// stopped then. Returns none when that work was stopped by somebody else.
-fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>]) -> Option<usize> {
+/// stopped then. Returns none when that work was stopped by somebody else. Of a file that goes and does not come back it is said once.
+fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> Option<usize> {
     let stop = interrupt::asked_to_stop();
     let (mut last, mut same) = (Vec::new(), 0);
+    // Of every file for how many looks it has been missing that was there.
+    let mut missing = vec![0u32; files.len()];
     while !stop.load(std::sync::atomic::Ordering::Relaxed) {
         std::thread::sleep(EVERY);
         let now: Vec<Option<Stamp>> = files.iter().map(|file| Stamp::of(file)).collect();
         same = if now == last { same + 1 } else { 0 };
+        for (k, file) in files.iter().enumerate() {
+            let gone =
+                now[k].is_none() && (before[k].is_some() || last.get(k).is_some_and(Option::is_some) || missing[k] > 0);
+            missing[k] = if gone { missing[k].saturating_add(1) } else { 0 };
+            if missing[k] == GONE && !json {
+                eprintln!("{} is gone; waiting for it to come back", visible(&file.display().to_string()));
+            }
+        }
         // A file that is not there is being replaced.
         let changed = (0..files.len()).find(|k| now[*k].is_some() && now[*k] != before[*k]);
         if let Some(changed) = changed.filter(|_| now[0].is_some() && same >= SETTLED) {

@@ -184,22 +184,6 @@ fn numbers_of_messages_are_short() {
     assert!(said(&output).matches("t = ").count() <= 1, "{}", said(&output));
 }
 
-/// `--verify` writes nothing, and says so instead of a list of options.
-#[test]
-fn verify_and_pictures_are_two_calls() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for option in [&["--out", "o"][..], &["--vtk"], &["--fps", "10"]] {
-        let output = opruga(folder.path(), &[&["replay", "x.rec", "--verify"], option].concat());
-        assert_eq!(code(&output), 2);
-        assert!(
-            said(&output).starts_with(&format!("error: {} has nothing to do with --verify", option[0])),
-            "{}",
-            said(&output)
-        );
-        assert!(said(&output).contains("call `opruga replay` twice"), "{}", said(&output));
-    }
-}
-
 /// Frequencies are printed as people write them; a mode that grows has an imaginary one.
 #[test]
 fn frequencies_are_read_by_people_and_an_unstable_mode_is_called_so() {

@@ -79,11 +79,11 @@ fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64, longest: u6
     child.wait().expect("it ends");
 }
 
-/// Does something for every round, on two threads.
+/// Does something for every round, on four threads: most of the time of a round the run waits for the disk, or is waited for.
 fn rounds(count: u64, each: impl Fn(u64) + Sync) {
     let next = AtomicU64::new(0);
     std::thread::scope(|scope| {
-        for _ in 0..2 {
+        for _ in 0..4 {
             scope.spawn(|| {
                 loop {
                     let round = next.fetch_add(1, Ordering::Relaxed);
@@ -147,7 +147,8 @@ impl Recorded {
         let begun = Instant::now();
         while there() < bytes && child.try_wait().is_ok_and(|ended| ended.is_none()) {
             assert!(begun.elapsed() < Duration::from_secs(60), "round {round}: {bytes} bytes are never there");
-            std::thread::yield_now();
+            // Without a pause the look itself would take the processor from the run.
+            std::thread::sleep(Duration::from_micros(100));
         }
         std::thread::sleep(Duration::from_micros(pause));
         child.kill().expect("it is killed, or has ended");

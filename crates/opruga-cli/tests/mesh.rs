@@ -187,6 +187,37 @@ fn errors_of_mesh_speak_of_the_call() {
     }
 }
 
+/// `--strict`: what is odd about the file, or has no place in the format, is an error, and nothing is written; what the call itself asks for is none.
+#[test]
+fn warnings_are_errors_where_the_call_says_so() {
+    let folder = folder();
+    let drawing = |inside: &str| format!("<svg xmlns=\"http://www.w3.org/2000/svg\">\n{inside}\n</svg>\n");
+    std::fs::write(folder.path().join("open.svg"), drawing("<path d=\"M0 0 L4 0 L4 4\"/>")).expect("a file");
+    let boxes = "<rect width=\"4\" height=\"4\"/><rect x=\"2\" y=\"2\" width=\"4\" height=\"4\"/>";
+    std::fs::write(folder.path().join("two.svg"), drawing(boxes)).expect("a file");
+    let run = |file: &str, more: &[&str]| {
+        opruga(folder.path(), &[&["mesh", file, "--size", "0.1", "--scale-to", "1"], more].concat())
+    };
+    let warned = run("open.svg", &["-o", "open.msh"]);
+    assert!(code(&warned) == 0 && text(&warned.stderr).contains("warning[svg.open_path]"), "{}", text(&warned.stderr));
+    let refused = run("open.svg", &["-o", "strict.msh", "--strict"]);
+    let said = text(&refused.stderr);
+    assert!(code(&refused) == 2 && said.contains("error[svg.open_path]: 1 open path"), "{said}");
+    assert!(said.contains("open.svg") && !folder.path().join("strict.msh").exists(), "{said}");
+    assert!(!folder.path().join("strict.msh.png").exists());
+    for file in ["heart.svg", "two.svg"] {
+        let output = run(file, &["--strict"]);
+        assert_eq!(code(&output), 0, "{file}: {}", text(&output.stderr));
+    }
+    // Of tetrahedra that lose volume too.
+    let coarse = opruga(folder.path(), &["mesh", "spot.obj", "--size", "0.25", "--scale-to", "1.5", "--strict"]);
+    assert!(
+        code(&coarse) == 2 && text(&coarse.stderr).contains("error[shape.lost_volume]"),
+        "{}",
+        text(&coarse.stderr)
+    );
+}
+
 /// Areas of a drawing that overlap are made one, and it is said how many; an outline that crosses itself has a place.
 #[test]
 fn overlapping_areas_are_united_with_a_message() {

@@ -78,6 +78,41 @@ fn a_replay_gives_the_files_of_its_run_again() {
     assert!(!exported.is_empty() && exported == reached);
 }
 
+/// One call compares every frame and writes the files of the run again; of a run that differs nothing is written, and no folder made.
+#[test]
+fn a_replay_compares_and_writes_in_one_call() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let run = ["run", "pressures", "--seconds=0.3", "--out=o", "--record=r", "--record-every=4", "--json"];
+    let output = opruga(folder, &run);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let summary = json(&output);
+    let row = verified(folder, &["--out=again", "--obj"]);
+    assert_eq!(row["state_hash"], summary["state_hash"]);
+    assert_eq!(
+        (row["compared"].as_u64(), row["states"].as_u64(), row["pass"].as_bool()),
+        (Some(19), Some(6), Some(true))
+    );
+    assert!(row["files"].as_array().is_some_and(|files| files.iter().any(|file| file == "frame-000018.obj")), "{row}");
+    for name in ["strip.png", "video.mp4", "plots.svg", "diagnostics.csv"] {
+        let of = |run: &str| std::fs::read(folder.join(run).join(name)).expect("a file");
+        assert!(of("again") == of("o"), "{name} is another one");
+    }
+    // A folder that is not free is told before the work, and left as it is.
+    let output = opruga(folder, &["replay", "r", "--verify", "--out=o"]);
+    assert_eq!(code(&output), 4, "{}", said(&output));
+    assert!(said(&output).contains("write.exists") && !said(&output).contains("computed again"), "{}", said(&output));
+    let output = opruga(folder, &["replay", "r", "--verify", "--out=part", "--no-pictures", "--from=0.1", "--to=0.2"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(said(&output).contains("7 frames computed again and compared") && said(&output).contains("part"));
+    assert_eq!(std::fs::read_to_string(folder.join("part/diagnostics.csv")).expect("a table").lines().count(), 8);
+    tampered(folder, "hash", Some(13), None);
+    let output = opruga(folder, &["replay", "hash", "--verify", "--out=wrong"]);
+    assert_eq!(code(&output), 1, "{}", said(&output));
+    assert!(said(&output).contains("frame 13,") && said(&output).contains("nothing is written"), "{}", said(&output));
+    assert!(!folder.join("wrong").exists() || contents(&folder.join("wrong")).is_empty());
+}
+
 /// The recording `r` with one thing changed: the hash of a frame, or a byte of a state.
 fn tampered(folder: &Path, name: &str, wrong_hash: Option<u64>, wrong_state: Option<u64>) {
     use opruga::io::recording::{Recording, RecordingFile};

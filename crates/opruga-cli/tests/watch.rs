@@ -68,6 +68,29 @@ fn check_goes_on_after_errors_and_tells_when_they_are_gone() {
     watched.until("did you mean");
 }
 
+/// A scene that vanishes is told of once, and it is waited for; what is only replaced is not told of.
+#[test]
+fn a_scene_that_vanishes_is_told_of_once_and_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml");
+    std::fs::write(&path, scene().replace("seconds = 8.0", "seconds = 0.1")).expect("a file");
+    let watched = Watched::start(folder.path(), &["run", "mine.toml", "--watch", "--no-pictures", "--out=o"]);
+    watched.until("waiting for changes");
+    for seconds in ["0.2", "0.3"] {
+        std::fs::remove_file(&path).expect("it goes");
+        watched.until("mine.toml is gone; waiting for it to come back");
+        // Once: nothing more is said for longer than it took to say it.
+        let more = watched.lines.recv_timeout(Duration::from_millis(1500));
+        assert_eq!(more, Err(mpsc::RecvTimeoutError::Timeout));
+        std::fs::write(&path, scene().replace("seconds = 8.0", &format!("seconds = {seconds}"))).expect("a file");
+        watched.until("mine.toml has changed");
+        watched.until("waiting for changes");
+        let text = std::fs::read_to_string(folder.path().join("o/summary.json")).expect("a summary");
+        let time = serde_json::from_str::<serde_json::Value>(&text).expect("JSON")["time"].as_f64();
+        assert!(time.is_some_and(|time| (time - seconds.parse::<f64>().expect("a number")).abs() < 1e-9), "{time:?}");
+    }
+}
+
 #[test]
 fn a_file_that_the_scene_names_is_watched_even_where_it_is_missing() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -125,11 +125,12 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// What is told of because the scene itself asks for it: worth knowing, and no error where warnings are errors.
-const ASKED_FOR: [&str; 2] = ["shape.overlap", "shape.dropped"];
+/// What is told of because the scene itself asks for it, or a flat face with all of its corners is nothing odd: worth knowing, and no error where
+/// warnings are errors.
+const ASKED_FOR: [&str; 3] = ["shape.overlap", "shape.dropped", "mesh.concave_face"];
 
 impl Notice {
-    /// Whether a notice of this code tells of nothing but what was asked for.
+    /// Whether a notice of this code tells of nothing but what was asked for, or stands so in the file.
     pub fn is_asked_for(code: &str) -> bool {
         ASKED_FOR.contains(&code)
     }

@@ -98,7 +98,8 @@ fn styles_that_change_outlines_are_followed_refused_or_counted() {
         ("<g style=\"visibility: collapse\"><rect width=\"50\" height=\"9\"/></g>", &["svg.hidden"]),
         ("<g opacity=\"0\"><rect width=\"50\" height=\"9\"/></g>", &["svg.hidden"]),
         ("<style>.a { stroke: red } /* .b{display:none} */</style>", &[]),
-        ("<style>rect { fill: red }</style>", &["svg.style"]),
+        ("<style>rect { fill: red }</style>", &[]),
+        ("<style>rect:hover { fill: red }</style>", &["svg.style"]),
         ("<switch><g requiredExtensions=\"x\"><circle r=\"9\"/></g><g/><circle r=\"9\"/></switch>", &[]),
     ] {
         let (area, codes) = area_of(&format!("{inside}{square}"), 1.0, "").unwrap_or_else(|e| panic!("{}", e[0]));
@@ -110,9 +111,9 @@ fn styles_that_change_outlines_are_followed_refused_or_counted() {
     let marked = format!("<g>{}</g>", square.replace("<rect", "<rect marker-start=\"url(#q)\""));
     assert_eq!(area_of(&marked, 1.0, "").map(|(_, told)| told), Ok(vec!["svg.marker"]));
     for (inside, code, line) in [
-        ("<style>.a{display:none}</style>", "svg.style", 2),
+        ("<style>rect:not(.a){display:none}</style>", "svg.style", 2),
         ("\n<style>@media print { rect { transform: scale(3) } }</style>", "svg.style", 3),
-        ("<style>g{opacity:0.0}</style>", "svg.style", 2),
+        ("<style>svg > rect{x:0.0}</style>", "svg.unsupported", 2),
         ("<rect width=\"9\" height=\"9\" style=\"fill: red; transform: rotate(3deg)\"/>", "svg.unsupported", 2),
         ("<rect width=\"9\" height=\"9\" transform-origin=\"5 5\" transform=\"rotate(3)\"/>", "svg.unsupported", 2),
         ("<rect width=\"9\" height=\"9\" fill-rule=\"odd\"/>", "svg.unsupported", 2),

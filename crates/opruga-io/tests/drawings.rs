@@ -116,12 +116,12 @@ fn bad_drawings_are_refused_with_their_place() {
         (loops, "svg.entity", 0),
         ("<svg>\n\n<g></svg>", "svg.syntax", 3),
     ];
-    let inside: [(&str, &str, usize); 24] = [
+    let inside: [(&str, &str, usize); 25] = [
         ("<path d=\"M0 0 L 1 x 3\"/>", "svg.syntax", 2),
         ("<path d=\"L 1 1\"/>", "svg.syntax", 2),
         ("<path d=\"M0 0 A 1 1 0 2 0 1 1\"/>", "svg.syntax", 2),
         ("<path d=\"M0 0 L1e999 0 L3 3z\"/>", "svg.syntax", 2),
-        ("<path/>", "svg.syntax", 2),
+        ("<path/>", "shape.no_area", 0),
         ("\n<rect width=\"-4\" height=\"2\"/>", "svg.number", 3),
         ("<rect width=\"4em\" height=\"2\"/>", "svg.unsupported", 2),
         ("<rect width=\"four\" height=\"2\"/>", "svg.syntax", 2),
@@ -135,8 +135,9 @@ fn bad_drawings_are_refused_with_their_place() {
         ("<g id=\"a\"><use href=\"#b\"/></g>\n<g id=\"b\"><use href=\"#a\"/></g>", "svg.cycle", 3),
         ("<use href=\"#nobody\"/>", "svg.unknown_id", 2),
         ("<use href=\"other.svg#a\"/>", "svg.outside", 2),
-        ("<g clip-path=\"url(#c)\"><circle r=\"1\"/></g>", "svg.unsupported", 2),
+        ("<g clip-path=\"url(#c)\"><circle r=\"1\"/></g>", "svg.unknown_id", 2),
         ("<svg viewBox=\"0 0 1 1\"><circle r=\"1\"/></svg>", "svg.unsupported", 2),
+        ("<svg width=\"2\" height=\"2\"><circle r=\"2\"/></svg>", "svg.unsupported", 2),
         ("<blink/>", "svg.unsupported", 2),
         ("<path d=\"M0 0L4 4L4 0L0 3z\"/>", "shape.crossing", 2),
         ("<circle r=\"2\"/>\n<circle r=\"2\" cx=\"1\"/>", "shape.crossing", 3),
@@ -230,7 +231,7 @@ fn parts_are_painted_in_their_fill_colours() {
     );
     assert_eq!(painted(&gradient), (vec![[16, 32, 48, 128]], vec!["svg.gradient"]));
     let styled = "<style>.a { fill: red }</style><circle r=\"3\" class=\"a\"/>";
-    assert_eq!(painted(styled), (vec![[0, 0, 0, 255]], vec!["svg.style"]));
+    assert_eq!(painted(styled), (vec![[255, 0, 0, 255]], vec![]));
     // Colours are refused where they cannot be read, if they are wanted; else nobody looks at them.
     for bad in ["#12", "url(#nobody)", "rgb(1,2)", "context-stroke"] {
         let text = drawing(&format!("\n<circle r=\"2\" fill=\"{bad}\"/>"));

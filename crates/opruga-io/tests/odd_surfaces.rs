@@ -30,6 +30,54 @@ fn refused(text: &str, more: &str) -> SceneError {
 }
 
 /// Torture list, row 31: gas would leak from one cube into the other.
+/// A `\\` at the end of a line lets a statement go on, with either line end; comments end with their line.
+#[test]
+fn statements_of_obj_go_on_in_the_next_line() {
+    let text = format!("{}{}", vertices(0.0, 1.0), faces(0));
+    let whole = surface("a.obj", text.as_bytes()).expect("a cube").0;
+    for (from, to) in [
+        ("f 1 4 3 2\n", "f 1 4 \\\n 3 2\n"),
+        ("f 1 4 3 2\n", "f 1\\\r\n4\\\r\n3\\\r\n2\r\n"),
+        ("f 1 4 3 2\n", "f \\\n\\\n1 4 3 2\n"),
+        ("v 1 0 0\n", "v 1 \\\n0 0\n"),
+        ("f 1 4 3 2\n", "# this is no statement \\\nf 1 4 3 2\n"),
+        ("f 1 4 3 2\n", "f 1 4 \\\n3 2 # and this \\\n"),
+        ("f 4 1 5 8\n", "f 4 1 5 8\\"),
+    ] {
+        let changed = text.replace(from, to);
+        assert_ne!(changed, text, "{from}");
+        assert_eq!(surface("a.obj", changed.as_bytes()).unwrap_or_else(|e| panic!("{to}: {}", e[0])).0, whole, "{to}");
+    }
+    // Errors stand where their word does.
+    let error = refused(&text.replace("f 1 4 3 2\n", "f 1 4 \\\n x 2\n"), "");
+    assert_eq!((error.code, error.line, error.value.as_deref()), ("obj.syntax", Some(10), Some("x")));
+    let error = refused(&text.replace("f 1 4 3 2\n", "f 1 4 \\ 3 2\n"), "");
+    assert_eq!((error.code, error.value.as_deref()), ("obj.syntax", Some("\\")));
+}
+
+/// Keywords of STL in capitals, and bytes behind the length that a GLB says it has.
+#[test]
+fn words_of_stl_are_read_in_any_case_and_a_glb_is_as_long_as_it_says() {
+    let text = common::cube::stl_text();
+    let lower = surface("a.stl", text.as_bytes()).expect("a cube").0;
+    for changed in
+        [text.to_uppercase().replace("E0", "e0"), text.replace("solid", "Solid"), format!(" \n{}", text.to_uppercase())]
+    {
+        assert_ne!(changed, text);
+        assert_eq!(surface("a.stl", changed.as_bytes()).unwrap_or_else(|e| panic!("{}", e[0])).0, lower);
+    }
+    let mut long = common::cube::glb();
+    let length = long.len();
+    long.extend([0; 4]);
+    let error = surface("a.glb", &long).expect_err("too long").remove(0);
+    assert_eq!((error.code, error.value), ("gltf.size", Some(length.to_string())));
+    assert!(
+        error.hint.as_deref().is_some_and(|hint| hint.contains("leave out what follows it, 4 bytes")),
+        "{:?}",
+        error.hint
+    );
+}
+
 #[test]
 fn cubes_that_share_a_vertex_are_refused_with_its_place() {
     let own = format!("{}{}{}{}", vertices(0.0, 1.0), vertices(1.0, 1.0), faces(0), faces(8));

@@ -65,20 +65,93 @@ fn named_parts_are_groups() {
     assert!(surface("a.glb", &glb()).expect("a cube").0.groups.contains_key("cube"));
 }
 
-#[test]
-fn polygons_become_fans_and_concave_ones_are_cut_where_a_fan_fits() {
-    // A prism over a dart: concave, but a fan from its inner corner fills it.
-    let dart = [[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.7, 1.0]];
-    let mut text = String::new();
+/// A prism over an outline, counter-clockwise, one unit high: its lids are faces with all corners of it, the lower one begun at a corner of it.
+fn prism(outline: &[[f64; 2]], from: usize) -> String {
+    let (n, mut text) = (outline.len(), String::new());
     for z in [0, 1] {
-        dart.iter().for_each(|[x, y]| text += &format!("v {x} {y} {z}\n"));
+        outline.iter().for_each(|[x, y]| text += &format!("v {x} {y} {z}\n"));
     }
-    text += "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-    let (mesh, _) = surface("a.obj", text.as_bytes()).expect("a prism");
-    assert!((mesh.enclosed_volume() - (2.0 - 0.7)).abs() < 1e-12, "{}", mesh.enclosed_volume());
+    let lid = |k: usize| (from + k) % n;
+    text += &format!("f{}\n", (0..n).rev().map(|k| format!(" {}", 1 + lid(k))).collect::<String>());
+    text += &format!("f{}\n", (0..n).map(|k| format!(" {}", 1 + n + k)).collect::<String>());
+    (0..n).for_each(|k| text += &format!("f {} {} {} {}\n", k + 1, (k + 1) % n + 1, n + (k + 1) % n + 1, n + k + 1));
+    text
+}
+
+/// Row 25: concave faces, from every corner on. None of the triangles lies outside, none is turned, and their areas sum to that of the face.
+#[test]
+fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
+    let dart = vec![[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.7, 1.0]];
+    let corner = vec![[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    let star: Vec<[f64; 2]> = (0..10)
+        .map(|k| {
+            let (s, c) = (std::f64::consts::TAU * f64::from(k) / 10.0).sin_cos();
+            [1.0, 0.4].map(|r| [r * c, r * s])[k as usize % 2]
+        })
+        .collect();
+    let of_star = 2.0 * (std::f64::consts::PI / 5.0).sin();
+    for (outline, area) in [(&dart, 1.3), (&corner, 4.0), (&star, of_star)] {
+        for from in 0..outline.len() {
+            let text = prism(outline, from);
+            let (mesh, notices) = surface("a.obj", text.as_bytes()).unwrap_or_else(|e| panic!("{}", e[0]));
+            assert!((mesh.enclosed_volume() - area).abs() < 1e-12, "{}, not {area}", mesh.enclosed_volume());
+            let whole: f64 = (0..2)
+                .map(|lid| {
+                    let flat = mesh
+                        .facets
+                        .iter()
+                        .filter(|f| f.iter().all(|n| mesh.positions[*n as usize][2] == (2 * lid - 1) as f64 * 0.5));
+                    flat.map(|f| {
+                        let [a, b, c] = f.map(|n| mesh.positions[n as usize]);
+                        let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                        assert!(doubled * (2 * lid - 1) as f64 > 0.0, "a triangle is turned");
+                        0.5 * doubled.abs()
+                    })
+                    .sum::<f64>()
+                })
+                .sum();
+            assert!((whole - 2.0 * area).abs() < 1e-12, "{whole}, not twice {area}");
+            // Both lids, and nothing else: no triangle had to be turned afterwards.
+            let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref())).collect();
+            assert_eq!(told, [("mesh.concave_face", Some("2"))]);
+            let faces = outline.len() + 2;
+            assert!(
+                notices[0].about.message.starts_with(&format!("2 of {faces} faces with more than three")),
+                "{}",
+                notices[0]
+            );
+        }
+    }
     // Indices that count from the end mean the same.
+    let text = prism(&dart, 0);
     let relative = text.replace("f 4 3 2 1", "f -5 -6 -7 -8").replace("f 5 6 7 8", "f -4 -3 -2 -1");
-    assert_eq!(surface("a.obj", relative.as_bytes()).expect("a prism").0, mesh);
+    assert_ne!(text, relative);
+    let mesh = |text: &str| surface("a.obj", text.as_bytes()).expect("a prism").0;
+    assert_eq!(mesh(&relative), mesh(&text));
+    // The same faces in PLY.
+    let lists = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let places =
+        text.lines().filter_map(|line| line.strip_prefix("v ")).map(|place| format!("{place}\n")).collect::<String>();
+    let faces = lists.map(|list| format!("4 {}\n", list.map(|k| k.to_string()).join(" "))).concat();
+    let header = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 6\nproperty list uchar int vertex_indices\nend_header\n";
+    let (from_ply, notices) = surface("a.ply", format!("{header}{places}{faces}").as_bytes()).expect("a prism");
+    assert_eq!((from_ply.facets.len(), notices[0].about.code), (12, "mesh.concave_face"));
+    assert!((from_ply.enclosed_volume() - 1.3).abs() < 1e-12);
+    // A cube with two opposite corners of its upper side lifted: that side is bent, by half of that over its size.
+    let lifted = |by: f64| {
+        let up = 1.0 + by;
+        obj().replace("v 1 1\t1\r", &format!("v 1 1 {up}")).replace("v -1 -1\t1\r", &format!("v -1 -1 {up}"))
+    };
+    assert_eq!(lifted(0.4).matches("1.4").count(), 2);
+    let (_, notices) = surface("a.obj", lifted(0.4).as_bytes()).expect("a bent cube");
+    let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref())).collect();
+    assert_eq!(told, [("mesh.bent_face", Some("1"))], "{}", notices[0]);
+    assert!(notices[0].about.message.contains("is not flat, by up to 0.1 of their size"), "{}", notices[0]);
+    assert!(surface("a.obj", lifted(0.01).as_bytes()).expect("a cube").1.is_empty());
+    let error = refused("a.obj", lifted(3.0).as_bytes());
+    assert!(error.code == "mesh.degenerate_face" && error.line.is_some(), "{error}");
+    assert!(error.message.starts_with("a face is far from flat: a corner lies 0.5 of its size"), "{error}");
 }
 
 /// Rows 22, 24, 25, 26, 30, 31, 33, 37, 38 in OBJ: what is changed in the cube, the code, the line, the value.

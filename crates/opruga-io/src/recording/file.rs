@@ -13,9 +13,9 @@ use std::time::Duration;
 /// What a loss of power may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// A recording that is being written. A frame whose state is kept goes to the system as soon as it is added, with those before
-/// it; others when their owner says so. A process that is killed leaves all that has gone there, and a part of what was just
-/// going. A loss of power costs the last five seconds.
+/// A recording that is being written. Chunks go to the system one by one, each before the next is begun: a frame whose state is kept, something that a
+/// program did, or frames without their states up to the moment when their owner says so. A process that is killed loses the last chunk at most, which was
+/// not whole yet or was just going. A loss of power costs the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
     folder: PathBuf,
@@ -123,6 +123,8 @@ impl RecordingFile {
     /// As [`RecordingFile::push`].
     pub fn keep(&mut self, frame: u64, hash: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
         self.write(|file| {
+            // The chunk before it goes first.
+            file.writer.flush()?;
             file.state.clear();
             state(&mut file.state);
             file.writer.keep(frame, hash, &mut file.state)?;
@@ -130,12 +132,16 @@ impl RecordingFile {
         })
     }
 
-    /// Adds something that a program did before the step that leads to the next frame; it is written with that.
+    /// Adds something that a program did before the step that leads to the next frame.
     ///
     /// # Errors
     /// As [`RecordingFile::push`].
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> Result<(), WriteError> {
-        self.write(|file| file.writer.input(frame, bytes))
+        self.write(|file| {
+            file.writer.flush()?;
+            file.writer.input(frame, bytes)?;
+            file.writer.flush()
+        })
     }
 
     /// Writes what is left, the index and the end; returns the bytes of the file.

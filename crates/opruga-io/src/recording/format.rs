@@ -3,7 +3,9 @@
 use super::error::RecordingError;
 
 /// The version that is written.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
+/// The one before it, in which every frame without its state is a chunk of its own: what is written now says the same with a payload.
+const BEFORE: u32 = 5;
 /// What every recording begins with.
 pub const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
@@ -151,7 +153,7 @@ pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError
     }
     // After the checksum: a flipped byte is damage, and no other version.
     match u32_at(head, 8) {
-        VERSION => {}
+        VERSION | BEFORE => {}
         found => return Err(RecordingError::Version { found }),
     }
     let bytes = u64_at(head, 12);
@@ -180,7 +182,7 @@ pub(super) enum Kind {
     Whole,
     /// The difference of a state from the one kept before.
     Difference,
-    /// A frame whose state is not kept: its hash alone.
+    /// Frames whose states are not kept: the first in the head, the hashes of the others in the payload.
     Passed,
     /// What the program did before the step that led to a frame.
     Input,
@@ -192,7 +194,7 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkHead {
     pub(super) kind: Kind,
-    /// The frame; of an input, the one that comes after it; of an index, one past the last.
+    /// The frame, or the first of them; of an input, the one that comes after it; of an index, one past the last.
     pub(super) frame: u64,
     /// Bytes of what the payload stands for.
     pub(super) state: u64,

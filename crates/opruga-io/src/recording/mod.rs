@@ -9,16 +9,18 @@
 //! 24      the header: program, scene, how the run was called, files that the scene had named, how many frames a state is
 //!         kept; then CRC-32 of it
 //!
-//! every frame is a chunk; the first one, every so manieth behind it and the last have their states in it:
+//! the first frame, every so manieth behind it and the last are chunks with their states; the frames between, as many as went to
+//! the system together, are one chunk:
 //! 0    4  "FRAM"                "INPT": something that a program did
-//! 4    4  0: the state itself, 1: its difference from the state before, 3: an input, 4: a frame without its state
-//! 8    8  the number of the frame; of an input, the frame that follows
+//! 4    4  0: the state itself, 1: its difference from the state before, 3: an input, 4: frames
+//!         without their states
+//! 8    8  the number of the frame, or of the first; of an input, the frame that follows
 //! 16   8  bytes of the state
 //! 24   8  bytes of the payload
-//! 32   8  the hash of the frame
+//! 32   8  the hash of the frame, or of the first
 //! 40   4  CRC-32 of the payload
 //! 44   4  CRC-32 of the header's CRC-32 and of bytes 0 … 43: a chunk of another recording does not fit
-//! 48      the payload
+//! 48      the payload; of frames without their states, the hashes of all but the first, 8 bytes each
 //!
 //! a run that ends adds a chunk "INDX": the last frame whose state is kept, how many states stand for themselves, the number
 //! and place of each, the frame and place of every input; and
@@ -27,7 +29,8 @@
 //! 12   8  "OPREND\x1a\n"
 //! ```
 //! All places are of 64 bits. A file without the end, of a run that was killed, is read chunk by chunk, and the index made
-//! again; a chunk that was not written to its end is left out, and said to be. What the bytes of a state mean is the matter
+//! again; a chunk that was not written to its end is left out, and said to be. Every chunk goes to the system as soon as it is whole, before anything of the
+//! next is: a process that is killed at any moment loses the last chunk at most. What the bytes of a state mean is the matter
 //! of the world that wrote them, as that of a hash: what is computed again is compared with it. The same run gives the same
 //! bytes.
 

@@ -60,6 +60,18 @@ impl Order {
         may
     }
 
+    /// Takes the frames of a chunk with the hashes of the others in its payload: all of them or none.
+    pub(super) fn pass_all(&mut self, frame: u64, payload: u64) -> bool {
+        let before = *self;
+        let others = payload / 8;
+        let all = payload.is_multiple_of(8)
+            && frame.checked_add(others).is_some_and(|last| (frame..=last).all(|frame| self.pass(frame)));
+        if !all {
+            *self = before;
+        }
+        all
+    }
+
     /// Takes a frame with its state, or the state of the last frame, which ends the recording; says whether it may come now.
     pub(super) fn keep(&mut self, frame: u64) -> bool {
         let begins = self.span.is_none() && frame < u64::MAX;

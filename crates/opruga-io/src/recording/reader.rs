@@ -37,6 +37,8 @@ pub struct Recording<R> {
     end: u64,
     /// The last frame whose hash was read, and the place of the chunk behind it.
     hashed: Option<(u64, u64)>,
+    /// The last chunk of frames without states whose hashes were read: its first frame, and they.
+    passed: (u64, Vec<u64>),
     /// The last frame whose state was read, and the place of the chunk behind it.
     read: Option<(u64, u64)>,
     state: Vec<u8>,
@@ -66,6 +68,7 @@ impl<R: Read + Seek> Recording<R> {
             ending: Ending::Closed,
             end: length,
             hashed: None,
+            passed: (0, Vec::new()),
             read: None,
             state: Vec::new(),
         };
@@ -101,12 +104,24 @@ impl<R: Read + Seek> Recording<R> {
     /// [`RecordingError`] if there is no such frame, or if a chunk on the way to it is damaged.
     pub fn hash(&mut self, frame: u64) -> Result<u64, RecordingError> {
         self.kept(frame)?;
+        let known = frame.checked_sub(self.passed.0).and_then(|k| self.passed.1.get(usize::try_from(k).ok()?));
+        if let Some(hash) = known {
+            return Ok(*hash);
+        }
         let [whole, at] = self.index[self.index.partition_point(|[first, _]| *first <= frame) - 1];
         let mut place = self.hashed.filter(|(read, _)| (whole..frame).contains(read)).map_or(at, |(_, behind)| behind);
         loop {
             let (head, behind) = self.frame_chunk(place, frame)?;
+            if head.kind == Kind::Passed && frame - head.frame < 1 + head.payload / 8 {
+                let damaged = RecordingError::Damaged { from: place, to: behind };
+                let payload = self.payload(&head)?.filter(|payload| payload.len().is_multiple_of(8)).ok_or(damaged)?;
+                let others = payload.as_chunks::<8>().0.iter().map(|hash| u64::from_le_bytes(*hash));
+                self.passed = (head.frame, core::iter::once(head.hash).chain(others).collect());
+                self.hashed = Some((head.frame.saturating_add(head.payload / 8), behind));
+                return Ok(self.passed.1[(frame - head.frame) as usize]);
+            }
             // The state of the last frame may stand behind its hash.
-            if head.kind != Kind::Input && head.frame == frame {
+            if !matches!(head.kind, Kind::Input | Kind::Passed) && head.frame == frame {
                 self.hashed = Some((frame, behind));
                 return Ok(head.hash);
             }
@@ -277,7 +292,7 @@ impl<R: Read + Seek> Recording<R> {
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
                 Kind::Index => break damaged(length),
                 Kind::Input => self.order.follows(head.frame),
-                Kind::Passed => self.order.pass(head.frame),
+                Kind::Passed => self.order.pass_all(head.frame, head.payload),
                 Kind::Difference if self.index.is_empty() => false,
                 Kind::Whole | Kind::Difference => self.order.keep(head.frame),
             };

@@ -16,6 +16,8 @@ pub struct Writer<W> {
     identity: u32,
     /// What was not given to the file yet.
     pending: Vec<u8>,
+    /// The chunk of frames without states that others may still join: where it begins in that, its first frame and the hash of that.
+    passed: Option<(usize, u64, u64)>,
     /// The bytes of the file, with those not given to it yet.
     place: u64,
     /// The last state that was kept.
@@ -41,6 +43,7 @@ impl<W: Target> Writer<W> {
             identity,
             place: pending.len() as u64,
             pending,
+            passed: None,
             previous: Vec::new(),
             order: Order::new(header.every),
             group: 0,
@@ -51,7 +54,8 @@ impl<W: Target> Writer<W> {
         Ok(writer)
     }
 
-    /// Adds a frame whose state is not kept: the next one, of which no state is due by the header.
+    /// Adds a frame whose state is not kept: the next one, of which no state is due by the header. Those that go to the file together, with nothing
+    /// between them, are one chunk.
     ///
     /// # Errors
     /// A frame out of its order; it is left out. The file is not written to before [`Writer::flush`].
@@ -59,9 +63,18 @@ impl<W: Target> Writer<W> {
         if !self.order.pass(frame) {
             return Err(out_of_order(frame));
         }
-        let from = self.begin();
-        self.end(from, Kind::Passed, frame, 0, hash);
+        match self.passed {
+            Some(_) => self.pending.extend(hash.to_le_bytes()),
+            None => self.passed = Some((self.begin(), frame, hash)),
+        }
         Ok(())
+    }
+
+    /// Ends the chunk of frames without states, if one is begun.
+    fn end_passed(&mut self) {
+        if let Some((from, frame, hash)) = self.passed.take() {
+            self.end(from, Kind::Passed, frame, 0, hash);
+        }
     }
 
     /// Adds a frame with its state: the first, which may have any number, or the next one. That of a frame to which none is
@@ -74,6 +87,7 @@ impl<W: Target> Writer<W> {
         if !self.order.keep(frame) {
             return Err(out_of_order(frame));
         }
+        self.end_passed();
         let begun = self.group > 0 && self.group < GROUP;
         let kind = if begun && self.previous.len() == state.len() { Kind::Difference } else { Kind::Whole };
         if kind == Kind::Whole {
@@ -97,6 +111,7 @@ impl<W: Target> Writer<W> {
         if !self.order.follows(frame) {
             return Err(out_of_order(frame));
         }
+        self.end_passed();
         self.inputs.push([frame, self.place]);
         let from = self.begin();
         self.pending.extend_from_slice(bytes);
@@ -125,6 +140,10 @@ impl<W: Target> Writer<W> {
     /// # Errors
     /// Those of the target; [`Writer::bytes`] tells how many bytes it has taken.
     pub fn flush(&mut self) -> io::Result<()> {
+        self.end_passed();
+        if self.pending.is_empty() {
+            return Ok(());
+        }
         self.out.write_all(&self.pending)?;
         self.pending.clear();
         self.out.flush()
@@ -148,6 +167,7 @@ impl<W: Target> Writer<W> {
     /// # Errors
     /// Those of the target.
     pub fn finish(&mut self) -> io::Result<()> {
+        self.end_passed();
         let place = self.place;
         let from = self.begin();
         self.pending.extend(self.order.last_kept().unwrap_or(u64::MAX).to_le_bytes());

@@ -128,6 +128,45 @@ impl Curves {
         }));
     }
 
+    /// How many contours there are.
+    pub(super) fn count(&self) -> usize {
+        self.contours.len()
+    }
+
+    /// The contours from one on.
+    pub(super) fn from(&self, begun: usize) -> Curves {
+        Curves { contours: self.contours.get(begun..).unwrap_or(&[]).to_vec(), ..Curves::default() }
+    }
+
+    /// Whether this is one convex polygon that holds all points and control points of other curves, within a distance: then it holds the curves.
+    pub(super) fn holds_points_of(&self, other: &Curves, within: f64) -> bool {
+        let [contour] = self.contours.as_slice() else { return false };
+        let mut corners = vec![contour.start];
+        for segment in &contour.segments {
+            let Segment::Line(to) = segment else { return false };
+            corners.push(*to);
+        }
+        corners.dedup();
+        while corners.len() > 1 && corners.first() == corners.last() {
+            corners.pop();
+        }
+        let n = corners.len();
+        let side = |k: usize, p: Point| {
+            let (a, b) = (corners[k], corners[(k + 1) % n]);
+            let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+            (u[0] * v[1] - u[1] * v[0]) / (u[0] * u[0] + u[1] * u[1]).sqrt()
+        };
+        // Every corner and every point lies on the same side of all edges.
+        let turn = (0..n).map(|k| side(k, corners[(k + 2) % n])).find(|turn| *turn != 0.0).unwrap_or(0.0).signum();
+        let inside = |p: Point| (0..n).all(|k| turn * side(k, p) >= -within);
+        let convex = n > 2 && turn != 0.0 && corners.iter().all(|p| (0..n).all(|k| turn * side(k, *p) >= 0.0));
+        let held = |segment: &Segment| match *segment {
+            Segment::Line(to) => inside(to),
+            Segment::Cubic(p, q, to) => [p, q, to].into_iter().all(inside),
+        };
+        convex && other.contours.iter().all(|contour| inside(contour.start) && contour.segments.iter().all(held))
+    }
+
     /// How many points lines and curves join; one that repeats the start of its contour is not counted twice.
     pub(super) fn points(&self) -> usize {
         let of = |contour: &Contour| {

@@ -16,7 +16,12 @@ pub(super) fn chunks<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Optio
     };
     match (word(4), word(8)) {
         (Some(2), Some(length)) if length == bytes.len() as u64 => {}
-        (Some(2), Some(length)) => return Err(size("at byte 8, the length of the file", length)),
+        (Some(2), Some(length)) => {
+            let error = size("at byte 8, the length of the file", length);
+            let more = (bytes.len() as u64).saturating_sub(length);
+            let hint = format!("the length covers the whole file: leave out what follows it, {more} bytes");
+            return Err(if more > 0 { error.hint(hint) } else { error });
+        }
         (version, _) => {
             let version = version.unwrap_or(0);
             let error = SceneError::new("gltf.version", format!("at byte 4, version {version}"));

@@ -1,13 +1,14 @@
 //! Wavefront OBJ: vertices and polygons, line by line.
 //!
-//! Read are `v`, `f` (polygons as fans; indices from 1, or negative from the end), `o` and `g` (groups of vertices). `vt`, `vn`, `vp`, `s`, `usemtl`,
+//! Read are `v`, `f` (polygons cut into triangles; indices from 1, or negative from the end), `o` and `g` (groups of vertices). `vt`, `vn`, `vp`, `s`, `usemtl`,
 //! `mtllib` and comments carry nothing for a body, but the `vt` and `vn` that faces name must be there; lines and points (`l`, `p`), and weights of
-//! vertices, are counted and left out; all else is refused.
+//! vertices, are counted and left out; all else is refused. A `\` at the end of a line
+//! lets its statement go on in the next one.
 //!
 //! # Source
 //! Wavefront Technologies, Object Files, version 3.0.
 
-use super::triangles::{Places, Triangles};
+use super::triangles::{CORNERS, Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_math::words::counted;
@@ -32,11 +33,15 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
     let mut extras = [0i64; 2];
     let mut largest = [(0i64, 0usize, 0usize); 2];
     let mut start = 0;
-    for line in source.text.split_inclusive('\n') {
-        let here = start;
-        start += line.len();
-        let text = line.split('#').next().unwrap_or("");
-        let mut words = text.split_ascii_whitespace();
+    while start < source.text.len() {
+        let (here, mut goes_on) = (start, true);
+        while goes_on && start < source.text.len() {
+            let piece = source.text[start..].split_inclusive('\n').next().unwrap_or("");
+            start += piece.len();
+            goes_on = statement(piece).1;
+        }
+        let line = &source.text[here..start];
+        let mut words = line.split_inclusive('\n').flat_map(|piece| statement(piece).0.split_ascii_whitespace());
         let Some(word) = words.next() else { continue };
         let refuse = |part: &str, error: SceneError| {
             let from = here + (part.as_ptr() as usize - line.as_ptr() as usize);
@@ -48,7 +53,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 for x in &mut position {
                     let Some(part) = words.next() else {
                         let error = SceneError::new("obj.syntax", "a vertex has fewer than three coordinates");
-                        return Err(refuse(word, error).value(visible(text.trim())).allowed("v x y z"));
+                        return Err(refuse(word, error).value(visible(statement(line).0.trim())).allowed("v x y z"));
                     };
                     *x = number(part).map_err(|e| refuse(part, e))?;
                 }
@@ -165,9 +170,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
             Err(why) => {
                 let value = visible(source.text[at..end].trim());
                 let error = source.mark(SceneError::new("mesh.degenerate_face", why), at, end).value(value);
-                return Err(
-                    error.allowed("at least three different corners, around which a fan of triangles turns one way")
-                );
+                return Err(error.allowed(CORNERS));
             }
         }
         if let Some(group) = face.group {
@@ -183,6 +186,15 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
     }
     found.places = Places::Lines(lines);
     Ok(found)
+}
+
+/// A line without its comment, and whether a `\` says that its statement goes on in the next one.
+fn statement(line: &str) -> (&str, bool) {
+    let Some((before, _)) = line.split_once('#') else {
+        let text = line.trim_end_matches(['\n', '\r']);
+        return text.strip_suffix('\\').map_or((text, false), |before| (before, true));
+    };
+    (before, false)
 }
 
 /// A finite number with a decimal point, whatever the language of the machine.

@@ -1,12 +1,12 @@
 //! PLY: elements with properties, as text or as bytes of either order.
 //!
-//! Read are the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons become fans. Other
+//! Read are the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons are cut into triangles. Other
 //! properties, which say how vertices look, are passed over by the sizes that the header gives, and so are other elements, which are counted.
 //!
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).
 
-use super::triangles::{Places, Triangles};
+use super::triangles::{CORNERS, Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
@@ -157,7 +157,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                             Ok(triangles) => starts.extend(std::iter::repeat_n(start, triangles)),
                             Err(why) => {
                                 let error = values.error("mesh.degenerate_face", format!("{why}: face {face}"));
-                                return Err(error.value(format!("{corners:?}")));
+                                return Err(error.value(visible(&format!("{corners:?}"))).allowed(CORNERS));
                             }
                         }
                     }

@@ -21,7 +21,7 @@ const EACH: usize = 50;
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(HEAD)];
     promised(bytes).is_some_and(|size| size == bytes.len() as u64)
-        || !bytes.trim_ascii_start().starts_with(b"solid")
+        || !bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
         || head.contains(&0)
 }
 

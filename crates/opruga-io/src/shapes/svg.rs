@@ -1,8 +1,9 @@
 //! Drawings: the shapes of an SVG file as curves.
 //!
 //! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, the first suitable one in `switch`, and through `use`,
-//! with `transform`. What carries no outline (`title`, `defs`, gradients …) is passed over, and what is not displayed; what would be drawn but has no
-//! outline here (`text`, `image`, strokes, markers, filters, animations, clips and masks) is refused or counted, and so is what style sheets say. Every part of the drawing
+//! with `transform`, an `svg` inside the drawing and a `symbol` also with their `viewBox`. What carries no outline (`title`, `defs`, gradients …) is passed over, and what is not displayed; what would be drawn but has no
+//! outline here (`text`, `image`, strokes, markers, filters, animations, masks, and clip paths that cut something off) is refused or counted. Style sheets are followed; what is said behind selectors that
+//! are not read is counted, or refused where it would change outlines. Every part of the drawing
 //! follows the even-odd rule, or the non-zero rule where its `fill-rule` says so. Fill colours are read where the scene wants them.
 //!
 //! # Source
@@ -12,7 +13,8 @@ use super::curves::{Affine, Curves, IDENTITY, Point, after};
 use super::drawing::Drawing;
 use super::svg_elements::units;
 use super::svg_fill::{Fill, Fills};
-use super::svg_style::{ANIMATIONS, animations_of, has_markers, has_stroke, is_clear, is_hidden, style, unread};
+use super::svg_sheets::Sheets;
+use super::svg_style::{ANIMATIONS, animations_of};
 use super::svg_xml::{document, is_drawing};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
@@ -53,35 +55,19 @@ const NOT_DRAWN: [&str; 15] = [
 pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) -> Result<Drawing<'a>, SceneError> {
     let document = document(source)?;
     let root = document.root_element();
-    let mut reader = Reader {
-        source,
-        document: &document,
-        curves: Curves::default(),
-        places: Vec::new(),
-        fills: Fills::of(&document, source, colours)?,
-        canvas: None,
-        open: 0,
-        unfilled: 0,
-        images: 0,
-        hidden: 0,
-        markers: 0,
-        filters: 0,
-        strokes: 0,
-        animations: animations_of(root),
-    };
+    let sheets = Sheets::of(&document, source);
+    let mut reader = Reader::new(source, &document, &sheets, Fills::of(&document, source, &sheets, colours));
+    reader.animations = animations_of(root);
     reader.canvas = reader.canvas_of(root)?;
     match id {
-        None => reader.children(root, &IDENTITY, &mut Vec::new(), Fill::FIRST)?,
+        None => {
+            let (map, fill) = reader.within(root, &IDENTITY, Fill::FIRST)?;
+            reader.children(root, &map, &mut Vec::new(), fill)?;
+            reader.clipped(root, &map, 0, &mut Vec::new())?;
+        }
         Some(id) => {
             let wanted = reader.named(root, id)?;
-            // The element keeps the transforms around it.
-            let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
-            let ancestors: Vec<Node<'_, '_>> = wanted.ancestors().skip(1).filter(Node::is_element).collect();
-            for ancestor in ancestors.into_iter().rev() {
-                map = after(&map, &reader.transform(ancestor)?);
-                fill = reader.fills.within(ancestor, fill)?;
-            }
-            reader.element_at(wanted, &map, &mut Vec::new(), fill)?;
+            reader.element_by_itself(wanted)?;
         }
     }
     let mut notices = Vec::new();
@@ -94,6 +80,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     notice(reader.open, "svg.open_path", ["open path is", "open paths are"], "closed by a straight line");
     let unfilled = ["shape without fill is read by its outline", "shapes without fill are read by their outlines"];
     notice(reader.unfilled, "svg.stroke", unfilled, "instead of strokes");
+    let empty = ["shape without a path or points is", "shapes without a path or points are"];
+    notice(reader.empty, "svg.empty", empty, "left out");
     notice(reader.images, "svg.image", ["image is", "images are"], "left out");
     let hidden = ["element that cannot be seen is", "elements that cannot be seen are"];
     notice(reader.hidden, "svg.hidden", hidden, "left out");
@@ -105,8 +93,8 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
     notice(reader.animations, "svg.animation", ["animation is", "animations are"], "left out");
     let gradients = ["gradient is", "gradients are"];
     notice(reader.fills.gradients, "svg.gradient", gradients, "painted in the mean of the colours");
-    let styled = ["element has a style sheet", "elements have a style sheet"];
-    notice(reader.fills.styled, "svg.style", styled, "which is not read: other colours may be meant");
+    let styled = ["shape has a rule of a style sheet", "shapes have rules of style sheets"];
+    notice(reader.fills.styled, "svg.style", styled, "behind a selector that is not read: other colours may be meant");
     let (painted, rules) = (reader.fills.painted, reader.fills.rules);
     let (curves, places) = (reader.curves, reader.places);
     Ok(Drawing { curves, y_down: true, source: Some(source), places, painted, rules, notices })
@@ -114,17 +102,20 @@ pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) 
 
 pub(super) struct Reader<'a, 'd> {
     pub(super) source: &'a Source<'a>,
-    document: &'d Document<'a>,
-    curves: Curves,
+    pub(super) document: &'d Document<'a>,
+    pub(super) sheets: &'d Sheets,
+    pub(super) curves: Curves,
     /// Where each part stands in the file.
     places: Vec<(usize, usize)>,
-    fills: Fills<'a, 'd>,
+    pub(super) fills: Fills<'a, 'd>,
     /// Width and height that per cent refer to; none where the drawing does not say.
     pub(super) canvas: Option<Point>,
     pub(super) open: usize,
     unfilled: usize,
+    /// Shapes that draw nothing.
+    pub(super) empty: usize,
     images: usize,
-    hidden: usize,
+    pub(super) hidden: usize,
     markers: usize,
     filters: usize,
     strokes: usize,
@@ -132,6 +123,33 @@ pub(super) struct Reader<'a, 'd> {
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
+    /// A reader that has read nothing.
+    pub(super) fn new(
+        source: &'a Source<'a>,
+        document: &'d Document<'a>,
+        sheets: &'d Sheets,
+        fills: Fills<'a, 'd>,
+    ) -> Reader<'a, 'd> {
+        Reader {
+            source,
+            document,
+            sheets,
+            curves: Curves::default(),
+            places: Vec::new(),
+            fills,
+            canvas: None,
+            open: 0,
+            unfilled: 0,
+            empty: 0,
+            images: 0,
+            hidden: 0,
+            markers: 0,
+            filters: 0,
+            strokes: 0,
+            animations: 0,
+        }
+    }
+
     pub(super) fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
         let range = node.range();
         // The tag alone, not all that it holds.
@@ -145,7 +163,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     /// The only element with an id.
-    fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
+    pub(super) fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
         let document = self.document;
         let mut all = document.descendants().filter(|node| node.attribute("id") == Some(id));
         let Some(first) = all.next() else { return Err(self.unknown(node, id, "svg.unknown_id")) };
@@ -165,11 +183,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             units(length.unit).map(|unit| unit * length.number)
         };
         let size = size("width").zip(size("height")).map(|(w, h)| [w, h]);
-        let Some(attribute) = root.attribute_node("viewBox") else { return Ok(size) };
-        let view: svgtypes::ViewBox = attribute.value().parse().map_err(|e: svgtypes::ViewBoxError| {
-            let error = SceneError::new("svg.syntax", format!("`viewBox` cannot be read: {}", visible(&e.to_string())));
-            self.in_attribute(&attribute, None, error).value(visible(attribute.value())).allowed("x y width height")
-        })?;
+        let Some(view) = self.view_box(root)? else { return Ok(size) };
         let ratio = |[w, h]: Point| w / h;
         let stretched = root.attribute("preserveAspectRatio").is_some_and(|value| value.trim().starts_with("none"))
             && size.is_some_and(|size| (ratio(size) / ratio([view.w, view.h]) - 1.0).abs() > 1e-6);
@@ -196,7 +210,46 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(None)
     }
 
-    fn children(
+    /// An element alone, with the transforms and clips around it.
+    fn element_by_itself(&mut self, wanted: Node<'_, '_>) -> Result<(), SceneError> {
+        let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
+        let (mut clips, mut frames) = (Vec::new(), Vec::new());
+        let ancestors: Vec<Node<'_, '_>> = wanted.ancestors().skip(1).filter(Node::is_element).collect();
+        for ancestor in ancestors.into_iter().rev() {
+            (map, fill) = self.within(ancestor, &map, fill)?;
+            clips.push((ancestor, map));
+            let nested = ancestor.tag_name().name() == "svg" && ancestor != self.document.root_element();
+            if let Some(view) = if nested { self.viewport(ancestor, None)? } else { None } {
+                frames.extend(view.frame.map(|frame| (ancestor, frame, map)));
+                map = after(&map, &view.map);
+                self.canvas = view.canvas;
+            }
+        }
+        self.element_at(wanted, &map, &mut Vec::new(), fill)?;
+        for (ancestor, map) in clips {
+            self.clipped(ancestor, &map, 0, &mut Vec::new())?;
+        }
+        frames.iter().try_for_each(|(ancestor, frame, map)| self.framed(*ancestor, frame, map, 0))
+    }
+
+    /// The coordinates of an element and its fill, inside of others; refused is what would cut or move it and is not read.
+    fn within(&mut self, node: Node<'_, '_>, map: &Affine, fill: Fill) -> Result<(Affine, Fill), SceneError> {
+        let sheets = self.sheets;
+        if let Some((word, value)) = sheets.unread(node) {
+            return Err(self.not_read(node, word, value));
+        }
+        self.filters += usize::from(sheets.style(node, "filter").is_some_and(|value| value != "none"));
+        let fill = self.fills.within(node, fill)?;
+        Ok((after(map, &self.transform(node)?), fill))
+    }
+
+    /// That a property of an element cannot be read.
+    pub(super) fn not_read(&self, node: Node<'_, '_>, word: &str, value: &str) -> SceneError {
+        let error = self.error(node, "svg.unsupported", format!("`{word}` cannot be read"));
+        error.value(visible(value)).hint("apply it in the drawing program")
+    }
+
+    pub(super) fn children(
         &mut self,
         node: Node<'_, '_>,
         map: &Affine,
@@ -233,51 +286,39 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Ok(());
         }
         let leaf = !matches!(name, "svg" | "g" | "a" | "switch" | "use");
-        if style(node, "display") == Some("none") || is_clear(node) || leaf && is_hidden(node) {
+        let sheets = self.sheets;
+        if sheets.style(node, "display") == Some("none") || sheets.is_clear(node) || leaf && sheets.is_hidden(node) {
             self.hidden += 1;
             return Ok(());
         }
-        // What would cut or move the outline is refused, not ignored.
-        if let Some((word, value)) = unread(node) {
-            let error = self.error(node, "svg.unsupported", format!("`{word}` cannot be read"));
-            return Err(error.value(visible(value)).hint("apply it in the drawing program"));
-        }
-        self.markers += usize::from(leaf && has_markers(node));
-        self.filters += usize::from(style(node, "filter").is_some_and(|value| value != "none"));
+        self.markers += usize::from(leaf && sheets.has_markers(node));
         self.animations += animations_of(node);
-        let fill = self.fills.within(node, fill)?;
-        let map = after(map, &self.transform(node)?);
-        let id = node.id().get_usize();
-        path.push(id);
+        let (map, fill) = self.within(node, map, fill)?;
+        let begun = self.curves.count();
+        path.push(node.id().get_usize());
         match name {
-            "svg" | "g" | "a" | "switch" => {
-                if name == "svg"
-                    && (node.has_attribute("viewBox") || node.has_attribute("x") || node.has_attribute("y"))
-                {
-                    let error = self.error(
-                        node,
-                        "svg.unsupported",
-                        "an <svg> inside the drawing has a place of its own".into(),
-                    );
-                    return Err(error.value("svg").hint("make it a group <g> with a transform"));
-                }
-                if name != "switch" {
-                    self.children(node, &map, path, fill)?;
-                } else if let Some(child) = self.chosen(node)? {
+            "svg" => self.inside(node, None, &map, path, fill)?,
+            "g" | "a" => self.children(node, &map, path, fill)?,
+            "switch" => {
+                if let Some(child) = self.chosen(node)? {
                     self.element_at(child, &map, path, fill)?;
                 }
             }
             "use" => self.used(node, &map, path, fill)?,
             "path" | "rect" | "circle" | "ellipse" | "polygon" | "polyline" => {
-                let mut curves = Curves::of_part(self.places.len() as u32);
+                let (mut curves, empty) = (Curves::of_part(self.places.len() as u32), self.empty);
                 match name {
                     "path" => self.path(node, &mut curves)?,
                     "rect" => self.rectangle(node, &mut curves)?,
                     "circle" | "ellipse" => self.ellipse(node, name, &mut curves)?,
                     _ => self.points(node, name, &mut curves)?,
                 }
+                if self.empty > empty {
+                    path.pop();
+                    return Ok(());
+                }
                 self.unfilled += usize::from(!fill.filled);
-                self.strokes += usize::from(fill.filled && has_stroke(node));
+                self.strokes += usize::from(fill.filled && sheets.has_stroke(node));
                 self.fills.paint(fill);
                 self.curves.append(curves, &map);
                 let range = node.range();
@@ -298,6 +339,7 @@ impl<'a, 'd> Reader<'a, 'd> {
                     .allowed("path, rect, circle, ellipse, polygon, polyline in svg, g, a, switch, use"));
             }
         }
+        self.clipped(node, &map, begun, path)?;
         path.pop();
         Ok(())
     }
@@ -318,22 +360,25 @@ impl<'a, 'd> Reader<'a, 'd> {
             let error = self.error(node, "svg.cycle", format!("`#{}` contains itself", visible(id)));
             return Err(error.value(visible(id)).hint("an element cannot be drawn inside of itself"));
         }
-        let moved = [1.0, 0.0, 0.0, 1.0, self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?];
-        let map = after(map, &moved);
-        if goal.tag_name().name() == "symbol" {
-            if goal.has_attribute("viewBox") {
-                let error = self.error(goal, "svg.unsupported", "a <symbol> with a viewBox cannot be read".into());
-                return Err(error.value("viewBox").hint("make it a group <g>"));
-            }
-            path.push(goal.id().get_usize());
-            self.animations += animations_of(goal);
-            self.children(goal, &map, path, fill)?;
-            path.pop();
-            return Ok(());
-        }
         // Many `use` of `use` could draw without end.
         if self.places.len() > MOST_PARTS {
             return Err(self.error(node, "shape.too_large", "the drawing has too many parts".into()).value(id));
+        }
+        let moved = [1.0, 0.0, 0.0, 1.0, self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?];
+        let map = after(map, &moved);
+        if goal.tag_name().name() == "symbol" {
+            path.push(goal.id().get_usize());
+            self.animations += animations_of(goal);
+            let begun = self.curves.count();
+            let (map, fill) = self.within(goal, &map, fill)?;
+            self.inside(goal, Some(node), &map, path, fill)?;
+            self.clipped(goal, &map, begun, path)?;
+            path.pop();
+            return Ok(());
+        }
+        if goal.tag_name().name() == "svg" && (node.has_attribute("width") || node.has_attribute("height")) {
+            let error = self.error(node, "svg.unsupported", "a <use> cannot give an <svg> another size".into());
+            return Err(error.value("use").hint("give the <svg> itself its `width` and `height`"));
         }
         self.element_at(goal, &map, path, fill)
     }

@@ -28,7 +28,7 @@ impl Reader<'_, '_> {
     }
 
     /// A value that the SVG grammar refuses.
-    fn refused(&self, attribute: &Attribute<'_, '_>, error: &svgtypes::Error) -> SceneError {
+    pub(super) fn refused(&self, attribute: &Attribute<'_, '_>, error: &svgtypes::Error) -> SceneError {
         use svgtypes::Error as E;
         let at = match error {
             E::UnexpectedData(k) | E::InvalidChar(_, k) | E::InvalidString(_, k) | E::InvalidNumber(k) => Some(*k),
@@ -94,7 +94,7 @@ impl Reader<'_, '_> {
     }
 
     /// A length that must not be negative.
-    fn size(&self, node: Node<'_, '_>, name: &str) -> Result<f64, SceneError> {
+    pub(super) fn size(&self, node: Node<'_, '_>, name: &str) -> Result<f64, SceneError> {
         let value = self.number(node, name, 0.0)?;
         match node.attribute_node(name) {
             Some(attribute) if value < 0.0 => {
@@ -144,8 +144,9 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn points(&mut self, node: Node<'_, '_>, name: &str, curves: &mut Curves) -> Result<(), SceneError> {
-        let Some(attribute) = node.attribute_node("points") else {
-            return Err(self.error(node, "svg.syntax", format!("<{name}> has no `points`")).value(name));
+        let Some(attribute) = node.attribute_node("points").filter(|points| !points.value().trim().is_empty()) else {
+            self.empty += 1;
+            return Ok(());
         };
         let points: Vec<Point> = PointsParser::from(attribute.value()).map(|(x, y)| [x, y]).collect();
         // The library stops in silence at what it cannot read.
@@ -170,8 +171,10 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn path(&mut self, node: Node<'_, '_>, curves: &mut Curves) -> Result<(), SceneError> {
-        let Some(attribute) = node.attribute_node("d") else {
-            return Err(self.error(node, "svg.syntax", "<path> has no `d`".into()).value("path"));
+        let nothing = |value: &str| value.is_empty() || value == "none";
+        let Some(attribute) = node.attribute_node("d").filter(|path| !nothing(path.value().trim())) else {
+            self.empty += 1;
+            return Ok(());
         };
         let mut pen = Pen::on(curves);
         for segment in PathParser::from(attribute.value()) {

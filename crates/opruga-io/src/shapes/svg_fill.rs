@@ -1,7 +1,7 @@
 //! Fill colours of a drawing: inherited from element to element, as the standard says.
 
 use super::rules::Rule;
-use super::svg_style::{Sheets, style};
+use super::svg_sheets::Sheets;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node};
@@ -20,12 +20,17 @@ pub(super) struct Fill {
     fill_opacity: f64,
     /// What is inside.
     rule: Rule,
+    /// Whether rules of style sheets may be about it or what it is in, of which that is not known.
+    styled: bool,
 }
 
 impl Fill {
     /// Where nothing is said: black.
     pub(super) const FIRST: Fill =
-        Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0, rule: Rule::Unsaid };
+        Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0, rule: Rule::Unsaid, styled: false };
+
+    /// A clip path where nothing is said.
+    pub(super) const CLIP: Fill = Fill { rule: Rule::NonZero, ..Fill::FIRST };
 }
 
 /// Reads the fills of elements.
@@ -38,35 +43,52 @@ pub(super) struct Fills<'a, 'd> {
     pub(super) painted: Vec<Option<[u8; 4]>>,
     /// How many elements are filled by a gradient.
     pub(super) gradients: usize,
-    /// How many elements a style sheet may be about.
+    /// Of how many parts it is not known which rules of style sheets are about them.
     pub(super) styled: usize,
     /// By which rule every part of the drawing is filled.
     pub(super) rules: Vec<Rule>,
-    sheets: Sheets,
+    sheets: &'d Sheets,
+    /// The property that says what is inside: another one for clip paths.
+    rule: &'static str,
 }
 
 impl<'a, 'd> Fills<'a, 'd> {
-    /// Nothing read yet but the style sheets.
-    ///
-    /// # Errors
-    /// `svg.style` for a style sheet that changes outlines.
+    /// Nothing read yet.
     pub(super) fn of(
         document: &'d Document<'a>,
         source: &'a Source<'a>,
+        sheets: &'d Sheets,
         wanted: bool,
-    ) -> Result<Fills<'a, 'd>, SceneError> {
-        let sheets = Sheets::of(document, source)?;
-        Ok(Fills { document, source, wanted, painted: Vec::new(), gradients: 0, styled: 0, rules: Vec::new(), sheets })
+    ) -> Fills<'a, 'd> {
+        let rule = "fill-rule";
+        Fills {
+            document,
+            source,
+            wanted,
+            painted: Vec::new(),
+            gradients: 0,
+            styled: 0,
+            rules: Vec::new(),
+            sheets,
+            rule,
+        }
+    }
+
+    /// Nothing read yet of a clip path.
+    pub(super) fn of_clip(&self) -> Fills<'a, 'd> {
+        Fills { rule: "clip-rule", ..Fills::of(self.document, self.source, self.sheets, false) }
     }
 
     /// The fill of an element inside one with another.
     ///
     /// # Errors
-    /// `svg.colour` for what is no fill, where colours are wanted; `svg.unsupported` for what is no rule of filling.
+    /// `svg.colour` for what is no fill, where colours are wanted; `svg.unsupported` for what is no rule of filling; `svg.style` for style sheets that
+    /// may change outlines.
     pub(super) fn within(&mut self, node: Node<'_, '_>, around: Fill) -> Result<Fill, SceneError> {
         let mut fill = around;
-        self.styled += usize::from(self.sheets.are_about(node));
-        match style(node, "fill-rule") {
+        let sheets = self.sheets;
+        fill.styled |= sheets.may_be_about(node, self.source)?;
+        match sheets.style(node, self.rule) {
             None | Some("inherit") => {}
             Some("evenodd") => fill.rule = Rule::EvenOdd,
             Some("nonzero") => fill.rule = Rule::NonZero,
@@ -76,18 +98,19 @@ impl<'a, 'd> Fills<'a, 'd> {
             }
         }
         if !self.wanted {
-            fill.filled = style(node, "fill").map_or(around.filled, |fill| fill != "none");
+            let own = sheets.style(node, "fill").filter(|fill| *fill != "inherit");
+            fill.filled = own.map_or(around.filled, |fill| fill != "none");
             return Ok(fill);
         }
-        if let Some(text) = style(node, "fill") {
+        if let Some(text) = sheets.style(node, "fill") {
             let (paint, alpha) = self.colour(node, text, around)?;
             fill.filled = paint.is_some();
             (fill.colour, fill.opacity) = (paint.unwrap_or(fill.colour), around.opacity * alpha);
         }
-        if let Some(text) = style(node, "fill-opacity") {
+        if let Some(text) = sheets.style(node, "fill-opacity") {
             fill.fill_opacity = self.share(node, "fill-opacity", text)?;
         }
-        if let Some(text) = style(node, "opacity") {
+        if let Some(text) = sheets.style(node, "opacity") {
             fill.opacity *= self.share(node, "opacity", text)?;
         }
         Ok(fill)
@@ -96,6 +119,7 @@ impl<'a, 'd> Fills<'a, 'd> {
     /// Notes the fill of the next part of the drawing.
     pub(super) fn paint(&mut self, fill: Fill) {
         self.rules.push(fill.rule);
+        self.styled += usize::from(fill.styled);
         let opacity = (fill.opacity * fill.fill_opacity * 255.0).round() as u8;
         let [red, green, blue] = fill.colour;
         self.painted.push((self.wanted && fill.filled && opacity > 0).then_some([red, green, blue, opacity]));
@@ -109,7 +133,7 @@ impl<'a, 'd> Fills<'a, 'd> {
             Ok(Paint::Inherit | Paint::ContextFill) => Ok((around.filled.then_some(around.colour), 1.0)),
             Ok(Paint::CurrentColor) => {
                 // `color` is inherited.
-                let near = node.ancestors().find_map(|n| style(n, "color"));
+                let near = node.ancestors().find_map(|n| self.sheets.style(n, "color"));
                 match near.map(str::parse::<Color>) {
                     None => Ok(plain(Color::black())),
                     Some(Ok(colour)) => Ok(plain(colour)),
@@ -143,9 +167,10 @@ impl<'a, 'd> Fills<'a, 'd> {
             }
             let (mut sum, mut count) = ([0.0; 4], 0.0);
             for stop in node.children().filter(|child| child.tag_name().name() == "stop") {
-                let text = style(stop, "stop-color").unwrap_or("black");
+                let text = self.sheets.style(stop, "stop-color").unwrap_or("black");
                 let colour: Color = text.parse().map_err(|_| self.refused(stop, text))?;
-                let opacity = style(stop, "stop-opacity").map_or(Ok(1.0), |t| self.share(stop, "stop-opacity", t))?;
+                let opacity = self.sheets.style(stop, "stop-opacity");
+                let opacity = opacity.map_or(Ok(1.0), |t| self.share(stop, "stop-opacity", t))?;
                 let parts = [colour.red, colour.green, colour.blue, colour.alpha].map(f64::from);
                 sum = [sum[0] + parts[0], sum[1] + parts[1], sum[2] + parts[2], sum[3] + parts[3] * opacity];
                 count += 1.0;

@@ -5,11 +5,13 @@ use super::{Content, Loaded, Problem};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_math::words::{counted, number};
-use opruga_mesh::{Mesh, MeshError};
+use opruga_math::words::{counted, number, rounded};
+use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
 
+/// Faces whose corners lie this part of their size off their plane are told: another cut would give another surface.
+const BENT: f64 = 0.02;
 /// A triangle whose area is below this part of its longest edge squared is refused.
 const THIN: f64 = 1e-10;
 /// Below this part of its longest edge squared a triangle is a sliver: an angle of a tenth of a degree.
@@ -18,6 +20,10 @@ const SLIVER: f64 = 1e-3;
 const USUAL: [f64; 2] = [1e-4, 1e2];
 /// How much larger or smaller a surface may be for another unit to explain it.
 const UNITS: f64 = 1e5;
+
+/// What corners of a face have to be.
+pub(super) const CORNERS: &str =
+    "at least three different corners, of a face that is nearly flat and does not cross itself";
 
 /// What a reader found.
 #[derive(Debug, Default)]
@@ -31,6 +37,17 @@ pub(super) struct Triangles {
     /// Whether the format gives every triangle corners of its own.
     pub(super) soup: bool,
     pub(super) notices: Vec<SceneError>,
+    pub(super) polygons: Polygons,
+}
+
+/// Faces with more than three corners that were cut into triangles.
+#[derive(Debug, Default)]
+pub(super) struct Polygons {
+    count: usize,
+    concave: usize,
+    bent: usize,
+    /// How far off its plane a corner of one lies, as a part of its size.
+    most_bent: f64,
 }
 
 /// Where triangles stand in a file.
@@ -48,35 +65,56 @@ pub(super) enum Places {
 }
 
 impl Triangles {
-    /// Adds a polygon as a fan of triangles from one of its corners, or says why there is none.
-    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, &'static str> {
+    /// Adds a polygon as triangles inside it, and says how many; or why there are none.
+    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, String> {
         if corners.len() < 3 {
-            return Err("a face has fewer than three corners");
+            return Err("a face has fewer than three corners".into());
         }
-        if corners.iter().enumerate().any(|(k, corner)| corners[..k].contains(corner)) {
-            return Err("a face names a vertex twice");
+        if has_twins(corners) {
+            return Err("a face names a vertex twice".into());
         }
         if let [a, b, c] = *corners {
             self.triangles.push([a, b, c]);
             return Ok(1);
         }
-        let at = |node: u32| self.positions[node as usize];
-        let n = corners.len();
-        // The sum of all fan triangles' normals is twice the area vector, whichever corner they begin from.
-        let normal = |a: u32, b: u32, c: u32| cross(minus(at(b), at(a)), minus(at(c), at(a)));
-        let mut whole = [0.0; 3];
-        for k in 1..n - 1 {
-            let part = normal(corners[0], corners[k], corners[k + 1]);
-            whole = core::array::from_fn(|d| whole[d] + part[d]);
-        }
-        let start = (0..n).find(|start| {
-            let corner = |k: usize| corners[(start + k) % n];
-            (1..n - 1).all(|k| dot(normal(corner(0), corner(k), corner(k + 1)), whole) > 0.0)
-        });
-        let Some(start) = start else { return Err("a face is no polygon that a fan of triangles can fill") };
-        let corner = |k: usize| corners[(start + k) % n];
-        self.triangles.extend((1..n - 1).map(|k| [corner(0), corner(k), corner(k + 1)]));
-        Ok(n - 2)
+        let places: Vec<[f64; 3]> = corners.iter().map(|corner| self.positions[*corner as usize]).collect();
+        let cut = cut_face(&places).map_err(|error| match error {
+            FaceError::Crossing => "a face crosses or touches itself, or encloses nothing".to_string(),
+            FaceError::Folded(off) => {
+                format!("a face is far from flat: a corner lies {} of its size off its plane", rounded(off, 2))
+            }
+        })?;
+        self.polygons.count += 1;
+        self.polygons.concave += usize::from(cut.concave);
+        self.polygons.bent += usize::from(cut.bent > BENT);
+        self.polygons.most_bent = larger(self.polygons.most_bent, cut.bent);
+        self.triangles.extend(cut.triangles.iter().map(|triangle| triangle.map(|k| corners[k as usize])));
+        Ok(cut.triangles.len())
+    }
+
+    /// Of which polygons the triangles are not what every program would make of them.
+    fn cut(&self) -> Vec<SceneError> {
+        let mut told = Vec::new();
+        let mut tell = |count: usize, code, [one, many]: [&str; 2], what: String| {
+            let faces = counted(self.polygons.count as u64, "face", "faces");
+            let message = format!(
+                "{count} of {faces} with more than three corners {}{what}",
+                if count == 1 { one } else { many }
+            );
+            if count > 0 {
+                told.push(SceneError::new(code, message).value(count.to_string()));
+            }
+        };
+        tell(
+            self.polygons.concave,
+            "mesh.concave_face",
+            ["is concave", "are concave"],
+            ": cut along diagonals inside".into(),
+        );
+        let what =
+            format!(", by up to {} of their size: cut along the better diagonals", rounded(self.polygons.most_bent, 2));
+        tell(self.polygons.bent, "mesh.bent_face", ["is not flat", "are not flat"], what);
+        told
     }
 
     /// An error at a triangle.
@@ -98,6 +136,16 @@ impl Triangles {
             _ => error,
         }
     }
+}
+
+/// Whether a number stands there twice.
+fn has_twins(corners: &[u32]) -> bool {
+    if corners.len() <= 16 {
+        return corners.iter().enumerate().any(|(k, corner)| corners[..k].contains(corner));
+    }
+    let mut sorted = corners.to_vec();
+    sorted.sort_unstable();
+    sorted.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 fn at_byte(error: SceneError, byte: u64) -> SceneError {
@@ -130,6 +178,7 @@ pub(super) fn loaded(
         return Err(named(error.allowed("at least one triangle")));
     }
     let mut notices = std::mem::take(&mut found.notices);
+    notices.extend(found.cut());
     weld(&mut found, source, shape, &mut notices).map_err(named)?;
     let given = found.triangles.len();
     let mut mesh = Mesh::<3> {

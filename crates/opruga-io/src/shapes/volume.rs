@@ -1,9 +1,9 @@
 //! Bodies of cells from mesh files, and surfaces from the triangles of such files.
 
-use super::triangles::Triangles;
+use super::triangles::{CORNERS, Triangles};
 use super::{Content, Loaded, Open, Problem};
 use crate::meshes::{self, Kind, Mending};
-use crate::problem::SceneError;
+use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use opruga_mesh::triangle_parts;
 
@@ -58,7 +58,7 @@ pub(super) fn surface(name: &str, bytes: &[u8], open: &mut Open<'_>) -> Result<T
             (Kind::Triangle | Kind::Quadrilateral, corners) => {
                 if let Err(why) = out.polygon(corners) {
                     let error = SceneError::new("mesh.degenerate_face", format!("{why}: element {}", item.number));
-                    return Err(named(error.value(format!("{corners:?}"))));
+                    return Err(named(error.value(visible(&format!("{corners:?}"))).allowed(CORNERS)));
                 }
             }
             _ => {}

@@ -2,6 +2,7 @@
 //! a list of torments.
 
 mod files;
+mod together;
 
 use opruga_io::recording::{Asset, Ending, Header, Recording, RecordingError, Writer};
 use opruga_io::safe_write::Target;
@@ -300,7 +301,7 @@ fn other_files_and_other_versions_are_refused() {
         assert_eq!(open(bytes).err(), Some(RecordingError::NotOne));
     }
     // Older ones lack the hashes of frames.
-    for version in [1, 2, 3, 99] {
+    for version in [1, 2, 3, 4, 7, 99] {
         let mut other = recorded(0..2, true);
         other[8] = version;
         let sum = crc32fast::hash(&other[..20]);

@@ -104,7 +104,7 @@ pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), O
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] where rings meet, [`OutlineError::Empty`] without rings.
-pub(super) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, OutlineError> {
+pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, OutlineError> {
     let (low, high) = super::bounds(rings).ok_or(OutlineError::Empty)?;
     let extent = distance(low, high);
     let shrink = |p: [f64; 2]| Point2::new((p[0] - low[0]) / extent, (p[1] - low[1]) / extent);

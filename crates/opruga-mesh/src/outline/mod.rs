@@ -23,6 +23,7 @@ mod touching;
 pub use carrying::{Painted, carry};
 pub(crate) use crossing::first_meeting;
 pub use error::OutlineError;
+pub(crate) use filling::triangles_between;
 pub use filling::{SMALLEST_ANGLE, filled, node_estimate};
 pub use nesting::nest;
 pub use overlap::{Overlap, joined, wound};

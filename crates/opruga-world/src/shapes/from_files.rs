@@ -52,7 +52,7 @@ const DROP_BELOW: Field = Field::new(
 static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
-    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are not read.",
+    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are followed: rules behind names, classes and ids. A clip path that cuts nothing off changes nothing; one that does is an error.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The SVG file, looked up relative to the scene."),
@@ -160,7 +160,7 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons become fans of triangles. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons, concave ones too, are cut into triangles inside them. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),

@@ -234,7 +234,7 @@ fn split_list(text: &str) -> Vec<String> {
 /// The points of a sweep, in the order of its table.
 ///
 /// # Errors
-/// `sweep.axes` where nothing varies, `sweep.range` where a range lacks its number of values or has one in a sample,
+/// `sweep.axes` where nothing varies, `sweep.range` where a range lacks its number of values or has one in a sample, or where a sample has no points,
 /// `sweep.too_many` above [`MOST_POINTS`].
 pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneError> {
     if axes.is_empty() {
@@ -298,7 +298,11 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
                 })
             })
             .collect()),
-        Design::Sample { count, .. } if !(1..=MOST_POINTS).contains(&count) => Err(too_many(count.to_string())),
+        Design::Sample { count: 0, .. } => {
+            let error = SceneError::new("sweep.range", "a sample of 0 points visits nothing").value("--sample 0");
+            Err(error.allowed(format!("1 to {MOST_POINTS}")).hint("for example --sample 20"))
+        }
+        Design::Sample { count, .. } if count > MOST_POINTS => Err(too_many(count.to_string())),
         Design::Sample { count, seed, independent } => {
             let mut random = Random::new(seed);
             let mut out = vec![Vec::with_capacity(axes.len()); count];

@@ -1,11 +1,13 @@
 //! What the readers of scenes and shapes say in English, in Croatian.
 
+mod maps;
 mod notices;
 mod scenes;
 mod shapes;
 
 /// Whole sentences, by what says them: of these and of those of the engine the first that fits counts.
-pub(super) const SENTENCES: [&[(&str, &str)]; 3] = [notices::SENTENCES, shapes::SENTENCES, scenes::SENTENCES];
+pub(super) const SENTENCES: [&[(&str, &str)]; 4] =
+    [notices::SENTENCES, maps::SENTENCES, shapes::SENTENCES, scenes::SENTENCES];
 
 /// Parts of sentences.
 pub(super) const PARTS: &[(&str, &str)] = shapes::PARTS;

@@ -96,13 +96,15 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("{} gradients are painted in the mean of the colours", "prijelaza obojenih srednjom bojom: {}"),
     ("{} gradient is painted in the mean of the colours", "prijelaza obojenih srednjom bojom: {}"),
     (
-        "{} elements have a style sheet which is not read: other colours may be meant",
-        "elemenata sa stilskim listom, koji se ne čita, pa boje mogu biti druge: {}",
+        "{} shapes have rules of style sheets behind a selector that is not read: other colours may be meant",
+        "likova za koje stilski list možda ima pravilo, iza selektora koji se ne čita, pa boje mogu biti druge: {}",
     ),
     (
-        "{} element has a style sheet which is not read: other colours may be meant",
-        "elemenata sa stilskim listom, koji se ne čita, pa boje mogu biti druge: {}",
+        "{} shape has a rule of a style sheet behind a selector that is not read: other colours may be meant",
+        "likova za koje stilski list možda ima pravilo, iza selektora koji se ne čita, pa boje mogu biti druge: {}",
     ),
+    ("{} shapes without a path or points are left out", "izostavljeno likova bez putanje ili točaka: {}"),
+    ("{} shape without a path or points is left out", "izostavljeno likova bez putanje ili točaka: {}"),
     // Maps.
     ("{} points and lines are left out", "izostavljeno točaka i linija: {}"),
     ("{} point or line is left out", "izostavljeno točaka i linija: {}"),
@@ -157,6 +159,30 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
         "{} of {~} is a sliver; the thinnest is triangle {}, with an area of {} of its longest edge squared",
         "{} od ({~}) tanak je kao iver; najtanji je trokut {}, s površinom od {} kvadrata najduljeg brida",
+    ),
+    (
+        "{} of {~} with more than three corners are concave: cut along diagonals inside",
+        "udubljenih strana: {} od ({~}) s više od tri ugla; razrezane su po dijagonalama iznutra",
+    ),
+    (
+        "{} of {~} with more than three corners is concave: cut along diagonals inside",
+        "udubljenih strana: {} od ({~}) s više od tri ugla; razrezana je po dijagonalama iznutra",
+    ),
+    (
+        "{} of {~} with more than three corners are not flat, by up to {} of their size: cut along the better diagonals",
+        "strana koje nisu ravne: {} od ({~}) s više od tri ugla, do {} svoje veličine; razrezane su po boljim dijagonalama",
+    ),
+    (
+        "{} of {~} with more than three corners is not flat, by up to {} of their size: cut along the better diagonals",
+        "strana koje nisu ravne: {} od ({~}) s više od tri ugla, do {} svoje veličine; razrezana je po boljim dijagonalama",
+    ),
+    (
+        "the length covers the whole file: leave out what follows it, {} bytes",
+        "duljina obuhvaća cijelu datoteku: izostavi što slijedi, bajtova: {}",
+    ),
+    (
+        "a face is far from flat: a corner lies {} of its size off its plane",
+        "strana je daleko od ravne: jedan joj ugao leži {} njezine veličine izvan njezine ravnine",
     ),
     ("the surface is {} m large", "ploha je velika {} m"),
     ("{} of {} vertices are joined to others", "{} od {} vrhova spojeno je s drugima"),

@@ -1,0 +1,302 @@
+//! Style sheets of a drawing: which of their rules an element obeys.
+//!
+//! Read are selectors of names, `.class`, `#id` and `*`, also one inside another (` `, `>`), in lists. Of rules behind other selectors, and of those that
+//! hold under conditions (`@media`), it is not known which elements they are about: they may be about each that has one of the names in them.
+//!
+//! # Source
+//! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.
+
+use super::svg_style::changes_outlines;
+use super::svg_xml::is_drawing;
+use crate::problem::{SceneError, visible};
+use crate::source::Source;
+use roxmltree::{Document, Node};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// Blocks that say nothing about elements.
+const ELSEWHERE: [&str; 5] = ["@font-face", "@keyframes", "@page", "@counter-style", "@property"];
+
+/// All rules of a drawing, in their order.
+#[derive(Debug, Default)]
+pub(super) struct Sheets {
+    rules: Vec<Rule>,
+    /// What elements have been asked about: the rules that each obeys, with their weights.
+    obeyed: RefCell<BTreeMap<usize, Obeyed>>,
+}
+
+/// The rules that an element obeys, by their numbers.
+type Obeyed = Rc<[(Weight, usize)]>;
+
+/// Which of two rules wins: the one with more ids, then with more classes, then with more names.
+type Weight = [usize; 3];
+
+#[derive(Debug)]
+struct Rule {
+    selectors: Vec<Selector>,
+    /// Names of elements, `.class` and `#id` that it may be about, where its selectors are not read.
+    perhaps: Vec<String>,
+    said: Vec<Said>,
+    /// Where its sheet stands in the file.
+    sheet: (usize, usize),
+}
+
+#[derive(Debug)]
+struct Said {
+    name: String,
+    value: String,
+    important: bool,
+}
+
+/// Elements one inside another: the simple selectors of each, and whether it has to be a child of the one before.
+#[derive(Debug)]
+struct Selector(Vec<(Vec<String>, bool)>);
+
+/// What a block is about while it is read.
+enum Block {
+    Conditional,
+    Rule,
+    Elsewhere,
+}
+
+impl Sheets {
+    /// Reads the style sheets of a drawing.
+    pub(super) fn of(document: &Document<'_>, source: &Source<'_>) -> Sheets {
+        let mut sheets = Sheets::default();
+        for node in document.descendants().filter(|node| is_drawing(*node) && node.tag_name().name() == "style") {
+            let other = |name, usual: &[&str]| node.attribute(name).is_some_and(|value| !usual.contains(&value.trim()));
+            if other("type", &["", "text/css"]) {
+                continue;
+            }
+            let text: String = node.descendants().filter(Node::is_text).filter_map(|node| node.text()).collect();
+            let range = node.range();
+            let end = source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
+            let conditional = other("media", &["", "all", "screen"]);
+            sheets.read(&without_comments(&text), (range.start, end), conditional);
+        }
+        sheets
+    }
+
+    fn read(&mut self, text: &str, sheet: (usize, usize), conditional: bool) {
+        let mut around: Vec<Block> = Vec::new();
+        let mut start = 0;
+        for (place, mark) in text.match_indices(['{', '}', ';']) {
+            let piece = text[start..place].trim();
+            start = place + 1;
+            let elsewhere = around.iter().any(|block| matches!(block, Block::Elsewhere));
+            match (mark, around.last()) {
+                ("{", _) if elsewhere || ELSEWHERE.iter().any(|word| piece.starts_with(word)) => {
+                    around.push(Block::Elsewhere);
+                }
+                ("{", _) if piece.starts_with('@') => around.push(Block::Conditional),
+                ("{", _) => {
+                    let certain = !conditional && around.is_empty();
+                    self.rules.push(Rule::about(piece, certain, sheet));
+                    around.push(Block::Rule);
+                }
+                (_, Some(Block::Rule)) => {
+                    if let (Some(rule), Some(said)) = (self.rules.last_mut(), Said::read(piece)) {
+                        rule.said.push(said);
+                    }
+                }
+                // Another file could say anything about any element.
+                (";", None) if piece.starts_with("@import") => {
+                    self.rules.push(Rule { selectors: Vec::new(), perhaps: vec!["*".into()], said: Vec::new(), sheet })
+                }
+                _ => {}
+            }
+            if mark == "}" {
+                around.pop();
+            }
+        }
+    }
+
+    /// A property of an element: in its `style`, by a sheet, or as an attribute.
+    pub(super) fn style<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
+        self.declared(node, name).or_else(|| node.attribute(name).map(str::trim))
+    }
+
+    /// A property in the `style` of an element, or by a sheet.
+    pub(super) fn declared<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
+        let own = node.attribute("style").and_then(|text| {
+            // Of two that say the same the later one counts.
+            let mut pieces = text.rsplit(';').filter_map(|piece| piece.split_once(':'));
+            let (_, value) = pieces.find(|(word, _)| word.trim() == name)?;
+            Some(without_importance(value))
+        });
+        let own = own.map(|(value, important)| ((important, true, [0; 3], 0), value));
+        let obeyed = self.obeyed(node);
+        let mut best = own;
+        for (weight, number) in obeyed.iter() {
+            for said in self.rules[*number].said.iter().filter(|said| said.name == name) {
+                let key = (said.important, false, *weight, *number);
+                if best.is_none_or(|(least, _)| key >= least) {
+                    best = Some((key, said.value.as_str()));
+                }
+            }
+        }
+        best.map(|(_, value)| value)
+    }
+
+    /// The rules that an element obeys.
+    fn obeyed(&self, node: Node<'_, '_>) -> Obeyed {
+        if self.rules.is_empty() {
+            return Rc::from([]);
+        }
+        let id = node.id().get_usize();
+        if let Some(known) = self.obeyed.borrow().get(&id) {
+            return known.clone();
+        }
+        let weight = |rule: &Rule| rule.selectors.iter().filter(|s| s.is_about(node)).map(Selector::weight).max();
+        let found = self.rules.iter().enumerate().filter_map(|(number, rule)| Some((weight(rule)?, number)));
+        let found: Obeyed = found.collect();
+        self.obeyed.borrow_mut().insert(id, found.clone());
+        found
+    }
+
+    /// Whether a rule may be about an element, of which that is not known.
+    ///
+    /// # Errors
+    /// `svg.style` for one that changes outlines.
+    pub(super) fn may_be_about(&self, node: Node<'_, '_>, source: &Source<'_>) -> Result<bool, SceneError> {
+        let mut about = false;
+        for rule in self.rules.iter().filter(|rule| rule.perhaps.iter().any(|word| fits(word, node))) {
+            about = true;
+            let Some(said) = rule.said.iter().find(|said| changes_outlines(&said.name, &said.value)) else { continue };
+            let message = format!("a style sheet may set `{}` here, which changes outlines", visible(&said.name));
+            let error = source.mark(SceneError::new("svg.style", message), rule.sheet.0, rule.sheet.1);
+            let error = error.value(visible(&format!("{}: {}", said.name, said.value)));
+            let error = error.allowed("rules without conditions, behind names, `.class` and `#id`");
+            return Err(error.hint("let the drawing program write attributes instead of a sheet"));
+        }
+        Ok(about)
+    }
+}
+
+impl Rule {
+    fn about(text: &str, certain: bool, sheet: (usize, usize)) -> Rule {
+        let known = |c: char| c.is_alphanumeric() || c.is_ascii_whitespace() || "-_.#*>".contains(c);
+        let (mut selectors, mut perhaps) = (Vec::new(), Vec::new());
+        for one in text.split(',') {
+            match Selector::read(one).filter(|_| certain && one.chars().all(known)) {
+                Some(selector) => selectors.push(selector),
+                None => {
+                    let apart = |c: char| !(c.is_alphanumeric() || "-_.#*".contains(c));
+                    perhaps.extend(one.split(apart).filter(|word| !word.is_empty()).flat_map(simple));
+                }
+            }
+        }
+        Rule { selectors, perhaps, said: Vec::new(), sheet }
+    }
+}
+
+impl Said {
+    fn read(piece: &str) -> Option<Said> {
+        let (name, value) = piece.split_once(':')?;
+        let (value, important) = without_importance(value);
+        Some(Said { name: name.trim().to_string(), value: value.to_string(), important })
+    }
+}
+
+impl Selector {
+    fn read(text: &str) -> Option<Selector> {
+        let apart = text.replace('>', " > ");
+        let (mut parts, mut child): (Vec<(Vec<String>, bool)>, bool) = (Vec::new(), false);
+        for word in apart.split_ascii_whitespace() {
+            if word == ">" {
+                // One needs something to its left, and there are no two of them.
+                if child || parts.is_empty() {
+                    return None;
+                }
+                child = true;
+                continue;
+            }
+            parts.push((simple(word), child));
+            child = false;
+        }
+        (!parts.is_empty() && !child).then_some(Selector(parts))
+    }
+
+    fn weight(&self) -> Weight {
+        let mut weight = [0; 3];
+        for word in self.0.iter().flat_map(|(words, _)| words) {
+            match word.as_bytes() {
+                [b'#', ..] => weight[0] += 1,
+                [b'.', ..] => weight[1] += 1,
+                b"*" => {}
+                _ => weight[2] += 1,
+            }
+        }
+        weight
+    }
+
+    fn is_about(&self, node: Node<'_, '_>) -> bool {
+        let all = |words: &[String], node| words.iter().all(|word| fits(word, node));
+        match self.0.as_slice() {
+            [] => false,
+            [(words, _)] => all(words, node),
+            [.., (last, _)] if !all(last, node) => false,
+            parts => {
+                // From the outermost element inwards: how many parts have been met anywhere above, and by the parent.
+                let mut way: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
+                way.reverse();
+                let (mut above, mut parent) = (vec![false; parts.len()], vec![false; parts.len()]);
+                for element in way {
+                    let met = |(k, (words, child)): (usize, &(Vec<String>, bool))| {
+                        let before = k == 0 || if *child { parent[k - 1] } else { above[k - 1] };
+                        before && all(words, element)
+                    };
+                    let here: Vec<bool> = parts.iter().enumerate().map(met).collect();
+                    above.iter_mut().zip(&here).for_each(|(above, here)| *above |= here);
+                    parent = here;
+                }
+                parent.last() == Some(&true)
+            }
+        }
+    }
+}
+
+/// Whether a name, a `.class`, an `#id` or `*` fits an element.
+fn fits(word: &str, node: Node<'_, '_>) -> bool {
+    match word.as_bytes() {
+        b"*" => true,
+        [b'#', ..] => node.attribute("id") == Some(&word[1..]),
+        [b'.', ..] => node.attribute("class").unwrap_or("").split_whitespace().any(|class| class == &word[1..]),
+        _ => node.tag_name().name() == word,
+    }
+}
+
+/// The simple selectors in a word such as `path.thick#left`.
+fn simple(word: &str) -> Vec<String> {
+    let mut found = vec![String::new()];
+    for c in word.chars() {
+        if ".#".contains(c) {
+            found.push(String::new());
+        }
+        if let Some(last) = found.last_mut() {
+            last.push(c);
+        }
+    }
+    found.retain(|word| !word.is_empty());
+    found
+}
+
+/// A value, and whether it says of itself that it is important.
+fn without_importance(value: &str) -> (&str, bool) {
+    let value = value.trim();
+    match value.rsplit_once('!') {
+        Some((before, "important")) => (before.trim(), true),
+        _ => (value, false),
+    }
+}
+
+fn without_comments(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("/*") {
+        out.push_str(before);
+        rest = after.split_once("*/").map_or("", |(_, after)| after);
+    }
+    out + rest
+}

@@ -1,0 +1,125 @@
+//! Faces with many corners, cut into triangles between their corners.
+
+use crate::geometry::{Point, cross, dot, norm, subtract};
+use crate::outline::{Ring, triangles_between};
+
+/// Corners whose triangle with their neighbours has less than this part of the face's area are straight.
+const STRAIGHT: f64 = 1e-12;
+
+/// A face whose corners lie this part of its size off its plane is folded too far: a square folded along its diagonal by a right angle.
+const FOLDED: f64 = 0.25;
+
+/// Of diagonals whose lengths differ by less than this part, the first is taken, so that rounding does not choose.
+const AS_LONG: f64 = 1e-9;
+
+/// Why a face cannot be cut into triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FaceError {
+    /// Its edges cross or touch, or it encloses nothing.
+    Crossing,
+    /// A corner lies so far off its plane, as a part of its size.
+    Folded(f64),
+}
+
+/// A face as triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutFace {
+    /// Two fewer triangles than corners, by the numbers of the corners, winding as the face does.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether it has a corner that points inward.
+    pub concave: bool,
+    /// How far corners lie off its plane, as a part of its size: the longest side of its bounding box.
+    pub bent: f64,
+}
+
+/// Cuts a face with at least three corners along diagonals that stay inside.
+///
+/// The plane is the one that the area vector ½Σ xᵢ×xⱼ is normal to, through the mean of the corners; what is inside is decided there. A face of four corners
+/// is cut along the diagonal that stays inside; where both do, along the shorter one. Larger faces become the constrained Delaunay triangulation of their
+/// corners, which has the largest smallest angle.
+///
+/// # Errors
+/// [`FaceError::Crossing`], [`FaceError::Folded`].
+///
+/// # Source
+/// I. Sutherland, R. Sproull, R. Schumacker (1974) for the area vector, which they credit to M. Newell; library spade.
+pub fn cut_face(corners: &[[f64; 3]]) -> Result<CutFace, FaceError> {
+    let n = corners.len();
+    let size = (0..3).map(|axis| range(corners, axis)).fold(0.0, |a, b| if b > a { b } else { a });
+    if n < 3 || !(size > 0.0 && size.is_finite()) {
+        return Err(FaceError::Crossing);
+    }
+    // Of ordinary size, and about the first corner, so that nothing overflows and little is lost to rounding.
+    let local = |p: &[f64; 3]| -> Point { core::array::from_fn(|d| p[d] / size - corners[0][d] / size) };
+    let points: Vec<Point> = corners.iter().map(local).collect();
+    let mut whole = [0.0; 3];
+    for k in 0..n {
+        let part = cross(points[k], points[(k + 1) % n]);
+        whole = core::array::from_fn(|d| whole[d] + part[d]);
+    }
+    let doubled = norm(whole);
+    if doubled.is_nan() || doubled <= STRAIGHT {
+        return Err(FaceError::Crossing);
+    }
+    let normal = whole.map(|x| x / doubled);
+    let mean: Point = core::array::from_fn(|d| points.iter().map(|p| p[d]).sum::<f64>() / n as f64);
+    let bent = points.iter().map(|p| dot(subtract(*p, mean), normal).abs()).fold(0.0, |a, b| if b > a { b } else { a });
+    if bent > FOLDED {
+        return Err(FaceError::Folded(bent));
+    }
+
+    let [along, across] = plane(normal);
+    // The library takes no coordinates that are next to nothing.
+    let flat = |x: f64| if x.abs() < 1e-100 { 0.0 } else { x };
+    let flat: Vec<[f64; 2]> = points.iter().map(|p| [flat(dot(*p, along)), flat(dot(*p, across))]).collect();
+    let side = |[a, b, c]: [usize; 3]| {
+        let [a, b, c] = [a, b, c].map(|k| flat[k % n]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let turn = |k: usize| side([k + n - 1, k, k + 1]);
+    let concave = (0..n).any(|k| turn(k) < -STRAIGHT * doubled);
+    let triangles: Vec<[u32; 3]> = match n {
+        3 => vec![[0, 1, 2]],
+        4 => {
+            let square = |a: usize, b: usize| {
+                let way = subtract(points[b], points[a]);
+                dot(way, way)
+            };
+            let sharpest = (1..4).fold(0, |best, k| if turn(k) < turn(best) { k } else { best });
+            let from = match turn(sharpest) > STRAIGHT * doubled {
+                true => usize::from(square(1, 3) < (1.0 - AS_LONG) * square(0, 2)),
+                false => sharpest,
+            };
+            let corner = |k: usize| ((from + k) % 4) as u32;
+            vec![[corner(0), corner(1), corner(2)], [corner(0), corner(2), corner(3)]]
+        }
+        _ => triangles_between(&[Ring { points: flat.clone(), part: 0 }]).map_err(|_| FaceError::Crossing)?,
+    };
+    // Of a face that crosses itself there are too many, or some are turned over.
+    let turned = |triangle: &[u32; 3]| side(triangle.map(|k| k as usize)) <= 0.0;
+    if triangles.len() != n - 2 || triangles.iter().any(turned) {
+        return Err(FaceError::Crossing);
+    }
+    Ok(CutFace { triangles, concave, bent })
+}
+
+/// Highest less lowest coordinate.
+fn range(points: &[[f64; 3]], axis: usize) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for point in points {
+        low = if point[axis] < low { point[axis] } else { low };
+        high = if point[axis] > high { point[axis] } else { high };
+    }
+    high - low
+}
+
+/// Two directions of the plane with a normal, counter-clockwise seen against it; exact where the normal is an axis.
+fn plane(normal: Point) -> [Point; 2] {
+    let least = (1..3).fold(0, |best, axis| if normal[axis].abs() < normal[best].abs() { axis } else { best });
+    let mut axis = [0.0; 3];
+    axis[least] = 1.0;
+    let along = cross(normal, axis);
+    let length = norm(along);
+    let along = along.map(|x| x / length);
+    [along, cross(normal, along)]
+}
