@@ -2,9 +2,32 @@
 //! for names and numbers.
 
 use super::{readers, sentences};
+use std::sync::LazyLock;
 
 /// A sentence with gaps in English, and in Croatian.
 type Pair = (&'static str, &'static str);
+
+/// The same, with the words before the first gap and behind the last one: of a thousand sentences few begin and end like a text, and a
+/// message is looked up whenever it is shown.
+struct Known {
+    pair: Pair,
+    first: &'static str,
+    last: &'static str,
+}
+
+impl Known {
+    fn new(pair: &Pair) -> Known {
+        let (mut rest, mut first) = (pair.0, None);
+        while let Some((start, end, _)) = gap(rest) {
+            first = first.or(Some(&rest[..start]));
+            rest = &rest[end..];
+        }
+        Known { pair: *pair, first: first.unwrap_or(rest), last: rest }
+    }
+}
+
+static WHOLE: LazyLock<Vec<Known>> = LazyLock::new(|| whole().map(Known::new).collect());
+static PARTS: LazyLock<Vec<Known>> = LazyLock::new(|| parts().map(Known::new).collect());
 
 /// Whole sentences: those of the readers first, since the engine has some that fit much.
 pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
@@ -13,24 +36,26 @@ pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
 
 /// Parts of sentences.
 pub(super) fn parts() -> impl Iterator<Item = &'static Pair> {
-    readers::PARTS.iter().chain(sentences::PARTS)
+    readers::PARTS.into_iter().chain([sentences::PARTS]).flatten()
 }
 
 /// The Croatian of a sentence, where it is one of these.
 pub(super) fn croatian(english: &str) -> Option<String> {
-    found(whole(), english)
+    found(&WHOLE, english)
 }
 
 /// The same of a part of a sentence, or of a whole one.
 pub(super) fn part(english: &str) -> Option<String> {
-    found(parts(), english).or_else(|| croatian(english))
+    found(&PARTS, english).or_else(|| croatian(english))
 }
 
-fn found(table: impl Iterator<Item = &'static Pair>, english: &str) -> Option<String> {
-    table.filter(|(pattern, _)| may_fit(pattern, english)).find_map(|(pattern, wanted)| {
+fn found(table: &[Known], english: &str) -> Option<String> {
+    let near = table.iter().filter(|known| english.starts_with(known.first) && english.ends_with(known.last));
+    let mut near = near.map(|known| known.pair).filter(|(pattern, _)| may_fit(pattern, english));
+    near.find_map(|(pattern, wanted)| {
         let mut parts = matched(pattern, english)?.into_iter();
         let mut out = String::new();
-        let mut rest = *wanted;
+        let mut rest = wanted;
         while let Some((start, end, _)) = gap(rest) {
             out.push_str(&rest[..start]);
             out.push_str(&parts.next()?);
