@@ -177,8 +177,9 @@ fn what_is_wrong_with_mesh_files_is_said_in_croatian() {
                 let own = line.split_once("]: ").map(|(_, said)| said);
                 let own = own.or(line.strip_prefix("  = dopušteno: ")).or(line.strip_prefix("  = savjet: "));
                 let Some(own) = own else { continue };
-                let words =
-                    [" the ", " a ", " an ", " is ", " are ", " of ", " or ", " in ", " and ", "whole", "only "];
+                // What others say of a text stays as it is, in quotes; `a` is a word of both languages.
+                let own: String = own.split(['„', '”']).step_by(2).collect();
+                let words = [" the ", " an ", " is ", " are ", " of ", " or ", " in ", " and ", "whole", "only "];
                 if own.contains(ENGLISH) || words.iter().any(|word| format!(" {own} ").contains(word)) {
                     english.entry(own.to_string()).or_insert_with(|| format!("{name}: {said}"));
                 }

@@ -2,6 +2,8 @@
 //! for names and numbers.
 
 use super::{readers, sentences};
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// A sentence with gaps in English, and in Croatian.
@@ -26,6 +28,30 @@ impl Known {
     }
 }
 
+/// Lookups that are remembered: parts of sentences are tried again and again, and a message is shown for many pictures.
+const REMEMBERED: usize = 4_096;
+
+thread_local! {
+    /// What was found in the table of whole sentences and in that of parts.
+    static FOUND: [RefCell<HashMap<String, Option<String>>>; 2] = Default::default();
+}
+
+/// What was looked up before, or else is now.
+fn remembered(table: usize, english: &str, look: impl FnOnce() -> Option<String>) -> Option<String> {
+    FOUND.with(|tables| {
+        if let Some(known) = tables[table].borrow().get(english) {
+            return known.clone();
+        }
+        let found = look();
+        let mut known = tables[table].borrow_mut();
+        if known.len() >= REMEMBERED {
+            known.clear();
+        }
+        known.insert(english.into(), found.clone());
+        found
+    })
+}
+
 static WHOLE: LazyLock<Vec<Known>> = LazyLock::new(|| whole().map(Known::new).collect());
 static PARTS: LazyLock<Vec<Known>> = LazyLock::new(|| parts().map(Known::new).collect());
 
@@ -41,12 +67,12 @@ pub(super) fn parts() -> impl Iterator<Item = &'static Pair> {
 
 /// The Croatian of a sentence, where it is one of these.
 pub(super) fn croatian(english: &str) -> Option<String> {
-    found(&WHOLE, english)
+    remembered(0, english, || found(&WHOLE, english))
 }
 
 /// The same of a part of a sentence, or of a whole one.
 pub(super) fn part(english: &str) -> Option<String> {
-    found(&PARTS, english).or_else(|| croatian(english))
+    remembered(1, english, || found(&PARTS, english)).or_else(|| croatian(english))
 }
 
 fn found(table: &[Known], english: &str) -> Option<String> {

@@ -60,7 +60,8 @@ impl Language {
             Said::Because(text) => match self {
                 Language::English => text.clone(),
                 Language::Croatian => {
-                    let known = details::croatian(text).or_else(|| scene_errors::croatian(text));
+                    // Errors of a file have lines of their own.
+                    let known = scene_errors::croatian(text).or_else(|| details::croatian(text));
                     known.unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
                 }
             },

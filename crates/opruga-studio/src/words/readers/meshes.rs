@@ -98,7 +98,6 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("two nodes have the number {}", "dva čvora imaju broj {}"),
     ("a number of its own for every node", "svakom čvoru njegov broj"),
     ("element {} names node {}, which is not there", "element {} imenuje čvor {}, kojeg nema"),
-    ("one of the {} nodes from {} to {}", "jedan od čvorova, njih {}, od {} do {}"),
     ("the file has no nodes", "datoteka nema čvorova"),
     ("a {~} (type {}) cannot be read", "element ove vrste ne može se pročitati: {~} (vrsta {})"),
     ("an {~} (type {}) cannot be read", "element ove vrste ne može se pročitati: {~} (vrsta {})"),
@@ -229,6 +228,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 /// What should stand where something else does, kinds of elements, and words that are allowed.
 pub(super) const PARTS: &[(&str, &str)] = &[
     // Kinds of elements; those that other readers know too stand with them.
+    ("point", "točka"),
     ("line", "crta"),
     ("quadratic line", "kvadratna crta"),
     ("prism", "prizma"),
@@ -358,6 +358,7 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("the name of values", "ime vrijednosti"),
     ("the name of a table", "ime tablice"),
     // What is allowed.
+    ("one of the {} nodes from {} to {}", "jedan od čvorova, njih {}, od {} do {}"),
     ("one", "jedan"),
     ("a number of its own", "svoj broj"),
     ("nodes of other cells", "čvorovi drugih ćelija"),

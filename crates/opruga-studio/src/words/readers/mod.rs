@@ -9,8 +9,8 @@ mod shapes;
 pub(super) const SENTENCES: [&[(&str, &str)]; 4] =
     [notices::SENTENCES, shapes::SENTENCES, scenes::SENTENCES, meshes::SENTENCES];
 
-/// Parts of sentences.
-pub(super) const PARTS: [&[(&str, &str)]; 2] = [shapes::PARTS, meshes::PARTS];
+/// Parts of sentences; those of meshes first, since some of shapes fit much.
+pub(super) const PARTS: [&[(&str, &str)]; 2] = [meshes::PARTS, shapes::PARTS];
 
 #[cfg(test)]
 mod tests {
