@@ -271,10 +271,9 @@ impl Canvas {
 
     /// The ends of the colours follow what is there: at once outwards, slowly inwards.
     fn fit_colours(&mut self, shown: &Shown) {
-        let beside = shown.beside.iter().flat_map(|beside| &beside.right.picture.bodies);
-        let bodies = shown.picture.bodies.iter().chain(beside);
-        let scalars = bodies.flat_map(|body| &body.scalar).filter(|s| s.is_finite());
-        let (low, high) = scalars.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
+        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
+        let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
+        let (low, high) = colours.fold((f64::MAX, f64::MIN), |(low, high), [a, b]| (low.min(a), high.max(b)));
         if low > high {
             return;
         }

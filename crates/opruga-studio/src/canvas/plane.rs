@@ -108,10 +108,11 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() }, rect);
     let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
     let map = Colours::new(map, look.range, paper);
-    for (place, body) in picture.bodies.iter().enumerate() {
-        kept.at.clear();
-        kept.at.extend(body.positions.iter().map(|p| project(*p)));
-        if Rect::from_points(&kept.at).expand(4.0).intersects(rect) {
+    for (place, (body, extent)) in picture.bodies.iter().zip(&shown.extents).enumerate() {
+        // What is out of sight is not looked at closer.
+        if Rect::from_points(&extent.corners.map(project)).expand(4.0).intersects(rect) && !body.positions.is_empty() {
+            kept.at.clear();
+            kept.at.extend(body.positions.iter().map(|p| project(*p)));
             let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
             self::body(look, kept, &map, (place, body), wide, flat);
         }
