@@ -394,7 +394,14 @@ fn beside(at: Pos2, size: Vec2, room: Rect, taken: &[Rect]) -> Rect {
     ];
     let places = places.map(|(align, way)| align.anchor_size(at + way, size));
     let free = |place: &Rect| taken.iter().all(|other| !other.intersects(place.expand(3.0)));
-    let place = places.into_iter().find(|place| room.contains_rect(*place) && free(place));
+    // Where the point itself lies among other things, next to these.
+    let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
+        let level = places[0].min;
+        let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
+        [left, right, Pos2::new(level.x, other.bottom() + 6.0)].map(|corner| Rect::from_min_size(corner, size))
+    });
+    let mut all = places.into_iter().chain(around);
+    let place = all.find(|place| room.contains_rect(*place) && free(place));
     let place = place.or_else(|| places.into_iter().find(free)).unwrap_or(places[0]);
     let low = room.min.to_vec2();
     let high = (room.max - size).to_vec2().max(low);
@@ -463,7 +470,9 @@ mod tests {
         let tools = Rect::from_min_max(Pos2::new(10.0, 20.0), Pos2::new(420.0, 60.0));
         let free = beside(Pos2::new(300.0, 200.0), size, room, &[legend, tools]);
         assert!(free.left() > 300.0 && free.bottom() < 200.0, "{free:?}");
-        for at in [[480.0, 100.0], [440.0, 200.0], [608.0, 400.0], [12.0, 300.0], [300.0, 70.0], [495.0, 21.0]] {
+        let near = [[480.0, 100.0], [440.0, 200.0], [608.0, 400.0], [12.0, 300.0], [300.0, 70.0], [495.0, 21.0]];
+        // Among the tools, and in the legend.
+        for at in near.into_iter().chain([[200.0, 40.0], [555.0, 120.0], [604.0, 60.0], [520.0, 210.0]]) {
             let at = Pos2::from(at);
             let place = beside(at, size, room, &[legend, tools]);
             assert!(room.contains_rect(place) && !place.contains(at), "{at:?}: {place:?}");
