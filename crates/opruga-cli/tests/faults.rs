@@ -302,7 +302,10 @@ fn calls_that_make_no_sense_are_explained() {
             "error[step.unstable]: the step h = 25000 s of `symplectic_euler` is unstable for body `soft`",
         ),
         // So many substeps as that would take are not offered.
-        (run("time.frame=1e6"), "= hint: a frame has at most 1000000 substeps: a shorter one, or another integrator"),
+        (
+            run("time.frame=1e6"),
+            "= hint: a frame has at most 1000000 substeps: a shorter one, a softer or heavier body, or another integrator",
+        ),
         (run("time.substeps=1"), "error[step.unstable]: the step h = 0.0166667 s"),
         (run("time.seconds=1e300"), "error[scene.range]"),
         (run("world.gravity=[0, nan]"), "error[scene.not_finite]"),

@@ -28,7 +28,7 @@ impl From<&WorldError> for SceneError {
                             "substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator"
                         ),
                         _ => format!(
-                            "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, or another integrator"
+                            "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, a softer or heavier body, or another integrator"
                         ),
                     })
             }

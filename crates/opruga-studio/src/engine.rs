@@ -2,7 +2,7 @@
 
 use crate::document::{FOR_EVER, command_table};
 use crate::normals::normals;
-use crate::shown::{BodyShown, EnergyShown, ObstacleShown, Show, Shown};
+use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::draw::{ArrowKind, ArrowPicture, Facets};
@@ -439,6 +439,7 @@ impl<const D: usize> Engine for Living<D> {
             bodies,
             obstacles,
             has_drawings: has_drawings(&self.world),
+            extents: picture.bodies.iter().map(Extent::of).collect(),
             picture,
             ..Shown::default()
         }

@@ -5,7 +5,7 @@ use crate::said::{Said, Step};
 use opruga::Warning;
 use opruga::core::potential::Reading;
 use opruga::core::spec::Values;
-use opruga::draw::{ColourMap, Picture};
+use opruga::draw::{BodyPicture, ColourMap, Picture};
 use opruga::pictures::Quantity;
 use std::sync::Arc;
 
@@ -166,6 +166,33 @@ pub struct Message {
     pub offer: Option<Offer>,
 }
 
+/// How far a body reaches. Who makes a picture finds it once: the window asks several times for every one that it draws, and a crowd has
+/// tens of thousands of nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The lowest and the highest corner of the box around its nodes [m]; crossed where it has none.
+    pub corners: [[f64; 3]; 2],
+    /// The least and the largest of what its colours show; crossed where that is nowhere a finite number.
+    pub colours: [f64; 2],
+}
+
+impl Extent {
+    /// That of a body.
+    pub fn of(body: &BodyPicture) -> Extent {
+        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for p in &body.positions {
+            for d in 0..3 {
+                (corners[0][d], corners[1][d]) = (corners[0][d].min(p[d]), corners[1][d].max(p[d]));
+            }
+        }
+        let mut colours = [f64::INFINITY, f64::NEG_INFINITY];
+        for scalar in body.scalar.iter().filter(|scalar| scalar.is_finite()) {
+            colours = [colours[0].min(*scalar), colours[1].max(*scalar)];
+        }
+        Extent { corners, colours }
+    }
+}
+
 /// Everything that the interface shows of one moment.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
@@ -211,6 +238,8 @@ pub struct Shown {
     pub warnings: Vec<Warning>,
     /// The picture.
     pub picture: Picture,
+    /// How far each of its bodies reaches.
+    pub extents: Vec<Extent>,
     /// Whether time passes.
     pub playing: bool,
     /// Simulated seconds for every real one that are wanted.
@@ -237,4 +266,22 @@ pub struct Shown {
     pub recorded: usize,
     /// The last moment that can be gone back to without computing from the start [bytes kept].
     pub kept_bytes: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_extent_of_a_body_is_that_of_its_nodes_and_colours_and_that_of_nothing_is_crossed() {
+        let body = BodyPicture {
+            positions: vec![[1.0, -2.0, 0.5], [-3.0, 4.0, 0.0]],
+            scalar: vec![f64::NAN, 7.0],
+            ..BodyPicture::default()
+        };
+        let Extent { corners, colours } = Extent::of(&body);
+        assert_eq!((corners, colours), ([[-3.0, -2.0, 0.0], [1.0, 4.0, 0.5]], [7.0, 7.0]));
+        let Extent { corners: [low, high], colours } = Extent::of(&BodyPicture::default());
+        assert!(low > high && colours[0] > colours[1]);
+    }
 }

@@ -6,6 +6,9 @@ use opruga::io::Files;
 use opruga_studio::session::{Edit, Request, Session};
 use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
 const ENGLISH: &str = "na engleskom";
 
@@ -109,4 +112,80 @@ fn warnings_are_said_in_croatian() {
         assert!(!said.contains(ENGLISH), "{said}");
         assert_ne!(said, warning.message);
     }
+}
+
+include!("../../../fuzz/src/shape_kinds.rs");
+
+/// Samples of mesh files of every format: dimension, name, shape, bytes.
+fn meshes() -> Vec<(u8, &'static str, &'static str, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/shape_files");
+    let mut paths: Vec<_> = std::fs::read_dir(&folder).expect("a corpus").flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    let samples = paths.iter().map(|path| {
+        let input = std::fs::read(path).expect("a sample");
+        let (which, bytes) = input.split_first().expect("a sample that says what it is");
+        let (dimension, name, shape) = SHAPES[usize::from(*which)];
+        (dimension, name, shape, bytes.to_vec())
+    });
+    samples.filter(|(_, _, shape, _)| shape.starts_with("kind = \"mesh\"")).collect()
+}
+
+/// What is wrong with a scene of one body from a file; nothing where it is sound.
+fn wrong_with(dimension: u8, name: &str, shape: &str, bytes: &[u8]) -> Option<String> {
+    let named = name.replace(".node", ".ele");
+    let text = format!(
+        "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n\
+         [[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{named}\", {shape} }}\n"
+    );
+    let beside = [("a.node", NODES), ("a.ele", CELLS)].into_iter().filter(|(file, _)| *file != name);
+    let files = beside.chain([(name, bytes)]).map(|(file, bytes)| (file.to_string(), Arc::from(bytes)));
+    let said = Session::open("proba", &text, Files::held(files), Options::default()).err()?;
+    Some(Language::Croatian.said(&said))
+}
+
+/// Mesh files that are cut off, with words that cannot be, or with lines too many or too few.
+#[test]
+fn what_is_wrong_with_mesh_files_is_said_in_croatian() {
+    let samples = meshes();
+    for ending in ["msh", "vtk", "vtu", "mesh", "node", "ele"] {
+        assert!(samples.iter().any(|(_, name, ..)| name.ends_with(ending)), "a sample of .{ending}");
+    }
+    let (mut english, mut count) = (BTreeMap::new(), 0);
+    for (dimension, name, shape, bytes) in &samples {
+        let mut tampered = Vec::new();
+        let words: Vec<(usize, usize)> = {
+            let blank = |at: &usize| bytes[*at].is_ascii_whitespace();
+            let starts = (0..bytes.len()).filter(|at| !blank(at) && (*at == 0 || blank(&(at - 1))));
+            starts.map(|from| (from, (from..bytes.len()).find(blank).unwrap_or(bytes.len()))).collect()
+        };
+        // As many of a long file as of a short one.
+        for &(from, to) in words.iter().step_by(words.len().div_ceil(48)) {
+            tampered.push(bytes[..from].to_vec());
+            tampered.push([&bytes[..from], &bytes[to..]].concat());
+            tampered.push([&bytes[..to], b" ", &bytes[from..]].concat());
+            for word in ["x", "-1", "3", "7", "13", "99", "nan", "1,5", "$A"] {
+                tampered.push([&bytes[..from], word.as_bytes(), &bytes[to..]].concat());
+            }
+        }
+        // Some as they are, without what mends them.
+        let plain = tampered.iter().step_by(4).map(|bytes| (bytes, "kind = \"mesh\""));
+        for (bytes, shape) in tampered.iter().map(|bytes| (bytes, *shape)).chain(plain) {
+            let Some(said) = wrong_with(*dimension, name, shape, bytes) else { continue };
+            count += 1;
+            for line in said.lines() {
+                // Places and lines of the file stand beside what is said.
+                let own = line.split_once("]: ").map(|(_, said)| said);
+                let own = own.or(line.strip_prefix("  = dopušteno: ")).or(line.strip_prefix("  = savjet: "));
+                let Some(own) = own else { continue };
+                // What others say of a text stays as it is, in quotes; `a` is a word of both languages.
+                let own: String = own.split(['„', '”']).step_by(2).collect();
+                let words = [" the ", " an ", " is ", " are ", " of ", " or ", " in ", " and ", "whole", "only "];
+                if own.contains(ENGLISH) || words.iter().any(|word| format!(" {own} ").contains(word)) {
+                    english.entry(own.to_string()).or_insert_with(|| format!("{name}: {said}"));
+                }
+            }
+        }
+    }
+    assert!(count > 2000, "{count} files are refused");
+    assert!(english.is_empty(), "{} of {count}: {english:#?}", english.len());
 }

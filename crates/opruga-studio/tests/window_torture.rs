@@ -11,8 +11,12 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use opruga::Options;
 use opruga::core::spec::Value;
 use opruga::io::Files;
+use opruga::io::scene::{self, Limits};
+use opruga::world::schema::MOST_SUBSTEPS;
+use opruga_studio::runner::sliced::Link;
 use opruga_studio::session::{Request, Session};
 use opruga_studio::shown::{Offer, Severity};
+use opruga_studio::words::Language;
 use screen::window::{SIZE, Window, top_of};
 use std::cell::Cell;
 use std::time::Duration;
@@ -125,6 +129,44 @@ fn row_97_the_trajectory_is_the_same_to_the_bit_at_30_60_144_and_1000_frames_a_s
 }
 
 #[test]
+fn row_98_where_there_is_no_thread_the_bits_are_the_same_and_what_no_memory_holds_is_refused() {
+    // As on a page, whose workers may share no memory: every frame in a turn of the interface; and on four threads.
+    let (text, files) = (opruga::scenes::find("balloons").expect("a scene"), opruga::scenes::files());
+    let session = |threads| {
+        let options = Options { threads, ..Options::default() };
+        Session::open("balloons", text, files.clone(), options).expect("it opens")
+    };
+    let (alone, mut together) = (Link::start(session(1), || {}).expect("no thread is needed"), session(4));
+    for _ in 0..20 {
+        alone.ask(Request::Step);
+        alone.turn();
+        together.handle(Request::Step);
+        assert_eq!(alone.with_session(Session::hash), together.hash());
+    }
+    // A page has 4 GiB, a machine more; what takes too much of it is told before any memory is asked for.
+    let vast = |vertices: &str| {
+        let ball = opruga::scenes::find("ball").expect("a scene");
+        let vast = ball.replace("vertices = 36", &format!("vertices = {vertices}"));
+        assert_ne!(vast, ball);
+        vast
+    };
+    let limits = Limits::of_addresses(32);
+    assert!(limits.memory_bytes < 4 << 30 && Limits::of_addresses(64) == Limits::default());
+    let options = scene::Options { limits, ..scene::Options::default() };
+    let told = scene::read(vast("4000000").as_bytes(), "vast.toml", &opruga::catalogue(), &options);
+    let codes: Vec<&str> = told.expect_err("it does not fit").iter().map(|error| error.code).collect();
+    assert_eq!(codes, ["limit.memory"]);
+    let hash = together.hash();
+    together.handle(Request::Open { name: "vast".into(), text: vast("16000000"), files: files.clone() });
+    let message = together.shown().message.expect("it is told");
+    assert_eq!(message.severity, Severity::Refused);
+    assert!(message.text.contains("limit.memory") && message.text.contains("allowed: at most"), "{}", message.text);
+    assert_eq!((together.name(), together.hash()), ("balloons", hash), "the old scene stays");
+    together.handle(Request::Step);
+    assert_eq!(together.frames(), 21);
+}
+
+#[test]
 fn row_100_extreme_values_are_refused_or_run_and_what_failed_can_be_taken_back() {
     let numbers = [0.0, -1.0, 1e-300, 1e9, 1e300, f64::MAX, f64::INFINITY, f64::NAN];
     let mut values: Vec<(String, Value)> = Vec::new();
@@ -188,7 +230,50 @@ fn row_100_a_slider_that_was_drawn_too_far_shows_the_last_good_value_and_the_mes
 }
 
 #[test]
-fn rows_93_to_99_a_scene_that_diverges_in_the_window_names_body_and_node_and_offers_a_way_on() {
+fn row_100_more_substeps_than_a_frame_may_have_are_not_offered_and_the_message_says_what_else_helps() {
+    let stiffer = |stiffness: f64| {
+        let mut session = open("ball");
+        session.handle(Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(stiffness)));
+        let message = session.shown().message.expect("a refusal");
+        assert_eq!(message.severity, Severity::Refused);
+        (session, message)
+    };
+    let (mut session, message) = stiffer(1e12);
+    let Some(Offer::Substeps(most)) = message.offer.clone() else { panic!("{message:?}") };
+    assert!((2..=MOST_SUBSTEPS).contains(&most), "{most}");
+    session.handle(Request::Accept(message.offer.expect("the offer")));
+    let shown = session.shown();
+    assert_eq!(shown.substeps, most, "{:?}", shown.message);
+    // Stiffer by what the margin leaves and no more: the offer ends where frames do.
+    let least = |message: &str| message.rsplit(">= ").next().and_then(|n| n.parse::<f64>().ok()).expect("a number");
+    let almost = 1e12 * (0.97 * f64::from(MOST_SUBSTEPS) / least(&message.text)).powi(2);
+    let (_, message) = stiffer(almost);
+    assert_eq!(message.offer, Some(Offer::Substeps(MOST_SUBSTEPS)), "{}", message.text);
+    let (mut session, message) = stiffer(4.0 * almost);
+    assert_eq!(message.offer, None);
+    assert!(
+        message.text.contains("at most 1000000 substeps") && message.text.contains("integrator"),
+        "{}",
+        message.text
+    );
+    let croatian = Language::Croatian.said(&message.said);
+    assert!(croatian.contains("najviše 1000000 podkoraka") && !croatian.contains("engleskom"), "{croatian}");
+    assert_eq!(session.shown().substeps, 32);
+}
+
+#[test]
+fn row_100_a_window_shows_more_substeps_than_its_slider_began_with_and_leaves_them() {
+    let text = opruga::scenes::find("ball").expect("it").replace("substeps = 32", "substeps = 20000");
+    let mut window = Window::open("ball", SIZE);
+    window.studio().ask(Request::Open { name: "fine".into(), text, files: Files::default() });
+    window.until("it is open", |shown| shown.name == "fine");
+    window.frames(5);
+    let shown = window.shown();
+    assert_eq!((shown.substeps, shown.undo.is_some(), shown.message.is_none()), (20_000, false, true));
+}
+
+#[test]
+fn row_100_a_scene_that_diverges_in_the_window_names_body_and_node_and_offers_a_way_on() {
     let text = opruga::scenes::find("ball").expect("it").replace(
         "[[collider]]",
         "[[load]]\nkind = \"force\"\nbody = \"ball\"\nvalue = [1e300, 0.0]\ncurve = [[0.0, 0.0], [0.2, 0.0], [0.3, 1.0]]\n\n[[collider]]",

@@ -47,10 +47,11 @@ fn size_axis(row: &Row) -> Axis {
 fn errors(rows: &[&Row]) -> Panel {
     let mut lines = Vec::new();
     let alone = rows.len() == 1;
-    for row in rows {
+    let names = told_apart(&rows.iter().map(|row| row.case.name).collect::<Vec<_>>());
+    for (row, name) in rows.iter().zip(&names) {
         let points: Vec<[f64; 2]> =
             row.points.iter().map(|p| [row.case.over.size(p.level), p.error.max(NOTHING)]).collect();
-        let name = if alone { "measured".to_string() } else { row.case.name.replace('-', " ") };
+        let name = if alone { "measured".to_string() } else { name.clone() };
         lines.push(Line { name, points: points.clone(), marker: Some(Marker::Circle), ..Line::default() });
         if let (Check::Order(order), Some(first), Some(last), true) =
             (row.case.check, points.first(), points.last(), alone)
@@ -64,11 +65,24 @@ fn errors(rows: &[&Row]) -> Panel {
     let mut levels: Vec<Level> = Vec::new();
     for row in rows {
         let value = row.case.tolerance;
-        if levels.iter().all(|level| level.value != value) {
-            levels.push(Level { value, label: format!("limit {}", row.case.limit()) });
+        if levels.iter().any(|level| level.value == value) {
+            continue;
         }
+        // Where not all have the same limit, it says whose it is.
+        let own = rows.iter().zip(&names).filter(|(other, _)| other.case.tolerance == value);
+        let own: Vec<&str> = own.map(|(_, name)| name.as_str()).collect();
+        let whose = if own.len() == rows.len() { String::new() } else { format!(" of {}", own.join(" and ")) };
+        levels.push(Level { value, label: format!("limit{whose}: {}", row.case.limit()) });
     }
     Panel { height: 260.0, y: Axis::logarithmic("error", ""), lines, levels }
+}
+
+/// The names of cases without the words with which all of them begin: what the axis says need not be said again.
+fn told_apart(names: &[&str]) -> Vec<String> {
+    let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('-').collect()).collect();
+    let most = words.iter().map(|words| words.len() - 1).min().unwrap_or(0);
+    let common = (0..most).take_while(|k| words.iter().all(|own| own[*k] == words[0][*k])).count();
+    words.iter().map(|words| words[common..].join(" ")).collect()
 }
 
 fn over_parameter(row: &Row) -> Result<String, DrawError> {
@@ -106,4 +120,18 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
     // Where nothing is expected, the value is the error.
     let panels = if case.expected.iter().all(|x| *x == 0.0) { vec![errors] } else { vec![values, errors] };
     Chart { width: 640.0, x: Axis::linear(what, ""), panels, ..Chart::default() }.to_svg()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told_apart;
+
+    #[test]
+    fn names_of_cases_are_told_apart_by_what_they_do_not_have_in_common() {
+        let names = ["cook-linear-triangles", "cook-linear-quadrilaterals", "cook-linear-quadratic-triangles"];
+        assert_eq!(told_apart(&names), ["triangles", "quadrilaterals", "quadratic triangles"]);
+        assert_eq!(told_apart(&["tube", "tube-fine"]), ["tube", "tube fine"]);
+        assert_eq!(told_apart(&["one"]), ["one"]);
+        assert!(told_apart(&[]).is_empty());
+    }
 }

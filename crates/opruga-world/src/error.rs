@@ -1,7 +1,20 @@
 //! What can go wrong in a world.
 
+use crate::schema::MOST_SUBSTEPS;
 use opruga_core::error::BuildError;
 use opruga_math::words::number;
+
+/// What would help where so many substeps would be stable.
+fn way_out(substeps: u32) -> String {
+    match substeps {
+        ..=MOST_SUBSTEPS => format!("substeps >= {substeps}"),
+        _ => {
+            format!(
+                "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, a softer or heavier body, or another integrator"
+            )
+        }
+    }
+}
 
 /// Why a world could not be built, changed or stepped. The world is as it was before the call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,8 +30,8 @@ pub enum WorldError {
     /// The substep is longer than the integrator allows.
     #[error(
         "the step h = {} s of `{integrator}` is unstable for body `{body}`: the largest stable step is {} s \
-         (stiffness ω = {} rad/s, damping {} 1/s); allowed: h <= {}; hint: substeps >= {substeps}",
-        number(*h), number(*limit), number(*omega), number(*damping), number(*limit)
+         (stiffness ω = {} rad/s, damping {} 1/s); allowed: h <= {}; hint: {}",
+        number(*h), number(*limit), number(*omega), number(*damping), number(*limit), way_out(*substeps)
     )]
     UnstableStep {
         /// The integrator.
@@ -33,7 +46,7 @@ pub enum WorldError {
         omega: f64,
         /// The largest damping rate [1/s].
         damping: f64,
-        /// The least number of substeps of a frame that is stable.
+        /// The least number of substeps of a frame that is stable; a frame may not have as many ([`MOST_SUBSTEPS`]).
         substeps: u32,
     },
     /// The motion left the finite numbers.

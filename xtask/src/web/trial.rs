@@ -81,6 +81,7 @@ impl Trial {
         self.phone()?;
         self.browser.size([1280, 720], 1.0, false)?;
         self.slows_down_honestly()?;
+        self.refuses_what_no_memory_holds()?;
         self.says_where_nothing_draws()?;
         self.goes_on_on_another_device()?;
         answers.store(false, Ordering::Relaxed);
@@ -285,6 +286,19 @@ impl Trial {
             holds(begin.elapsed() < PATIENCE, || format!("two fingers do not zoom: {before:?}, {after:?}"))?;
         }
         holds(self.browser.value("scrollX + scrollY")? == 0, || "the page was scrolled".into())
+    }
+
+    /// No memory is shared with workers, and a scene for which a page has too little leaves the one that is there.
+    fn refuses_what_no_memory_holds(&mut self) -> Outcome {
+        holds(self.browser.value("crossOriginIsolated")? == false, || "the page has memory to share".into())?;
+        let before = self.state()?["name"].clone();
+        let root = super::root()?;
+        let ball = std::fs::read_to_string(root.join("scenes/ball.toml")).map_err(|e| e.to_string())?;
+        let vast = ball.replace("vertices = 36", "vertices = 4000000");
+        self.browser.value(&format!("opruga.show('vast', {})", serde_json::json!(vast)))?;
+        let refused = |state: &Value| state["message"].as_str().is_some_and(|text| text.contains("limit.memory"));
+        let state = self.until("a refusal", refused)?;
+        holds(state["name"] == before, || format!("another scene is there: {state}"))
     }
 
     fn works_without_a_network(&mut self) -> Outcome {

@@ -62,6 +62,11 @@ impl Kind {
     }
 }
 
+/// A kind of element with its article.
+pub(super) fn one(name: &str) -> String {
+    format!("{} {name}", if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
+}
+
 /// An element of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Item {

@@ -6,7 +6,7 @@
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".
 
-use super::found::{Found, Kind, Numbers, SUPPORTED};
+use super::found::{Found, Kind, Numbers, SUPPORTED, one};
 use super::scanner::Scanner;
 use super::{gmsh_2, gmsh_4};
 use crate::problem::{SceneError, visible};
@@ -273,8 +273,11 @@ pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, place: usize) -> 
     match found {
         Some(kind) => Ok(kind),
         None => {
-            let error =
-                scanner.error("mesh.unsupported_element", format!("a {name} (type {number}) cannot be read"), place);
+            let error = scanner.error(
+                "mesh.unsupported_element",
+                format!("{} (type {number}) cannot be read", one(name)),
+                place,
+            );
             Err(error.value(number.to_string()).allowed(SUPPORTED))
         }
     }

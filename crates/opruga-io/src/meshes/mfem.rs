@@ -5,7 +5,7 @@
 //! # Source
 //! MFEM project, "Mesh formats", <https://mfem.org/mesh-format-v1.0/>.
 
-use super::found::{Found, Kind, SUPPORTED};
+use super::found::{Found, Kind, SUPPORTED, one};
 use super::scanner::Scanner;
 use crate::problem::{SceneError, visible};
 
@@ -100,7 +100,7 @@ fn elements(scanner: &mut Scanner<'_>, drafts: &mut Vec<Draft>, boundary: bool) 
                     7 => "pyramid",
                     _ => "element of an unknown geometry",
                 };
-                let message = format!("a {name} (geometry {geometry}) cannot be read");
+                let message = format!("{} (geometry {geometry}) cannot be read", one(name));
                 let error = scanner.error("mesh.unsupported_element", message, at);
                 return Err(error.value(geometry.to_string()).allowed(SUPPORTED));
             }

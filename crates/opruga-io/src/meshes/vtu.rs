@@ -68,7 +68,10 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
     let document = Document::parse_with_options(text, options).map_err(|e| {
         let place = e.pos();
         let from = crate::source::Source { file, text }.offset(place.row as usize, place.col as usize);
-        scanner.error(SYNTAX, visible(&e.to_string()), from).value("XML").hint("the file is cut off, or no VTU")
+        scanner
+            .error(SYNTAX, format!("this is no well-formed XML: {}", visible(&e.to_string())), from)
+            .value("XML")
+            .hint("the file is cut off, or no VTU")
     })?;
     let root = document.root_element();
     if root.tag_name().name() != "VTKFile" || root.attribute("type") != Some("UnstructuredGrid") {

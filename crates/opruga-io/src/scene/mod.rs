@@ -55,7 +55,16 @@ pub struct Limits {
 }
 
 impl Default for Limits {
+    /// Those of this machine.
     fn default() -> Limits {
+        Limits::of_addresses(usize::BITS)
+    }
+}
+
+impl Limits {
+    /// Those of a machine whose addresses have so many bits. A page in a browser has 4 GiB for everything: what takes more than half of
+    /// that is refused, as asking for more would end the page.
+    pub fn of_addresses(bits: u32) -> Limits {
         Limits {
             file_bytes: 64 << 20,
             shape_bytes: 256 << 20,
@@ -63,7 +72,7 @@ impl Default for Limits {
             values: 4 << 20,
             bodies: 4_000_000,
             nodes: 200_000_000,
-            memory_bytes: 8 << 30,
+            memory_bytes: if bits > 32 { 8 << 30 } else { 2 << 30 },
         }
     }
 }

@@ -76,7 +76,7 @@ impl Brush {
         let first = self.mesh.vertices.len() as u32;
         self.mesh.vertices.extend(points.map(|(pos, color)| vertex(pos, color)));
         self.mesh.indices.reserve(3 * triangles.len());
-        triangles.iter().for_each(|nodes| self.mesh.indices.extend(nodes.map(|node| first + node)));
+        triangles.iter().for_each(|[a, b, c]| self.mesh.indices.extend([first + a, first + b, first + c]));
     }
 
     /// A band of four, or with hard borders two, corners at every point of a line: from the point number `from` of them to the

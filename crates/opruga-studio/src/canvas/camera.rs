@@ -45,9 +45,9 @@ impl Flat {
         }
         let corners = [rect.min, rect.max].map(|corner| self.to_world(rect, corner, view.y_down));
         let mut ends = [[f64::MAX, f64::MIN]; 2];
-        for p in shown.picture.bodies.iter().flat_map(|body| &body.positions) {
+        for [lowest, highest] in shown.extents.iter().map(|extent| extent.corners) {
             for (d, [low, high]) in ends.iter_mut().enumerate() {
-                (*low, *high) = (low.min(p[d]), high.max(p[d]));
+                (*low, *high) = (low.min(lowest[d]), high.max(highest[d]));
             }
         }
         let mut wider = false;
@@ -134,6 +134,7 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shown::Extent;
 
     #[test]
     fn a_view_that_nobody_has_moved_widens_for_a_body_that_leaves_it_and_then_goes_along() {
@@ -144,6 +145,7 @@ mod tests {
         };
         let shown = |x: f64| Shown {
             dimension: 2,
+            extents: vec![Extent::of(&ball(x))],
             picture: opruga::draw::Picture { dimension: 2, bodies: vec![ball(x)], ..Default::default() },
             ..Default::default()
         };
@@ -171,6 +173,7 @@ mod tests {
         // Two bodies that fly apart find no room in it: it stays.
         let mut apart = shown(0.0);
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
+        apart.extents = apart.picture.bodies.iter().map(Extent::of).collect();
         assert!(!flat.widen(&mut view, &first, &apart, rect));
     }
 

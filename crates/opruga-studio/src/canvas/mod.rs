@@ -4,6 +4,7 @@ mod brush;
 mod camera;
 mod detail;
 mod handles;
+mod legend;
 mod look;
 mod outlines;
 mod overlays;
@@ -180,11 +181,13 @@ impl Canvas {
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
         self.paint(ui, &look, shown, false);
-        self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), language);
         plane::credit(&look);
-        if other.is_none() {
-            plane::legend(&look, self.tools, language);
+        // Side by side both have the same colours: the legend stands at the right.
+        let taken = if other.is_none() { legend::place(&look, self.tools) } else { None };
+        if taken.is_some() {
+            legend::paint(&look, self.tools, language);
         }
+        self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), taken, language);
         let on_right = beside;
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
@@ -192,8 +195,9 @@ impl Canvas {
             let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
             self.paint(ui, &look, &beside.right, true);
             let seen = seen_right.as_ref().unwrap_or(&beside.right);
-            self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), language);
-            plane::legend(&look, self.tools, language);
+            legend::paint(&look, self.tools, language);
+            let taken = legend::place(&look, self.tools);
+            self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), taken, language);
             overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
         }
         asks
@@ -267,10 +271,9 @@ impl Canvas {
 
     /// The ends of the colours follow what is there: at once outwards, slowly inwards.
     fn fit_colours(&mut self, shown: &Shown) {
-        let beside = shown.beside.iter().flat_map(|beside| &beside.right.picture.bodies);
-        let bodies = shown.picture.bodies.iter().chain(beside);
-        let scalars = bodies.flat_map(|body| &body.scalar).filter(|s| s.is_finite());
-        let (low, high) = scalars.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
+        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
+        let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
+        let (low, high) = colours.fold((f64::MAX, f64::MIN), |(low, high), [a, b]| (low.min(a), high.max(b)));
         if low > high {
             return;
         }

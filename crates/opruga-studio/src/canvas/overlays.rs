@@ -20,8 +20,8 @@ impl Canvas {
         }
     }
 
-    /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull.
-    pub(super) fn overlays(&self, look: &Look<'_>, under: Option<&Under>, language: Language) {
+    /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull; nothing is written where the legend is.
+    pub(super) fn overlays(&self, look: &Look<'_>, under: Option<&Under>, legend: Option<Rect>, language: Language) {
         let Look { painter, shown, rect, paper, .. } = *look;
         let lens = self.scales.as_ref().and_then(|scales| self.space.lens(scales, rect));
         let project = |point: [f64; 3]| self.project(lens.as_ref(), shown, rect, point);
@@ -42,9 +42,10 @@ impl Canvas {
                 plane::pin(painter, at, paper);
             }
         }
+        let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
         for [node, pointer, force] in &shown.pulls {
             if let (Some(from), Some(to)) = (project(*node), project(*pointer)) {
-                plane::rubber(painter, from, to, force, paper);
+                plane::rubber(look, from, to, force, &taken);
             }
         }
         let body = |name: &str| {

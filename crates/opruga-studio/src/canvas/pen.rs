@@ -86,6 +86,11 @@ fn crosses(points: &[[f64; 2]]) -> bool {
                 continue;
             }
             let (c, d) = (points[j], points[(j + 1) % n]);
+            // Sides of one straight line meet only where they lie over one another.
+            let apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
+            if apart(0) || apart(1) {
+                continue;
+            }
             if turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0 {
                 return true;
             }
@@ -112,5 +117,18 @@ mod tests {
         assert_eq!(body(&line(|t| [t.sin(), (2.0 * t).sin()]), 0.02).err(), Some("crossing"));
         assert_eq!(body(&line(|t| [0.01 * t.cos(), 0.01 * t.sin()]), 0.02).err(), Some("too_small"));
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0]], 0.02).err(), Some("too_small"));
+        // There and back on one line.
+        assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0], [2.0, 0.0]], 0.02).err(), Some("crossing"));
+    }
+
+    #[test]
+    fn lines_that_are_straight_to_the_last_bit_do_not_cross_themselves() {
+        for corners in [&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][..], &[[0.0, 0.0], [2.0, 0.0], [1.0, 1.5]]] {
+            assert!(body(corners, 0.02).is_ok(), "{corners:?}");
+        }
+        let step = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [3.0, 1.0], [3.0, 2.0], [0.0, 2.0]];
+        assert!(body(&step, 0.02).is_ok());
+        let eight = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [2.0, 2.0]];
+        assert_eq!(body(&eight, 0.02).err(), Some("crossing"));
     }
 }

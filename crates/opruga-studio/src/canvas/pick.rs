@@ -29,8 +29,11 @@ pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Opti
     let pixel = flat.metres(1.0);
     let reach = NEAR * pixel;
     let mut best: Option<(f64, usize, [f64; 3])> = None;
-    for (place, body) in shown.picture.bodies.iter().enumerate() {
-        // In a crowd every node is looked at whenever the pointer moves: squares will do.
+    for (place, (body, extent)) in shown.picture.bodies.iter().zip(&shown.extents).enumerate() {
+        let [low, high] = extent.corners;
+        if x < low[0] - reach || x > high[0] + reach || y < low[1] - reach || y > high[1] + reach {
+            continue;
+        }
         let mut nearest = (f64::INFINITY, [0.0; 3]);
         for p in &body.positions {
             let square = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);

@@ -6,11 +6,8 @@ use super::detail::{Detail, apart, corners};
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, fill};
 use crate::shown::Shown;
-use crate::words::Language;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
-use opruga::draw::{
-    ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length, nice_ticks,
-};
+use opruga::draw::{ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
 /// The rubber line of a pull.
 pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
@@ -20,12 +17,12 @@ const SOFT_EDGES: usize = 6_000;
 const FILLED: f32 = 0.34;
 const FILLED_CELLS: f32 = 0.62;
 
-fn colour([r, g, b]: [u8; 3]) -> Color32 {
+pub(super) fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
 /// A colour that can be seen on the paper: on a dark one the dark ones are lifted, and their order stays.
-fn on_paper(c: Color32, paper: &Paper) -> Color32 {
+pub(super) fn on_paper(c: Color32, paper: &Paper) -> Color32 {
     let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
     Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))
 }
@@ -111,10 +108,11 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     kept.brush.begin(if crowd { 0.0 } else { 1.0 / painter.ctx().pixels_per_point() }, rect);
     let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
     let map = Colours::new(map, look.range, paper);
-    for (place, body) in picture.bodies.iter().enumerate() {
-        kept.at.clear();
-        kept.at.extend(body.positions.iter().map(|p| project(*p)));
-        if Rect::from_points(&kept.at).expand(4.0).intersects(rect) {
+    for (place, (body, extent)) in picture.bodies.iter().zip(&shown.extents).enumerate() {
+        // What is out of sight is not looked at closer.
+        if Rect::from_points(&extent.corners.map(project)).expand(4.0).intersects(rect) && !body.positions.is_empty() {
+            kept.at.clear();
+            kept.at.extend(body.positions.iter().map(|p| project(*p)));
             let wide = selected.is_some_and(|name| shown.bodies.get(place).is_some_and(|b| b.name == name));
             self::body(look, kept, &map, (place, body), wide, flat);
         }
@@ -371,19 +369,43 @@ pub(crate) fn pin(painter: &Painter, at: Pos2, paper: &Paper) {
     painter.circle(at, 4.5, Color32::from_rgb(238, 178, 40), Stroke::new(1.5, paper.ink));
 }
 
-/// The rubber line of a pull and its force in newtons.
-pub(crate) fn rubber(painter: &Painter, from: Pos2, to: Pos2, force: &[f64; 3], paper: &Paper) {
+/// The rubber line of a pull and its force in newtons, which stands beside the pointer where nothing else does.
+pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
+    let Look { painter, paper, .. } = *look;
     painter.line_segment([from, to], Stroke::new(2.5, RUBBER));
     painter.circle_filled(from, 4.0, RUBBER);
     painter.circle(to, 6.0, paper.background, Stroke::new(2.0, RUBBER));
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
     let text = format!("{} N", format_value(newtons));
-    let spot = to + Vec2::new(12.0, -10.0);
-    let size = FontId::proportional(14.0);
-    let galley = painter.layout_no_wrap(text, size, RUBBER);
-    let place = Align2::LEFT_BOTTOM.anchor_size(spot, galley.size());
+    let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), RUBBER);
+    let place = beside(to, galley.size(), look.rect.shrink(6.0), taken);
     painter.rect_filled(place.expand(3.0), 4.0, paper.background.gamma_multiply(0.85));
     painter.galley(place.min, galley, RUBBER);
+}
+
+/// Where beside a point there is room for something of this size: above to the right if that can be, else around it. A point out
+/// of sight has it at the border.
+fn beside(at: Pos2, size: Vec2, room: Rect, taken: &[Rect]) -> Rect {
+    let places = [
+        (Align2::LEFT_BOTTOM, Vec2::new(12.0, -10.0)),
+        (Align2::RIGHT_BOTTOM, Vec2::new(-12.0, -10.0)),
+        (Align2::RIGHT_TOP, Vec2::new(-12.0, 10.0)),
+        (Align2::LEFT_TOP, Vec2::new(12.0, 10.0)),
+    ];
+    let places = places.map(|(align, way)| align.anchor_size(at + way, size));
+    let free = |place: &Rect| taken.iter().all(|other| !other.intersects(place.expand(3.0)));
+    // Where the point itself lies among other things, next to these.
+    let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
+        let level = places[0].min;
+        let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
+        [left, right, Pos2::new(level.x, other.bottom() + 6.0)].map(|corner| Rect::from_min_size(corner, size))
+    });
+    let mut all = places.into_iter().chain(around);
+    let place = all.find(|place| room.contains_rect(*place) && free(place));
+    let place = place.or_else(|| places.into_iter().find(free)).unwrap_or(places[0]);
+    let low = room.min.to_vec2();
+    let high = (room.max - size).to_vec2().max(low);
+    Rect::from_min_size(place.min.to_vec2().clamp(low, high).to_pos2(), size)
 }
 
 /// Where a body would be set down.
@@ -423,55 +445,6 @@ pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>
     painter.galley(middle - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
-/// What the colours mean.
-pub(crate) fn legend(look: &Look<'_>, tools: Option<Rect>, language: Language) {
-    let Look { painter, shown, rect, paper, range } = *look;
-    let Some(legend) = &shown.picture.legend else { return };
-    let drawn = |body: &BodyPicture| shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some());
-    if shown.picture.bodies.iter().all(|body| drawn(body) || body.scalar.iter().all(|s| !s.is_finite())) {
-        return;
-    }
-    let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    // Beside the tools, or where there is no room for that, below them.
-    let below = tools.filter(|tools| tools.right() > rect.right() - 110.0).map_or(rect.top(), |tools| tools.bottom());
-    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, below + 44.0), Vec2::new(12.0, tall));
-    let behind =
-        Rect::from_min_max(bar.min - Vec2::new(24.0, 28.0), Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0));
-    painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));
-    let mut mesh = Mesh::default();
-    let steps = 32;
-    for k in 0..=steps {
-        let share = k as f32 / steps as f32;
-        let c = colour(legend.map.colour(f64::from(1.0 - share)));
-        let c = if shown.dimension == 2 { on_paper(c, paper) } else { c };
-        let y = bar.top() + share * bar.height();
-        mesh.colored_vertex(Pos2::new(bar.left(), y), c);
-        mesh.colored_vertex(Pos2::new(bar.right(), y), c);
-        if k < steps {
-            let first = 2 * k as u32;
-            mesh.add_triangle(first, first + 1, first + 2);
-            mesh.add_triangle(first + 1, first + 3, first + 2);
-        }
-    }
-    painter.add(Shape::mesh(mesh));
-    let font = FontId::proportional(11.5);
-    let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
-    let name = format!("{}{unit}", language.quantity(&legend.label));
-    let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
-    painter.text(spot, Align2::RIGHT_BOTTOM, name, FontId::proportional(12.0), paper.ink);
-    for tick in nice_ticks(range[0], range[1], 4) {
-        let share = ((tick - range[0]) / (range[1] - range[0])) as f32;
-        if !(0.0..=1.0).contains(&share) {
-            continue;
-        }
-        let y = bar.bottom() - share * bar.height();
-        painter
-            .line_segment([Pos2::new(bar.right(), y), Pos2::new(bar.right() + 4.0, y)], Stroke::new(1.0, paper.soft));
-        let spot = Pos2::new(bar.right() + 7.0, y);
-        painter.text(spot, Align2::LEFT_CENTER, format_value(tick), font.clone(), paper.ink);
-    }
-}
-
 /// Writes at the lower right whose drawings, maps or surfaces are seen, and under which licence.
 pub(crate) fn credit(look: &Look<'_>) {
     let (rect, credit) = (look.rect, &look.shown.picture.credit);
@@ -482,5 +455,31 @@ pub(crate) fn credit(look: &Look<'_>) {
         let galley = look.painter.layout(credit.clone(), font, look.paper.soft, room);
         let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0);
         look.painter.galley(spot, galley, look.paper.soft);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_force_of_a_pull_stands_where_neither_the_border_nor_anything_else_covers_it() {
+        let room = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(600.0, 400.0));
+        let size = Vec2::new(48.0, 18.0);
+        let legend = Rect::from_min_max(Pos2::new(500.0, 20.0), Pos2::new(610.0, 220.0));
+        let tools = Rect::from_min_max(Pos2::new(10.0, 20.0), Pos2::new(420.0, 60.0));
+        let free = beside(Pos2::new(300.0, 200.0), size, room, &[legend, tools]);
+        assert!(free.left() > 300.0 && free.bottom() < 200.0, "{free:?}");
+        let near = [[480.0, 100.0], [440.0, 200.0], [608.0, 400.0], [12.0, 300.0], [300.0, 70.0], [495.0, 21.0]];
+        // Among the tools, and in the legend.
+        for at in near.into_iter().chain([[200.0, 40.0], [555.0, 120.0], [604.0, 60.0], [520.0, 210.0]]) {
+            let at = Pos2::from(at);
+            let place = beside(at, size, room, &[legend, tools]);
+            assert!(room.contains_rect(place) && !place.contains(at), "{at:?}: {place:?}");
+            assert!(![legend, tools].iter().any(|other| other.intersects(place)), "{at:?}: {place:?}");
+        }
+        // Out of sight, or in a window that is too small for it.
+        assert!(room.contains_rect(beside(Pos2::new(-900.0, 9000.0), size, room, &[])));
+        assert!(beside(Pos2::ZERO, size, Rect::from_min_size(Pos2::ZERO, Vec2::splat(4.0)), &[]).is_finite());
     }
 }

@@ -155,6 +155,27 @@ fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
+/// A curve as so many columns of a screen show it: of those points that share a column the first, the lowest, the highest and the
+/// last.
+fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return points };
+    if points.len() <= 4 * columns || last[0] <= first[0] {
+        return points;
+    }
+    let (start, width) = (first[0], (last[0] - first[0]) / columns as f64);
+    let column = |point: &[f64; 2]| ((point[0] - start) / width) as usize;
+    let mut kept = Vec::with_capacity(4 * columns + 4);
+    for group in points.chunk_by(|a, b| column(a) == column(b)) {
+        let ends = group.iter().enumerate().min_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+        let ends = ends.into_iter().chain(group.iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])));
+        let mut places: Vec<usize> = ends.map(|(place, _)| place).chain([0, group.len() - 1]).collect();
+        places.sort_unstable();
+        places.dedup();
+        kept.extend(places.into_iter().map(|place| group[place]));
+    }
+    kept
+}
+
 fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, Vec<[f64; 2]>)>) {
     let dark = ui.visuals().dark_mode;
     let ink = |number: usize| {
@@ -187,11 +208,35 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
             .custom_x_axes(vec![seconds])
             .y_axis_formatter(|mark, _| format_value(mark.value))
             .y_axis_min_width(30.0);
-        let owned: Vec<(String, Vec<[f64; 2]>)> = lines.into_iter().map(|(n, l)| (n.to_string(), l)).collect();
+        // What the screen cannot tell apart is not drawn: a minute has thousands of moments.
+        let columns = size.x.max(1.0) as usize;
+        let owned: Vec<(String, Vec<[f64; 2]>)> =
+            lines.into_iter().map(|(n, l)| (n.to_string(), thinned(l, columns))).collect();
         plot.show(ui, move |plot| {
             for (number, (name, points)) in owned.into_iter().enumerate() {
                 plot.line(Line::new(name, PlotPoints::from(points)).color(ink(number)).width(1.6));
             }
         });
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::thinned;
+
+    #[test]
+    fn curves_of_many_moments_keep_their_ends_and_extremes_and_lose_what_nobody_sees() {
+        let mut curve: Vec<[f64; 2]> = (0..3000).map(|k| [f64::from(k) / 60.0, f64::from(k % 7)]).collect();
+        curve[1234][1] = 90.0;
+        curve[2345][1] = -80.0;
+        let kept = thinned(curve.clone(), 180);
+        assert!(kept.len() <= 4 * 181, "{}", kept.len());
+        assert_eq!((kept[0], kept[kept.len() - 1]), (curve[0], curve[2999]));
+        assert!(kept.contains(&curve[1234]) && kept.contains(&curve[2345]));
+        assert!(kept.windows(2).all(|pair| pair[0][0] < pair[1][0]), "in the order of time");
+        // Few points, and those of one moment, stay as they are.
+        assert_eq!(thinned(curve[..700].to_vec(), 180).len(), 700);
+        assert_eq!(thinned(vec![[1.0, 2.0]; 900], 180).len(), 900);
+        assert!(thinned(Vec::new(), 180).is_empty());
+    }
 }

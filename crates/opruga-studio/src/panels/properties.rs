@@ -8,6 +8,7 @@ use crate::words::{Language, Part};
 use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
 use opruga::Registry;
 use opruga::core::spec::{Allowed, Default as Unset, Spec, Value, Values};
+use opruga::world::schema::MOST_SUBSTEPS;
 
 /// The largest gravity of the arrow [m/s²].
 const MOST_GRAVITY: f64 = 20.0;
@@ -129,7 +130,8 @@ impl Properties {
                 let unit = if *name == "pressure" {
                     " Pa"
                 } else if *name == "volume" {
-                    " m³"
+                    // As the plots have it: what a body of the plane encloses is an area.
+                    if kinds.dimension == 3 { " m³" } else { " m²" }
                 } else {
                     ""
                 };
@@ -327,7 +329,8 @@ impl Properties {
         self.integrator(ui, words, own, None, kinds, asks);
         let label = ui.label(words.substeps()).on_hover_text(words.substeps_hint());
         let mut substeps = shown.substeps;
-        let most = (4 * shown.substeps.max(16)).next_power_of_two().min(4096);
+        // A slider that ends before its value would set that to its end.
+        let most = (4 * shown.substeps.max(16)).next_power_of_two().min(MOST_SUBSTEPS);
         let response = ui.add(Slider::new(&mut substeps, 1..=most).logarithmic(true)).labelled_by(label.id);
         if response.changed() && substeps != shown.substeps {
             asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));

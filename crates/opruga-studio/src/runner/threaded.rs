@@ -18,6 +18,18 @@ pub struct Link {
     last: Arc<Mutex<Arc<Shown>>>,
 }
 
+/// Pictures that the thread has made and somebody may still look at. They are taken apart here once nobody does: to free what a
+/// thousand bodies hold would take the interface a millisecond.
+#[derive(Default)]
+struct Old(Vec<Arc<Shown>>);
+
+impl Old {
+    fn keep(&mut self, shown: Arc<Shown>) {
+        self.0.retain(|old| Arc::strong_count(old) > 1);
+        self.0.push(shown);
+    }
+}
+
 impl core::fmt::Debug for Link {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("Link")
@@ -57,7 +69,7 @@ impl Link {
 }
 
 fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
-    let mut course = Course::new(session);
+    let (mut course, mut old) = (Course::new(session), Old::default());
     loop {
         // While nothing moves the thread sleeps until somebody asks for something.
         let first = if course.session.is_moving() {
@@ -76,8 +88,28 @@ fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: 
             }
         };
         if let Some(shown) = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET) {
-            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(shown);
+            let shown = Arc::new(shown);
+            let last = std::mem::replace(&mut *slot.lock().unwrap_or_else(PoisonError::into_inner), shown);
+            old.keep(last);
             wake();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_freed_by_the_thread_that_made_it_once_nobody_looks_at_it() {
+        let (mut old, looked_at) = (Old::default(), Arc::new(Shown::default()));
+        old.keep(Arc::clone(&looked_at));
+        old.keep(Arc::new(Shown::default()));
+        assert_eq!((old.0.len(), Arc::strong_count(&looked_at)), (2, 2));
+        old.keep(Arc::new(Shown::default()));
+        assert_eq!(old.0.len(), 2, "the one that nobody looks at went");
+        drop(looked_at);
+        old.keep(Arc::new(Shown::default()));
+        assert_eq!(old.0.len(), 1);
     }
 }

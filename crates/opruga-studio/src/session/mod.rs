@@ -28,6 +28,7 @@ use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
+use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Options, WorldError};
 use pointer::Held;
 use std::time::Duration;
@@ -366,9 +367,11 @@ impl Session {
     fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
         let offer = match error {
             WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. } => {
-                Some(Offer::HalveStep)
+                let more = 2 * u64::from(self.engine.shown(&self.show).substeps) <= u64::from(MOST_SUBSTEPS);
+                more.then_some(Offer::HalveStep)
             }
-            WorldError::UnstableStep { substeps, .. } => {
+            // Where a frame cannot have as many, the message says what else helps.
+            WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
                 self.refused = request;
                 Some(Offer::Substeps(with_a_margin(*substeps)))
             }
@@ -440,7 +443,7 @@ impl Session {
     }
 }
 
-/// A little more substeps than the least, so that the next change does not fail at once.
+/// A little more substeps than the least, so that the next change does not fail at once; never more than a frame may have.
 fn with_a_margin(substeps: u32) -> u32 {
-    substeps.saturating_add(substeps / 8 + 1)
+    substeps.saturating_add(substeps / 8 + 1).min(MOST_SUBSTEPS)
 }

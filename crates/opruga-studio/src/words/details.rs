@@ -2,9 +2,58 @@
 //! for names and numbers.
 
 use super::{readers, sentences};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// A sentence with gaps in English, and in Croatian.
 type Pair = (&'static str, &'static str);
+
+/// The same, with the words before the first gap and behind the last one: of a thousand sentences few begin and end like a text, and a
+/// message is looked up whenever it is shown.
+struct Known {
+    pair: Pair,
+    first: &'static str,
+    last: &'static str,
+}
+
+impl Known {
+    fn new(pair: &Pair) -> Known {
+        let (mut rest, mut first) = (pair.0, None);
+        while let Some((start, end, _)) = gap(rest) {
+            first = first.or(Some(&rest[..start]));
+            rest = &rest[end..];
+        }
+        Known { pair: *pair, first: first.unwrap_or(rest), last: rest }
+    }
+}
+
+/// Lookups that are remembered: parts of sentences are tried again and again, and a message is shown for many pictures.
+const REMEMBERED: usize = 4_096;
+
+thread_local! {
+    /// What was found in the table of whole sentences and in that of parts.
+    static FOUND: [RefCell<HashMap<String, Option<String>>>; 2] = Default::default();
+}
+
+/// What was looked up before, or else is now.
+fn remembered(table: usize, english: &str, look: impl FnOnce() -> Option<String>) -> Option<String> {
+    FOUND.with(|tables| {
+        if let Some(known) = tables[table].borrow().get(english) {
+            return known.clone();
+        }
+        let found = look();
+        let mut known = tables[table].borrow_mut();
+        if known.len() >= REMEMBERED {
+            known.clear();
+        }
+        known.insert(english.into(), found.clone());
+        found
+    })
+}
+
+static WHOLE: LazyLock<Vec<Known>> = LazyLock::new(|| whole().map(Known::new).collect());
+static PARTS: LazyLock<Vec<Known>> = LazyLock::new(|| parts().map(Known::new).collect());
 
 /// Whole sentences: those of the readers first, since the engine has some that fit much.
 pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
@@ -13,24 +62,26 @@ pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
 
 /// Parts of sentences.
 pub(super) fn parts() -> impl Iterator<Item = &'static Pair> {
-    readers::PARTS.iter().chain(sentences::PARTS)
+    readers::PARTS.into_iter().chain([sentences::PARTS]).flatten()
 }
 
 /// The Croatian of a sentence, where it is one of these.
 pub(super) fn croatian(english: &str) -> Option<String> {
-    found(whole(), english)
+    remembered(0, english, || found(&WHOLE, english))
 }
 
 /// The same of a part of a sentence, or of a whole one.
 pub(super) fn part(english: &str) -> Option<String> {
-    found(parts(), english).or_else(|| croatian(english))
+    remembered(1, english, || found(&PARTS, english)).or_else(|| croatian(english))
 }
 
-fn found(table: impl Iterator<Item = &'static Pair>, english: &str) -> Option<String> {
-    table.filter(|(pattern, _)| may_fit(pattern, english)).find_map(|(pattern, wanted)| {
+fn found(table: &[Known], english: &str) -> Option<String> {
+    let near = table.iter().filter(|known| english.starts_with(known.first) && english.ends_with(known.last));
+    let mut near = near.map(|known| known.pair).filter(|(pattern, _)| may_fit(pattern, english));
+    near.find_map(|(pattern, wanted)| {
         let mut parts = matched(pattern, english)?.into_iter();
         let mut out = String::new();
-        let mut rest = *wanted;
+        let mut rest = wanted;
         while let Some((start, end, _)) = gap(rest) {
             out.push_str(&rest[..start]);
             out.push_str(&parts.next()?);

@@ -5,6 +5,7 @@ use crate::differences::Difference;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 use opruga::core::spec::Value;
+use opruga::world::schema::MOST_SUBSTEPS;
 
 /// A sentence of both languages, the right one of which is taken.
 macro_rules! either {
@@ -59,7 +60,8 @@ impl Language {
             Said::Because(text) => match self {
                 Language::English => text.clone(),
                 Language::Croatian => {
-                    let known = details::croatian(text).or_else(|| scene_errors::croatian(text));
+                    // Errors of a file have lines of their own.
+                    let known = scene_errors::croatian(text).or_else(|| details::croatian(text));
                     known.unwrap_or_else(|| format!("Poruka je na engleskom:\n{text}"))
                 }
             },
@@ -170,11 +172,20 @@ impl Language {
             return error.to_string();
         }
         match error {
-            WorldError::UnstableStep { integrator, body, h, limit, substeps, .. } => format!(
-                "Korak h = {h:.3e} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je {limit:.3e} s. \
-                 Treba najmanje {substeps} podkoraka",
-                self.kind(Part::Integrator, integrator)
-            ),
+            WorldError::UnstableStep { integrator, body, h, limit, substeps, .. } => {
+                let way_out = match *substeps {
+                    ..=MOST_SUBSTEPS => format!("Treba najmanje {substeps} podkoraka"),
+                    _ => format!(
+                        "Sličica ima najviše {MOST_SUBSTEPS} podkoraka: pomaže kraća sličica, mekše ili teže tijelo, ili drugi \
+                         integrator"
+                    ),
+                };
+                format!(
+                    "Korak h = {h:.3e} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je \
+                     {limit:.3e} s. {way_out}",
+                    self.kind(Part::Integrator, integrator)
+                )
+            }
             WorldError::Diverged { body, node, time, last } => format!(
                 "Tijelo `{body}` je divergiralo: čvor {node}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
                  t = {last} s"

@@ -122,8 +122,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          ikakva tereta; dopušteno: pribodene točke koje ga drže, ili cijeli teret odjednom, u koliko god `load_steps` treba",
     ),
     (
-        "a frame has at most {} substeps: a shorter one, or another integrator",
-        "slika ima najviše {} podkoraka: kraća slika, ili drugi integrator",
+        "a frame has at most {} substeps: a shorter one, a softer or heavier body, or another integrator",
+        "sličica ima najviše {} podkoraka: pomaže kraća sličica, mekše ili teže tijelo, ili drugi integrator",
     ),
     ("more substeps, or `accuracy = \"exact\"`", "više podkoraka, ili `accuracy = \"exact\"`"),
     (
@@ -252,9 +252,9 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "the step h = {} s of `{}` is unstable for body `{}`: the largest stable step is {} s (stiffness ω = {} rad/s, damping {} \
-         1/s); allowed: h <= {}; hint: substeps >= {}",
+         1/s); allowed: h <= {}; hint: {~}",
         "korak h = {} s integratora `{}` nestabilan je za tijelo `{}`: najveći stabilni korak je {} s (krutost ω = {} rad/s, \
-         prigušenje {} 1/s); dopušteno: h <= {}; savjet: podkoraka >= {}",
+         prigušenje {} 1/s); dopušteno: h <= {}; savjet: {~}",
     ),
     ("commands on body `{}` ended when it was taken away", "naredbe tijelu `{}` završile su kad je uklonjeno"),
     ("forces were shortened to `world.largest_force`", "sile su skraćene na `world.largest_force`"),
@@ -336,6 +336,7 @@ pub(super) const PARTS: &[(&str, &str)] = &[
         "; now the cell farthest from its volume is {} of body `{}`, J = {}",
         "; ćelija najdalje od svojeg obujma je {} tijela `{}`, J = {}",
     ),
+    ("substeps >= {}", "podkoraka >= {}"),
     ("a number", "broj"),
     ("a whole number", "cijeli broj"),
     ("a text", "tekst"),
