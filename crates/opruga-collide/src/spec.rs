@@ -42,7 +42,7 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space",
     "everything behind a line (2D) or plane (3D): floor, wall, incline",
     "Solid where (x − point)·normal < 0. The normal may have any length above zero.";
     Field::new("point", Allowed::Vector, "m", Default::Origin, "A point of the surface."),
-    Field::new("normal", Allowed::Vector, "", Default::Required, "Direction out of the solid."),
+    Field::new("normal", Allowed::Direction, "", Default::Required, "Direction out of the solid."),
 }
 
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. Given by two opposite corners, or by \

@@ -9,6 +9,8 @@ mod names;
 pub use condition::Condition;
 pub use names::{all_near, nearest};
 
+use crate::error::BuildError;
+
 /// Everything there is to know about one kind of thing that a scene can name.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec {
@@ -22,6 +24,24 @@ pub struct Spec {
     pub dimensions: &'static [usize],
     /// The parameters, in the order of the documentation.
     pub fields: &'static [Field],
+}
+
+/// The code of the refusal of none or several of the fields of a choice.
+pub const ONE_OF: &str = "model.one_of";
+
+/// What a choice between fields asks for.
+pub fn one_of(set: &[&str]) -> String {
+    format!("exactly one of `{}` must be given", set.join("` and `"))
+}
+
+impl Spec {
+    /// The sets of fields of which exactly one is given, each once.
+    pub fn choices(&self) -> impl Iterator<Item = &'static [&'static str]> {
+        self.fields.iter().filter_map(|field| match field.default {
+            Default::OneOf(set) if set.first() == Some(&field.name) => Some(set),
+            _ => None,
+        })
+    }
 }
 
 /// One parameter.
@@ -83,6 +103,8 @@ pub enum Allowed {
     Choice(&'static [&'static str]),
     /// As many finite numbers as the scene has dimensions.
     Vector,
+    /// As many finite numbers as the scene has dimensions, not all zero.
+    Direction,
     /// A list of points, each as many numbers as the scene has dimensions.
     Points,
     /// A list of whole numbers not below zero.
@@ -124,6 +146,8 @@ pub enum Default {
     Required,
     /// The field stays empty.
     Absent,
+    /// The field stays empty, and another one of these is given: exactly one of them is.
+    OneOf(&'static [&'static str]),
     /// A number.
     Number(f64),
     /// A whole number.
@@ -168,7 +192,7 @@ impl Values {
         let mut entries = Vec::new();
         for field in spec.fields {
             let value = match field.default {
-                Default::Required | Default::Absent => continue,
+                Default::Required | Default::Absent | Default::OneOf(_) => continue,
                 Default::Number(x) => Value::Number(x),
                 Default::Integer(x) => Value::Integer(x),
                 Default::Boolean(x) => Value::Boolean(x),
@@ -268,6 +292,16 @@ impl Values {
             _ => &[],
         }
     }
+    /// The sets of fields of which exactly one must be given, where none is or several are.
+    ///
+    /// # Errors
+    /// `model.one_of` for the first of them.
+    pub fn check_choices(&self, spec: &Spec) -> Result<(), BuildError> {
+        match spec.choices().find(|set| set.iter().filter(|name| self.get(name).is_some()).count() != 1) {
+            Some(set) => Err(BuildError::new(spec.kind, ONE_OF, one_of(set))),
+            None => Ok(()),
+        }
+    }
     /// The required fields that have no value yet.
     pub fn missing(&self, spec: &Spec) -> Vec<&'static str> {
         let absent = |f: &&Field| f.default == Default::Required && self.get(f.name).is_none();
@@ -335,6 +369,11 @@ impl Allowed {
             (Allowed::Vector, Value::Numbers(v)) if v.len() == dimension && v.iter().all(|x| x.is_finite()) => {
                 Ok(value)
             }
+            (Allowed::Direction, Value::Numbers(v))
+                if v.len() == dimension && v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0) =>
+            {
+                Ok(value)
+            }
             (Allowed::Numbers, Value::Numbers(v)) if v.iter().all(|x| x.is_finite()) => Ok(value),
             (Allowed::Integers, Value::Integers(_)) => Ok(value),
             (Allowed::Points, Value::Rows(rows)) if rows_ok(rows, dimension) => Ok(value),
@@ -368,6 +407,7 @@ impl Allowed {
                 format!("one of {}", words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", "))
             }
             Allowed::Vector => format!("{dimension} finite numbers"),
+            Allowed::Direction => format!("{dimension} finite numbers that are not all zero"),
             Allowed::Numbers => "a list of finite numbers".into(),
             Allowed::Integers => "a list of whole numbers from 0".into(),
             Allowed::Points => format!("a list of points of {dimension} finite numbers"),

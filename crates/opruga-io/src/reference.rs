@@ -144,6 +144,7 @@ fn allowed(range: &Allowed) -> String {
     match range {
         Allowed::Number { least: Bound::None, greatest: Bound::None } => "any number".into(),
         Allowed::Vector => "one number per axis".into(),
+        Allowed::Direction => "one number per axis, not all zero".into(),
         Allowed::Points => "a list of points".into(),
         Allowed::Path => "a path `[[t, x, y(, z)], …]`, t rising".into(),
         Allowed::Curve => "a curve `[[t, value], …]`, t rising".into(),
@@ -155,6 +156,9 @@ fn default(field: &Field) -> String {
     match field.default {
         Default::Required => "required".into(),
         Default::Absent => String::new(),
+        Default::OneOf(set) => {
+            format!("one of {}", set.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
+        }
         Default::Number(x) => x.to_string(),
         Default::Integer(x) => x.to_string(),
         Default::Boolean(x) => x.to_string(),

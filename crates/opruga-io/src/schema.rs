@@ -36,13 +36,20 @@ fn section(section: &Section, tag: Option<&str>, catalogue: &Catalogue) -> Value
             required.push(child.name);
         }
     }
-    json!({
+    let mut schema = json!({
         "type": "object",
         "description": describe(section.spec),
         "properties": properties,
         "required": required,
         "additionalProperties": false,
-    })
+    });
+    let one =
+        |set: &[&str]| json!({ "oneOf": set.iter().map(|name| json!({ "required": [name] })).collect::<Vec<_>>() });
+    let choices: Vec<Value> = section.spec.choices().map(one).collect();
+    if !choices.is_empty() {
+        schema["allOf"] = choices.into();
+    }
+    schema
 }
 
 fn describe(spec: &Spec) -> String {
@@ -129,7 +136,7 @@ fn plain(field: &Field) -> Value {
         Default::Integer(x) => schema["default"] = x.into(),
         Default::Boolean(x) => schema["default"] = x.into(),
         Default::Text(x) => schema["default"] = x.into(),
-        Default::Required | Default::Absent | Default::Origin => {}
+        Default::Required | Default::Absent | Default::OneOf(_) | Default::Origin => {}
     }
     schema
 }
@@ -155,7 +162,7 @@ fn allowed(range: &Allowed) -> Value {
         Allowed::Boolean => json!({ "type": "boolean" }),
         Allowed::Text => json!({ "type": "string", "maxLength": 256 }),
         Allowed::Choice(words) => json!({ "enum": words }),
-        Allowed::Vector => numbers(2, 3),
+        Allowed::Vector | Allowed::Direction => numbers(2, 3),
         Allowed::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
         Allowed::Integers => json!({ "type": "array", "items": { "type": "integer", "minimum": 0 } }),
         Allowed::Points => json!({ "type": "array", "items": numbers(2, 3), "minItems": 1 }),

@@ -44,7 +44,20 @@ impl<const D: usize> World<D> {
             }
             let loads = blueprint.loads.iter().filter(|l| l.body == number);
             let loads = loads.map(|l| LoadBlueprint { body: 0, ..l.clone() }).collect();
-            problems.extend(refused(part(vec![body.clone()], Vec::new(), loads)));
+            let Some(first) = refused(part(vec![body.clone()], Vec::new(), loads)) else { continue };
+            // Building stops at the first model that refuses; each of the others is asked by itself.
+            let place = problems.len();
+            for model in &body.models {
+                let alone = BodyBlueprint { models: vec![model.clone()], pins: Vec::new(), ..body.clone() };
+                problems.extend(
+                    refused(part(vec![alone], Vec::new(), Vec::new())).filter(
+                        |error| matches!(error, WorldError::Build { source, .. } if source.kind == model.kind()),
+                    ),
+                );
+            }
+            if !problems[place..].contains(&first) {
+                problems.insert(place, first);
+            }
         }
         problems
     }

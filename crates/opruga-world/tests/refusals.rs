@@ -81,7 +81,7 @@ fn every_part_that_is_refused_is_found_once() {
         body("loaded", &line, vec![soft]),
     ];
     bodies.extend((0..5).map(|k| body(&format!("stiff[{k}]"), &ring, vec![stiff.clone()])));
-    let mut blueprint = scene(bodies, vec![wall([0.0, 1.0]), wall([0.0, 0.0]), wall([0.0, 0.0])]);
+    let mut blueprint = scene(bodies, vec![wall([0.0, 1.0]), wall([0.0, 1e-200]), wall([1e-200, 0.0])]);
     blueprint.loads.push(LoadBlueprint {
         body: 2,
         select: Selector::Nodes(vec![0]),

@@ -100,7 +100,7 @@ fn errors_of_fields_indices_and_models_come_at_once() {
             ("scene.range", line("node = 99")),
             ("model.open_surface", line("kind = \"pressure\"")),
             ("scene.length", line("copies")),
-            ("collider.no_direction", line("normal = [0, 0]")),
+            ("scene.range", line("normal = [0, 0]")),
             ("scene.range", line("friction = -1")),
             ("scene.range", line("node = 24")),
         ];

@@ -34,6 +34,15 @@ impl Reader<'_> {
                 _ => return self.refuse_type(node, path, range),
             },
             Allowed::Vector => Value::Numbers(self.row(node, path, self.dimension, range)?),
+            Allowed::Direction => {
+                let row = self.row(node, path, self.dimension, range)?;
+                if row.iter().all(|x| *x == 0.0) {
+                    let error = SceneError::new("scene.range", format!("`{name}` is {}", node.shown())).path(path);
+                    self.report(node.place, error.value(node.shown()).allowed(range.describe(self.dimension)));
+                    return None;
+                }
+                Value::Numbers(row)
+            }
             Allowed::Numbers => match &node.data {
                 Data::Array(items) => Value::Numbers(self.row(node, path, items.len(), range)?),
                 _ => return self.refuse_type(node, path, range),

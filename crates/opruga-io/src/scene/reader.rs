@@ -5,7 +5,7 @@ use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Node, Place};
 use crate::problem::{Notice, SceneError, visible};
 use crate::source::Source;
-use opruga_core::spec::{Default, Spec, Values, nearest};
+use opruga_core::spec::{Default, ONE_OF, Spec, Values, nearest, one_of};
 use opruga_world::schema::{self, Child, Section};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -227,6 +227,7 @@ impl<'a> Reader<'a> {
             }
         }
         self.missing(node, path, section);
+        self.choices(node, path, section.spec);
         self.without_effect(node, path, section.spec, &values);
         values
     }
@@ -261,6 +262,22 @@ impl<'a> Reader<'a> {
             error.hint = Some(field.documentation.to_string());
         }
         self.report(node.place, error);
+    }
+
+    /// Reports choices between fields of which none or several are given.
+    fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec) {
+        for set in spec.choices() {
+            let given: Vec<&&str> = set.iter().filter(|name| node.get(name).is_some()).collect();
+            let (place, name) = match given.as_slice() {
+                [_] => continue,
+                [] => (node.place, set[0]),
+                [_, second, ..] => (super::place_of(node, second), **second),
+            };
+            let words = given.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
+            let here = if words.is_empty() { "none of them".into() } else { words };
+            let error = SceneError::new(ONE_OF, format!("{}; here are {here}", one_of(set))).path(join(path, name));
+            self.report(place, error.allowed(format!("exactly one of {}", set.join(", "))));
+        }
     }
 
     /// A table whose `kind` names one of several specifications.

@@ -85,6 +85,7 @@ impl<const D: usize> Bodies<D> {
 
     fn allowed(&self) -> String {
         match self.list.len() {
+            0 if !self.broken.is_empty() => self.broken.join(", "),
             0 => "the scene has no bodies".into(),
             n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
             n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),

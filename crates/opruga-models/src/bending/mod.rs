@@ -29,7 +29,7 @@ use angle::{cross, dot, in_space, minus};
 use hinge::Hinge;
 use opruga_core::error::BuildError;
 use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
-use opruga_core::spec::{Spec, Values};
+use opruga_core::spec::{ONE_OF, Spec, Values};
 use opruga_core::state::View;
 use opruga_core::stencil::Stencils;
 use opruga_core::tile::Tile;
@@ -58,18 +58,13 @@ impl<const D: usize> Model<D> for BendingModel {
         let refuse = |code, message: String| BuildError::new(SPEC.kind, code, message);
         let mesh = ingredients.mesh;
         for values in ingredients.values {
-            match (values.number("stiffness"), values.number("modulus"), values.number("thickness")) {
-                (Some(_), None, None) | (None, Some(_), Some(_)) => {}
-                (None, Some(_), None) => {
-                    return Err(refuse("model.one_of", "`modulus` needs `thickness`".into()));
+            values.check_choices(&SPEC)?;
+            match (values.number("modulus"), values.number("thickness")) {
+                (Some(_), None) => return Err(refuse(ONE_OF, "`modulus` needs `thickness`".into())),
+                (None, Some(_)) => {
+                    return Err(refuse(ONE_OF, "`thickness` goes with `modulus`, not with `stiffness`".into()));
                 }
-                (Some(_), None, Some(_)) => {
-                    return Err(refuse("model.one_of", "`thickness` goes with `modulus`, not with `stiffness`".into()));
-                }
-                _ => {
-                    let message = "exactly one of `stiffness` and `modulus` must be given";
-                    return Err(refuse("model.one_of", message.into()));
-                }
+                _ => {}
             }
         }
         let turns = mesh.bends().map_err(|e| refuse("model.mesh", e.to_string()))?;

@@ -2,6 +2,8 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
+const STIFFNESS: &[&str] = &["stiffness", "modulus"];
+
 /// The parameters of `bending`.
 pub const SPEC: Spec = Spec {
     kind: "bending",
@@ -20,14 +22,14 @@ that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shell
             "stiffness",
             Allowed::NOT_NEGATIVE,
             "N·m",
-            Default::Absent,
+            Default::OneOf(STIFFNESS),
             "Moment per angle k of every hinge; exactly one of `stiffness` and `modulus`.",
         ),
         Field::new(
             "modulus",
             Allowed::NOT_NEGATIVE,
             "Pa",
-            Default::Absent,
+            Default::OneOf(STIFFNESS),
             "Young's modulus E, from which each hinge's stiffness follows; needs `thickness`.",
         ),
         Field::new(

@@ -1,7 +1,7 @@
 //! The numbers of the material of every cell: of the scene, or of the cells of the mesh.
 
-use super::refuse;
 use super::section::NUMBERS;
+use super::{SPEC, refuse};
 use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
@@ -16,7 +16,7 @@ const LOCKS_ABOVE: f64 = 0.45;
 
 /// What the mesh may say of its cells: the field of the scene that holds for all cells, and the one that names numbers of the
 /// mesh.
-const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
+pub(super) const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
 const POISSONS_RATIO: [&str; 2] = ["poissons_ratio", "poissons_ratio_of_cells"];
 const DAMPING: [&str; 2] = ["damping", "damping_of_cells"];
 
@@ -47,10 +47,7 @@ impl<'a> Numbers<'a> {
             times: of(DAMPING)?,
             damped: false,
         };
-        if first.number(YOUNGS_MODULUS[0]).is_some() == numbers.moduli.is_some() {
-            let message = "exactly one of `youngs_modulus` and `youngs_modulus_of_cells` must be given";
-            return Err(refuse("model.one_of", message));
-        }
+        first.check_choices(&SPEC)?;
         let cells = || (0..chosen.len()).filter(|cell| chosen[*cell]).map(|cell| cell as u32);
         for (body, values) in ingredients.values.iter().enumerate() {
             numbers.damped |= cells().any(|cell| numbers.time(cell, body) > 0.0);

@@ -1,6 +1,7 @@
 //! Parameters of finite elements.
 
 use super::materials::NAMES;
+use super::numbers::YOUNGS_MODULUS;
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// The parameters of `fem`.
@@ -28,14 +29,14 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             "youngs_modulus",
             Allowed::POSITIVE,
             "Pa",
-            Default::Absent,
+            Default::OneOf(&YOUNGS_MODULUS),
             "Young's modulus E; exactly one of `youngs_modulus` and `youngs_modulus_of_cells`.",
         ),
         Field::new(
             "youngs_modulus_of_cells",
             Allowed::Text,
             "",
-            Default::Absent,
+            Default::OneOf(&YOUNGS_MODULUS),
             "The name of numbers of the mesh file, one per cell, that are Young's modulus [Pa].",
         ),
         Field::new(

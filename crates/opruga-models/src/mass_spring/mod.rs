@@ -57,14 +57,11 @@ impl<const D: usize> Model<D> for MassSpring {
         let lengths: Vec<f64> =
             edges.iter().map(|&[a, b]| distance(&mesh.positions[a as usize], &mesh.positions[b as usize])).collect();
         for values in ingredients.values {
-            match (values.number("stiffness"), values.number("modulus")) {
-                (Some(_), None) => {}
-                (None, Some(_)) => {
-                    if let Some(k) = lengths.iter().position(|l| *l == 0.0) {
-                        return refuse("model.zero_length", format!("edge {k} has no length; `modulus` needs one"));
-                    }
-                }
-                _ => return refuse("model.one_of", "exactly one of `stiffness` and `modulus` must be given".into()),
+            values.check_choices(&SPEC)?;
+            if values.number("modulus").is_some()
+                && let Some(k) = lengths.iter().position(|l| *l == 0.0)
+            {
+                return refuse("model.zero_length", format!("edge {k} has no length; `modulus` needs one"));
             }
         }
         let areas = mesh.edge_areas(&edges).map_err(|e| BuildError::new("mass_spring", "model.mesh", e.to_string()))?;

@@ -2,6 +2,8 @@
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
 
+const STIFFNESS: &[&str] = &["stiffness", "modulus"];
+
 /// The parameters of `mass_spring`.
 pub const SPEC: Spec = Spec {
     kind: "mass_spring",
@@ -16,14 +18,14 @@ A ring of springs alone resists neither bending nor a change of its enclosed are
             "stiffness",
             Allowed::NOT_NEGATIVE,
             "N/m",
-            Default::Absent,
+            Default::OneOf(STIFFNESS),
             "Spring constant k of every spring; exactly one of `stiffness` and `modulus`.",
         ),
         Field::new(
             "modulus",
             Allowed::NOT_NEGATIVE,
             "N/m",
-            Default::Absent,
+            Default::OneOf(STIFFNESS),
             "Membrane modulus E₂D (Young's modulus times thickness) from which each spring's stiffness follows.",
         ),
         Field::new(

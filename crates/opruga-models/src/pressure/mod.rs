@@ -68,13 +68,7 @@ impl<const D: usize> Model<D> for PressureModel {
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let mesh = ingredients.mesh;
         for values in ingredients.values {
-            if values.number("nRT").is_some() == values.number("pressure").is_some() {
-                return Err(BuildError::new(
-                    "pressure",
-                    "model.one_of",
-                    "exactly one of `nRT` and `pressure` must be given",
-                ));
-            }
+            values.check_choices(&SPEC)?;
         }
         if mesh.facets.is_empty() {
             let message = "the body has no closed boundary to hold a gas";

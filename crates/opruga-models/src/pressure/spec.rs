@@ -3,6 +3,8 @@
 use super::gas::SMALLEST_VOLUME;
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
+const AMOUNT: &[&str] = &["nRT", "pressure"];
+
 /// The parameters of `pressure`.
 pub const SPEC: Spec = Spec {
     kind: "pressure",
@@ -26,14 +28,14 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             "nRT",
             Allowed::NOT_NEGATIVE,
             "J",
-            Default::Absent,
+            Default::OneOf(AMOUNT),
             "Amount of gas times temperature; exactly one of `nRT` and `pressure`.",
         ),
         Field::new(
             "pressure",
             Allowed::NOT_NEGATIVE,
             "Pa",
-            Default::Absent,
+            Default::OneOf(AMOUNT),
             "Absolute pressure P₀ inside at the rest volume.",
         ),
         Field::new(

@@ -219,7 +219,7 @@ fn other(ui: &mut Ui, words: Language, name: egui::Id, range: &Allowed, now: &Va
             menu.response.labelled_by(name);
             (chosen != *word).then_some(Value::Text(chosen))
         }
-        (Allowed::Vector, Value::Numbers(list)) => {
+        (Allowed::Vector | Allowed::Direction, Value::Numbers(list)) => {
             let mut list = list.clone();
             let before = list.clone();
             for x in &mut list {

@@ -172,6 +172,7 @@ impl Language {
             Allowed::Boolean => "da ili ne".into(),
             Allowed::Text => "tekst od najviše 256 bajtova".into(),
             Allowed::Vector => format!("{dimension} konačna broja"),
+            Allowed::Direction => format!("{dimension} konačna broja koji nisu svi nula"),
             Allowed::Numbers => "popis konačnih brojeva".into(),
             Allowed::Integers => "popis cijelih brojeva od 0".into(),
             Allowed::Points => format!("popis točaka od {dimension} konačna broja"),
