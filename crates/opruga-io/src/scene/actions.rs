@@ -1,6 +1,7 @@
 //! `[[load]]`, `[[command]]` and `[[probe]]`.
 
 use super::bodies::{self, Bodies};
+use super::pins;
 use super::reader::{Reader, join, listed};
 use super::{parameters, place_of, selectors};
 use crate::document::{Data, Node, Place};
@@ -63,17 +64,29 @@ pub(crate) fn commands<const D: usize>(
     let known = parameters::Known { bodies, added: &added, integrator, colliders };
     let mut commands = Vec::new();
     for (number, (node, path)) in list.iter().enumerate() {
+        let before = reader.count();
         let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
         let at = values.number("at").unwrap_or(0.0);
         let Some(actions) = actions(reader, number, node, path, &values, &known) else { continue };
         let end_of_path = values.rows("path").last().and_then(|row| row.first().copied());
         let until = values.number("until").or(end_of_path).unwrap_or(at);
-        if until < at {
+        let lasts = matches!(values.kind(), "drag" | "push" | "pin");
+        if values.kind() == "drag" && node.get("until").is_none() && values.rows("path").len() == 1 {
+            let error = SceneError::new(
+                "scene.missing",
+                "`until` is missing: a path of one point does not say when the drag ends",
+            )
+            .path(join(path, "until"))
+            .allowed(format!("a time after {at}"));
+            reader.report(node.place, error.hint("a path of several points ends the drag with its last one"));
+        } else if until < at || until == at && lasts && reader.sound_since(before, path) {
             let key = if node.get("until").is_some() { "until" } else { "path" };
+            let when = if until < at { "before" } else { "when" };
             let error =
-                SceneError::new("scene.range", format!("the command ends at {until} s, before it begins at {at} s"))
+                SceneError::new("scene.range", format!("the command ends at {until} s, {when} it begins at {at} s"))
                     .path(join(path, key));
-            reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time from {at}")));
+            let from = if lasts { "after" } else { "from" };
+            reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time {from} {at}")));
         }
         for action in actions {
             if let Some(body) = &action.body()
@@ -127,7 +140,7 @@ fn actions<const D: usize>(
         }
         "pin" => {
             let targets = bodies.targets(reader, node, path);
-            let axes = bodies::axes(reader, node, path, values);
+            let axes = pins::axes(reader, node, path, values);
             let targets = selectors::of_bodies(reader, node, path, bodies, targets)?;
             targets.into_iter().map(|(body, select)| Action::Pin { body, select, axes }).collect()
         }

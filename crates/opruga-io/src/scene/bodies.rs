@@ -4,7 +4,7 @@ use super::Cost;
 use super::copies::{Copies, copies, write_out};
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
-use super::{place_of, selectors};
+use super::{pins, place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
 use crate::shapes::Loaded;
@@ -48,7 +48,7 @@ struct Draft<'n, const D: usize> {
     mass: Option<Mass>,
     integrator: Option<Values>,
     models: Vec<Values>,
-    pins: Vec<(PinBlueprint<D>, Place, String)>,
+    pins: Vec<pins::Placed<D>>,
     copies: Option<Copies<D>>,
     /// Whether nothing is wrong with its nodes: what selects them can be checked.
     shaped: bool,
@@ -181,7 +181,7 @@ fn draft<'n, const D: usize>(
     }
     let mut pins = Vec::new();
     for (item, here) in reader.list(node, &path, "pin") {
-        pins.extend(pin(reader, item, &here));
+        pins.extend(pins::pin(reader, item, &here));
     }
     if values.flag("fixed") {
         let everything = PinBlueprint { select: Selector::All, axes: [true; D], motion: Vec::new() };
@@ -290,26 +290,6 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
             None
         }
     }
-}
-
-/// Which axes the letters name; all where there are none.
-pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
-    let Some(letters) = values.text("axes") else { return [true; D] };
-    if D == 2 && letters.contains('z') {
-        let error =
-            SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
-        reader.report(place_of(node, "axes"), error.allowed("one of \"x\", \"y\", \"xy\"").hint("there is no z in 2D"));
-    }
-    core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
-}
-
-fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(PinBlueprint<D>, Place, String)> {
-    let values = reader.fields(node, path, &schema::PIN, None);
-    let axes = axes(reader, node, path, &values);
-    node.get("select")?;
-    let select = selectors::of(reader, node, path)?;
-    let motion = values.rows("motion").to_vec();
-    Some((PinBlueprint { select, axes, motion }, place_of(node, "select"), join(path, "select")))
 }
 
 /// The same name twice: both places are named.
@@ -448,5 +428,6 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     for (pin, place, path) in &draft.pins {
         selectors::check(reader, *place, path, &pin.select, &body);
     }
+    pins::conflicts(reader, &draft.pins, &body);
     Some(body)
 }

@@ -9,6 +9,7 @@ mod bodies;
 mod copies;
 mod cost;
 mod parameters;
+mod pins;
 mod plain;
 mod reader;
 mod references;

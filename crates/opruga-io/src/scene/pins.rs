@@ -1,0 +1,92 @@
+//! `pin` of a body: nodes that are held, and pins that want the same node in two places.
+
+use super::reader::{Reader, join};
+use super::{place_of, selectors};
+use crate::document::{Node, Place};
+use crate::problem::SceneError;
+use opruga_core::spec::Values;
+use opruga_core::system::along_path;
+use opruga_world::blueprint::{BodyBlueprint, PinBlueprint};
+use opruga_world::schema;
+use opruga_world::selection::extent;
+use std::collections::BTreeMap;
+
+/// A pin with the place of its selector in the file and its path.
+pub(crate) type Placed<const D: usize> = (PinBlueprint<D>, Place, String);
+
+/// Which axes the letters name; all where there are none.
+pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
+    let Some(letters) = values.text("axes") else { return [true; D] };
+    if D == 2 && letters.contains('z') {
+        let error =
+            SceneError::new("scene.range", format!("`axes` is \"{letters}\"")).path(join(path, "axes")).value(letters);
+        reader.report(place_of(node, "axes"), error.allowed("one of \"x\", \"y\", \"xy\"").hint("there is no z in 2D"));
+    }
+    core::array::from_fn(|a| letters.contains(['x', 'y', 'z'][a]))
+}
+
+/// Reads a pin.
+pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Placed<D>> {
+    let values = reader.fields(node, path, &schema::PIN, None);
+    let axes = axes(reader, node, path, &values);
+    node.get("select")?;
+    let select = selectors::of(reader, node, path)?;
+    let motion = values.rows("motion").to_vec();
+    Some((PinBlueprint { select, axes, motion }, place_of(node, "select"), join(path, "select")))
+}
+
+/// Reports pins that hold a node along the same axis and lead it to different places: both are named, once for each pair.
+pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Placed<D>], body: &BodyBlueprint<D>) {
+    // Pins that all stand still hold a node where it is, however many they are.
+    if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {
+        return;
+    }
+    let (low, high) = extent(&body.mesh);
+    let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+    let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    let mut told: Vec<[usize; 2]> = Vec::new();
+    for (number, (pin, place, path)) in pins.iter().enumerate() {
+        for node in pin.select.resolve(&body.mesh, &body.translation) {
+            let others = holders.entry(node).or_default();
+            for &other in others.iter() {
+                let (first, at, first_path) = &pins[other];
+                if told.contains(&[other, number]) {
+                    continue;
+                }
+                let Some((time, axis)) = parted(first, pin, size) else { continue };
+                told.push([other, number]);
+                let line = match at {
+                    Place::Bytes(start, _) => format!(" in line {}", reader.source.position(*start).0),
+                    Place::Override(_) => String::new(),
+                };
+                let message = format!(
+                    "node {node} of body `{}` is held by `{first_path}`{line} too, which leads it elsewhere along {} at t = {time} s",
+                    body.name,
+                    ["x", "y", "z"][axis],
+                );
+                let error = SceneError::new("scene.conflict", message).path(path.as_str());
+                let error = error.allowed("one motion for every node along every axis");
+                reader.report(
+                    *place,
+                    error.hint("let the selectors have no nodes in common, or the pins different `axes`"),
+                );
+            }
+            others.push(number);
+        }
+    }
+}
+
+/// The first time [s] at which two pins want a node of a body of a size [m] in different places along an axis that both hold, and the
+/// axis.
+fn parted<const D: usize>(a: &PinBlueprint<D>, b: &PinBlueprint<D>, size: f64) -> Option<(f64, usize)> {
+    let mut times: Vec<f64> = a.motion.iter().chain(&b.motion).map(|row| row[0]).collect();
+    times.sort_by(f64::total_cmp);
+    let shared = |axis: &usize| a.axes[*axis] && b.axes[*axis];
+    times.into_iter().find_map(|time| {
+        let (p, q) = (along_path::<D>(&a.motion, time).0, along_path::<D>(&b.motion, time).0);
+        // The same motion in other rows, and what is zero by symmetry, differ by rounding.
+        let apart =
+            |axis: &usize| (p[*axis] - q[*axis]).abs() > 1e-9 * (p[*axis].abs() + q[*axis].abs()) + 1e-12 * size;
+        (0..D).filter(shared).find(apart).map(|axis| (time, axis))
+    })
+}
