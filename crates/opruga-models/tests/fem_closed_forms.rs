@@ -2,12 +2,12 @@
 
 mod support;
 
-use opruga_core::potential::{CellState, Potential};
-use opruga_core::spec::Values;
+use opruga_core::potential::{CellState, Model, Potential};
+use opruga_core::spec::{Value, Values};
 use opruga_core::system::{Stage, System};
 use opruga_mesh::Mesh;
-use opruga_models::fem::FemModel as Fem;
 use opruga_models::fem::materials::NAMES;
+use opruga_models::fem::{FemModel as Fem, SPEC};
 use support::{eigenvalues_below, forces, hessian, newton, refusal, system};
 
 fn irregular<const D: usize>(cells: [u32; D]) -> Mesh<D> {
@@ -30,7 +30,7 @@ fn kinds<const D: usize>(boxes: Mesh<D>) -> [(&'static str, Mesh<D>); 3] {
 
 fn solid<const D: usize>(mesh: &Mesh<D>, values: Values) -> System<D>
 where
-    Fem: opruga_core::potential::Model<D>,
+    Fem: Model<D>,
 {
     system(mesh, &[(&Fem, values)])
 }
@@ -194,27 +194,30 @@ fn affine_motion_of_an_irregular_patch_is_exact_in_space() {
     patch([2, 2, 2]);
 }
 
-/// A unit cube pulled along x between slippery plates: lateral stretch and first Piola–Kirchhoff stress.
-fn uniaxial(mesh: &Mesh<3>, values: Values, stretch: f64) -> (f64, f64, CellState) {
+/// A unit cube, or a thin unit plate, pulled along x between slippery plates: lateral stretch and first Piola–Kirchhoff stress.
+fn uniaxial<const D: usize>(mesh: &Mesh<D>, values: Values, stretch: f64) -> (f64, f64, CellState)
+where
+    Fem: Model<D>,
+{
     let mut system = solid(mesh, values);
     let side = 1.0 / stretch.sqrt();
-    move_all(&mut system, |x| [stretch * x[0], side * x[1], side * x[2]]);
+    move_all(&mut system, |x| core::array::from_fn(|d| if d == 0 { stretch * x[0] } else { side * x[d] }));
     let mut held = Vec::new();
     for (node, x) in mesh.positions.iter().enumerate() {
-        for d in 0..3 {
+        for d in 0..D {
             if x[d] == 0.0 || (d == 0 && x[d] == 1.0) {
-                held.push(node * 3 + d);
+                held.push(node * D + d);
             }
         }
     }
-    let residual = newton(&mut system, &vec![0.0; mesh.positions.len() * 3], &held, 0.0);
+    let residual = newton(&mut system, &vec![0.0; mesh.positions.len() * D], &held, 0.0);
     assert!(residual < 1e-6, "{residual:e}");
     let all = forces(&mut system);
-    let pull: f64 = mesh.positions.iter().enumerate().filter(|(_, x)| x[0] == 1.0).map(|(n, _)| -all[3 * n]).sum();
-    let corner = mesh.positions.iter().position(|x| *x == [1.0; 3]).unwrap();
+    let pull: f64 = mesh.positions.iter().enumerate().filter(|(_, x)| x[0] == 1.0).map(|(n, _)| -all[D * n]).sum();
+    let corner = mesh.positions.iter().position(|x| *x == [1.0; D]).unwrap();
     let lateral = system.state.x.at(corner)[1];
     let view = system.view(Stage::Current, 0.0);
-    let potential: &dyn Potential<3> = &*system.members[0].potential;
+    let potential: &dyn Potential<D> = &*system.members[0].potential;
     let state = potential.cell_states(&view, 0)[0];
     (lateral, pull, state)
 }
@@ -243,22 +246,36 @@ const ST_VENANT_KIRCHHOFF: &[Row] = &[(0.8, 1.077961, -14_400.0), (1.2, 0.895545
 fn uniaxial_stress_follows_the_laws() {
     let boxes = Mesh::<3>::grid([0.0; 3], [1.0; 3], [1, 1, 1]).unwrap();
     for (kind, mesh) in kinds(boxes) {
-        for (material, rows) in [
-            ("neo_hookean", NEO_HOOKEAN),
-            ("stable_neo_hookean", STABLE_NEO_HOOKEAN),
-            ("st_venant_kirchhoff", ST_VENANT_KIRCHHOFF),
-        ] {
-            for &(stretch, lateral, stress) in rows {
-                let values = values!(fem, material: material, youngs_modulus: 1e5, poissons_ratio: 0.45);
-                let (side, pull, state) = uniaxial(&mesh, values, stretch);
-                assert!((side - lateral).abs() < 1e-6, "{material}, {kind}, {stretch}: {side} {lateral}");
-                assert!((pull - stress).abs() < 6e-3, "{material}, {kind}, {stretch}: {pull} {stress}");
-                // The Cauchy stress is the force over the present area, and along x alone.
-                let cauchy = pull / (side * side);
-                assert!((state.stress[0][0] / cauchy - 1.0).abs() < 1e-9, "{state:?} {cauchy}");
-                assert!((state.von_mises() / cauchy.abs() - 1.0).abs() < 1e-9 && state.stress[1][1].abs() < 1e-4);
-                assert!((state.volume_ratio - stretch * side * side).abs() < 1e-9);
-            }
+        uniaxial_table(kind, &mesh, &|values| values);
+    }
+    // A plate that is free to become thin has the stress, the volume and the stretch of a body in space.
+    for (kind, mesh) in kinds(Mesh::<2>::grid([0.0; 2], [1.0; 2], [1, 1]).unwrap()) {
+        uniaxial_table(kind, &mesh, &|mut values| {
+            values.set(&SPEC, "plane", Value::Text("stress".into()), 2).unwrap();
+            values
+        });
+    }
+}
+
+fn uniaxial_table<const D: usize>(kind: &str, mesh: &Mesh<D>, finish: &dyn Fn(Values) -> Values)
+where
+    Fem: Model<D>,
+{
+    for (material, rows) in [
+        ("neo_hookean", NEO_HOOKEAN),
+        ("stable_neo_hookean", STABLE_NEO_HOOKEAN),
+        ("st_venant_kirchhoff", ST_VENANT_KIRCHHOFF),
+    ] {
+        for &(stretch, lateral, stress) in rows {
+            let values = values!(fem, material: material, youngs_modulus: 1e5, poissons_ratio: 0.45);
+            let (side, pull, state) = uniaxial(mesh, finish(values), stretch);
+            assert!((side - lateral).abs() < 1e-6, "{material}, {kind}, {stretch}: {side} {lateral}");
+            assert!((pull - stress).abs() < 6e-3, "{material}, {kind}, {stretch}: {pull} {stress}");
+            // The Cauchy stress is the force over the present area, and along x alone.
+            let cauchy = pull / (side * side);
+            assert!((state.stress[0][0] / cauchy - 1.0).abs() < 1e-9, "{state:?} {cauchy}");
+            assert!((state.von_mises() / cauchy.abs() - 1.0).abs() < 1e-9 && state.stress[1][1].abs() < 1e-4);
+            assert!((state.volume_ratio - stretch * side * side).abs() < 1e-9);
         }
     }
 }

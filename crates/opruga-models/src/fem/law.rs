@@ -32,6 +32,10 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     /// Tangents without negative eigenvalues in the frame of the singular vectors ([`PRINCIPAL`] · D² packs per pack of points);
     /// whether the law has them.
     fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool;
+    /// Writes the stretch across the plane that the law finds at every point (a pack per pack of points); whether it finds one.
+    fn thickness(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
+        false
+    }
     /// Whether it knows of rotations.
     fn turns(&self) -> bool;
     /// Whether its energy at rest is a difference of parts as large as the moduli.

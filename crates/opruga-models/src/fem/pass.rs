@@ -247,6 +247,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
+        let mut across = Room([1.0; MOST_PACKS * WIDTH]);
         for group in section.groups(share, 1) {
             self.deform(&group, positions, Pressures::default());
             let points = self.points(&group);
@@ -257,6 +258,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 3
             } else {
                 section.law.stress(simd, points, &mut density.0, &mut stress.0);
+                // Forces of plane stress go by the rest, Cauchy's stress by the plate as thick as it has become.
+                section.law.thickness(simd, points, &mut across.0);
                 D
             };
             for l in 0..WIDTH {
@@ -267,7 +270,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     let weight = section.measure(group.first, q, l);
                     let f = |i: usize, j: usize| match (i < D, j < D) {
                         (true, true) => self.gradient.0[(q * D * D + i * D + j) * WIDTH + l],
-                        _ => f64::from(i32::from(i == j)),
+                        _ if i == j => across.0[q * WIDTH + l],
+                        _ => 0.0,
                     };
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);

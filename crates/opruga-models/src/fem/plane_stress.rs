@@ -93,6 +93,14 @@ impl Law<2> for PlaneStress {
         self.0.tangent(simd, now, Definiteness::Exact, &mut space.tangent.0);
         simd.run(Condense { count: points.count, keep, space: &space.tangent.0, tangent });
     }
+    fn thickness(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool {
+        let mut space = Space::new();
+        self.solve(simd, points, &mut space);
+        for point in 0..points.count {
+            out[point * WIDTH..][..WIDTH].copy_from_slice(&space.gradient.0[(point * 9 + 8) * WIDTH..][..WIDTH]);
+        }
+        true
+    }
     /// The condensed tangent has other eigenvectors.
     fn principal(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
