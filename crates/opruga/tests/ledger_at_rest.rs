@@ -2,7 +2,7 @@
 
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::{Files, scene};
-use opruga::{Options, World, catalogue};
+use opruga::{Energy, Options, World, catalogue};
 
 /// Bodies of springs without gravity and obstacles, at rest in their shapes, one of them far from the origin.
 const BODIES: [&str; 2] = [
@@ -153,4 +153,54 @@ fn the_scene_that_times_spot_has_a_closed_ledger() {
     (0..240).for_each(|_| world.frame().expect("a frame"));
     let warnings = world.warnings();
     assert!(warnings.is_empty(), "{warnings:?}, closure {}", world.energy().closure);
+}
+
+/// Statics: hands that lead pins do the work of the springs and no more, whatever the body weighs and however fast they go, and what a
+/// gas is given by heat, by its ramp, or taken by a leak is not counted as theirs.
+#[test]
+fn balances_that_are_led_have_a_closed_ledger() {
+    let chain = |mass: f64| {
+        format!(
+            "shape = {{ kind = \"line\", from = [0.0, 0.0], to = [1.0, 0.0], segments = 4 }}\nmass = {mass:?}\n\
+             models = [{{ kind = \"mass_spring\", stiffness = 100.0 }}]\n\
+             pin = [{{ select = {{ node = 0 }}, axes = \"xy\" }}, {{ select = {{ all = true }}, axes = \"y\" }}, \
+             {{ select = {{ node = 4 }}, motion = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0]] }}]"
+        )
+    };
+    let ring = |gas: &str| {
+        format!(
+            "shape = {{ kind = \"ring\", radius = 0.5, vertices = 24 }}\nmass = 1.0\n\
+             models = [{{ kind = \"mass_spring\", stiffness = 1000.0 }}, {{ kind = \"pressure\", nRT = 100.0, {gas} }}]\n\
+             pin = [{{ select = {{ node = 0 }}, axes = \"xy\" }}, {{ select = {{ node = 12 }}, axes = \"y\" }}]"
+        )
+    };
+    // Four springs in a row that are drawn out by half a metre: ½ · 25 N/m · 0.25 m².
+    for mass in [1.0, 1e5] {
+        let ([_, energy], closure) = led(&chain(mass));
+        assert!((energy.work_user - 3.125).abs() < 1e-9 && closure < 1e-9, "{mass} kg: {energy:?}");
+    }
+    for gas in ["temperature = [[0.0, 1.0], [1.0, 1.5]]", "ramp = 0.5", "leak = 0.5"] {
+        let ([first, energy], closure) = led(&ring(gas));
+        println!("{gas}: {first:?} {energy:?}");
+        let given = energy.work_gas - first.work_gas;
+        assert!(given.abs() > 1.0 && closure < 1e-9, "{gas}: {closure:e} {energy:?}");
+        // Nobody leads this ring once it has come to its first balance, but for what is left of small steps.
+        let led = energy.work_user - first.work_user;
+        assert!(led.abs() < 0.2 * given.abs(), "{gas}: {led} J of {given} J");
+    }
+}
+
+/// The energy of a body after its first balance and after a second of them, and its closure then.
+fn led(body: &str) -> ([Energy; 2], f64) {
+    let text = scene("equilibrium", 1, body).replace("[time]\n", "[time]\nframe = 0.1\n");
+    let blueprint = match scene::read(text.as_bytes(), "test.toml", &catalogue(), &scene::Options::default()) {
+        Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint,
+        Ok(_) => panic!("a scene of the plane"),
+        Err(errors) => panic!("{text}\n{}", errors[0]),
+    };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    world.frame().expect("a frame");
+    let first = world.energy();
+    (1..10).for_each(|_| world.frame().expect("a frame"));
+    ([first, world.energy()], world.energy().closure)
 }

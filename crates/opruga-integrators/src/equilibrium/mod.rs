@@ -228,6 +228,7 @@ impl Equilibrium {
     }
 
     fn attempt<const D: usize>(&self, system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<(), StepError> {
+        let begun = system.work;
         system.begin_implicit();
         let moving = system.kinetic_energy();
         // Statics knows no velocities.
@@ -273,16 +274,8 @@ impl Equilibrium {
             times += 1;
         }
         room.u1.copy_from_slice(&room.u);
-        // The work of loads and pins by the mean of their forces at both ends, and of the hand that leads the body there.
-        for (v, u) in room.v1.iter_mut().zip(&room.u) {
-            *v = u / h;
-        }
-        let before_load = system.history.numbers[LOAD];
-        self.enter_work(system, room, h, [before_load, load])?;
-        system.evaluate(Stage::Current, h, 0.0, &mut room.force)?;
-        let after = system.stored_energy(Stage::Current, h);
-        let given: f64 = system.work.user.iter().sum::<f64>() - room.work_before;
-        system.work.user[0] += after - before - given;
+        room.v1.fill(0.0);
+        commit(system, room);
         if self.arc_length.is_some() {
             for d in 0..D {
                 for node in 0..system.nodes {
@@ -296,30 +289,13 @@ impl Equilibrium {
         for column in &mut system.state.v.0 {
             column.fill(0.0);
         }
-        Ok(())
-    }
-
-    /// Moves the system to the end, entering what loads and pins do on the way, with the parts of the load that are on at
-    /// both ends; velocities are zero then.
-    fn enter_work<const D: usize>(
-        &self,
-        system: &mut System<D>,
-        room: &mut Room<D>,
-        h: f64,
-        loads: [f64; 2],
-    ) -> Result<(), StepError> {
-        let damping = system.work.damping;
-        room.work_before = system.work.user.iter().sum();
-        let moving = room.u1.clone();
-        room.u1.fill(0.0);
-        commit(system, room);
-        system.evaluate(Stage::Current, 0.0, 0.5 * h * loads[0], &mut room.force)?;
-        room.u1.copy_from_slice(&moving);
-        commit(system, room);
-        system.evaluate(Stage::Current, h, 0.5 * h * loads[1], &mut room.force)?;
-        system.work.damping = damping;
-        room.v1.fill(0.0);
-        commit(system, room);
+        // The hand that leads the body from balance to balance does what its energy changes by, but for what a gas is given: loads,
+        // pins and whatever slows the way down are all in it. Nothing moves, so pins give and take no motion.
+        system.evaluate(Stage::Current, 0.0, 0.0, &mut room.force)?;
+        let after = system.stored_energy(Stage::Current, 0.0);
+        let given: f64 = system.work.gas.iter().sum::<f64>() - begun.gas.iter().sum::<f64>();
+        (system.work.user, system.work.damping) = (begun.user, begun.damping);
+        system.work.user[0] += after - before - given;
         Ok(())
     }
 }

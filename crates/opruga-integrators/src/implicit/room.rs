@@ -65,8 +65,6 @@ pub(crate) struct Room<const D: usize> {
     pub(crate) mixing: Mixing,
     /// The same for the forces that friction goes by, within a direction.
     pub(crate) friction: Mixing,
-    /// Work from outside before the step [J].
-    pub(crate) work_before: f64,
     /// The largest extent of the body [m].
     pub(crate) extent: f64,
 }
@@ -104,7 +102,6 @@ impl<const D: usize> Default for Room<D> {
             contacting: Contacting::default(),
             mixing: Mixing::default(),
             friction: Mixing::default(),
-            work_before: 0.0,
             extent: 1.0,
         }
     }
