@@ -6,8 +6,9 @@
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
+use super::line_search::potential;
 use super::linear::{Filter, Mixture};
-use super::newton::{Balance, Solved, evaluate, judge, look, wanted_forces};
+use super::newton::{self, Balance, Solved, evaluate, judge, look, wanted_forces};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
@@ -34,6 +35,12 @@ const NOTHING: f64 = 1e-9;
 
 /// Products with the matrix in an iteration at most.
 const PRODUCTS: u32 = 1000;
+
+/// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
+const RISE: f64 = 1e-6;
+
+/// How many iterations steps get that few led astray.
+const MOST_ITERATIONS: u32 = 50;
 
 /// Iterations that take more products than this are counted as cut off: a body on which news travels so slowly is ill-conditioned,
 /// and the residual, in which stiff motions count most, says little of the slow ones, such as the bending of a slender body.
@@ -221,12 +228,81 @@ impl Task<'_> {
 }
 
 /// Looks for the stage from the displacement in `room.u` on; forces and residual belong to what is found.
+///
+/// What few iterations lead to counts only where it makes no energy. What they leave of a body in the air pushes and turns it, and what
+/// they leave of one on an obstacle is taken for an impulse of that: where this is more than a thousandth, or than promised without
+/// contact, the step is solved by Newton's method with its line search, and made in two halves where that does not converge. So is
+/// one whose incremental potential is above that of a body that stays where it is; looked at are bodies in the air, and others whose
+/// matrix was made anew on the way or that are left farther out of balance than promised.
 pub(crate) fn solve<const D: usize>(
     system: &mut System<D>,
     room: &mut Room<D>,
     balance: &Balance,
     settings: &Settings,
 ) -> Result<Solved, StepError> {
+    let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
+    let outcome = iterate(system, room, balance, settings);
+    let spent = match &outcome {
+        Ok((solved, Trust::Whole)) => return Ok(*solved),
+        Ok((solved, Trust::IfDownhill)) if !has_risen(system, room, balance)? => return Ok(*solved),
+        Ok((solved, _)) => *solved,
+        // A law that has no meaning where the iteration led to.
+        Err(StepError::Model { .. }) => Solved::default(),
+        Err(_) => return outcome.map(|(solved, _)| solved),
+    };
+    (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
+    let kind = &mut system.history.numbers[room.own.numbers];
+    *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
+    room.contacting.clear(system.nodes);
+    for k in 0..room.u.len() {
+        room.u[k] = if room.held[k].is_nan() { balance.theta * balance.h * room.v0[k] } else { room.held[k] };
+    }
+    let settings = Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings };
+    let mut solved = newton::solve(system, room, balance, &settings)?;
+    solved.iterations += spent.iterations;
+    solved.products += spent.products;
+    Ok(solved)
+}
+
+/// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
+/// counts as above. Where forces have no potential, or it cannot be told, speeds alone say that it has not.
+fn has_risen<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<bool, StepError> {
+    let Some((after, size)) = potential(system, room, balance, false) else {
+        return Ok(!room.u.iter().all(|u| u.is_finite()));
+    };
+    if !after.is_finite() {
+        return Ok(true);
+    }
+    for k in 0..room.u.len() {
+        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+    }
+    // A body that stood where its law has no meaning has nothing to compare with.
+    let before = match evaluate(system, room, balance, true) {
+        Ok(()) => potential(system, room, balance, true),
+        Err(_) => None,
+    };
+    evaluate(system, room, balance, false)?;
+    Ok(before.is_some_and(|(before, parts)| after - before > RISE * (size + parts)))
+}
+
+/// Whether what few iterations lead to may count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Trust {
+    /// It does.
+    Whole,
+    /// It does unless the incremental potential has risen.
+    IfDownhill,
+    /// It does not.
+    None,
+}
+
+/// Three iterations, or as many as the scene says, and whether what they leave may count.
+fn iterate<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Result<(Solved, Trust), StepError> {
     let direct = match room.direct {
         Some((solver, direct)) if solver == settings.solver => direct,
         _ => settings.solver.is_direct_in_real_time(system),
@@ -241,7 +317,7 @@ pub(crate) fn solve<const D: usize>(
     if fresh {
         task.make_here(system, room, CLAMPED);
     }
-    let (mut first, mut undecided, mut slow) = (0.0, false, false);
+    let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
     loop {
         let last = solved.iterations == settings.iterations;
         // Which nodes are held, and how far they have to go.
@@ -270,10 +346,19 @@ pub(crate) fn solve<const D: usize>(
                 work.cut_off += 1;
                 work.left = left.larger(work.left);
             }
-            return Ok(solved);
+            let trust = match (is_loose(system), as_promised) {
+                // Written so that what is no number is not near.
+                (true, _) if size <= (LOOSE * first).larger(floor) => Trust::Whole,
+                (true, false) => Trust::None,
+                (true, true) if room.contacting.any() => Trust::None,
+                (false, true) if !remade => Trust::Whole,
+                _ => Trust::IfDownhill,
+            };
+            return Ok((solved, trust));
         }
         if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {
             // The matrix of another shape does not lead there.
+            remade = true;
             task.make_here(system, room, CLAMPED);
             size = task.out_of_balance(system, room, moves).unwrap_or(f64::NAN);
         }
@@ -286,7 +371,7 @@ pub(crate) fn solve<const D: usize>(
         slow |= products > MANY_PRODUCTS;
         if !found {
             solved.converged = false;
-            return Ok(solved);
+            return Ok((solved, Trust::None));
         }
         go(system, room, &task, moves, &mut solved)?;
         undecided = false;

@@ -133,7 +133,9 @@ fn advance_in<R: Rule<D>, const D: usize>(
         let solver = system.work.solver;
         system.work = work;
         system.work.solver = solver;
-        if settings.otherwise == Otherwise::Halve && halvings < MOST_HALVINGS {
+        // In real time nobody waits for another setting.
+        let halves = settings.otherwise == Otherwise::Halve || settings.real_time;
+        if halves && halvings < MOST_HALVINGS {
             system.work.solver.halved += 1;
             advance_in(rule, settings, system, room, 0.5 * h, halvings + 1)?;
             return advance_in(rule, settings, system, room, 0.5 * h, halvings + 1);
