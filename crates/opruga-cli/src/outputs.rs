@@ -159,9 +159,13 @@ impl Outputs<'_> {
         let png = strip.to_png().map_err(draw_failed)?;
         self.folder.write("strip.png", false, |out| out.write_all(&png))?;
         files.push("strip.png".into());
-        if !self.stop.load(Ordering::Relaxed) {
-            files.push(self.video(scenery, recorder, &film, dimension)?);
+        if self.stop.load(Ordering::Relaxed) {
+            eprintln!(
+                "note: no video, since the run was interrupted; `opruga run --resume` goes on from the checkpoint"
+            );
+            return Ok(());
         }
+        files.push(self.video(scenery, recorder, &film, dimension)?);
         Ok(())
     }
 
@@ -213,7 +217,7 @@ impl Outputs<'_> {
 
     /// What was odd: in the call, in the scene, on the way, in the world.
     fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
-        let of_world = world.warnings().into_iter();
+        let of_world = world.warnings().into_iter().chain(world.inverted_cells());
         let of_world = of_world.map(|w| WarningSummary { code: w.code, message: w.message, count: w.count });
         self.told.iter().cloned().chain(of_world).collect()
     }
@@ -240,7 +244,8 @@ impl Outputs<'_> {
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
             rounded(e.closure, 2),
         );
-        world.warnings().iter().filter(|warning| !early.contains(warning)).for_each(crate::run::tell);
+        let warnings = world.warnings().into_iter().chain(world.inverted_cells());
+        warnings.filter(|warning| !early.contains(warning)).for_each(|warning| crate::run::tell(&warning));
         self.say_where();
     }
 

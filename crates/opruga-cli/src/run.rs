@@ -271,7 +271,7 @@ fn progress_bar(frames: u64) -> indicatif::ProgressBar {
     if !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
-    let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {msg}, {eta} left");
+    let style = indicatif::ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {msg}, {eta} left");
     indicatif::ProgressBar::new(frames)
         .with_message("t = 0 s")
         .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))

@@ -223,19 +223,26 @@ fn a_reader_that_goes_away_is_no_failure() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_closes_its_files_and_says_so() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let child = Command::new(env!("CARGO_BIN_EXE_opruga"))
-        .args(["run", "thousand-balls", "--seconds", "1000", "--out", "o", "--no-pictures"])
-        .current_dir(folder.path())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    std::thread::sleep(std::time::Duration::from_millis(1500));
-    let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-    for file in ["summary.json", "final.csv", "diagnostics.csv", "checkpoint"] {
-        assert!(folder.path().join("o").join(file).metadata().is_ok_and(|m| m.len() > 0), "{file}");
+    for (scene, more) in [("thousand-balls", &["--no-pictures"][..]), ("ball", &[])] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let child = Command::new(env!("CARGO_BIN_EXE_opruga"))
+            .args(["run", scene, "--seconds", "100000", "--out", "o"])
+            .args(more)
+            .current_dir(folder.path())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        let there = |file: &str| folder.path().join("o").join(file).metadata().is_ok_and(|m| m.len() > 0);
+        for file in ["summary.json", "final.csv", "diagnostics.csv", "checkpoint"] {
+            assert!(there(file), "{scene}: {file}");
+        }
+        let pictured = more.is_empty();
+        assert_eq!((there("strip.png"), there("video.mp4")), (pictured, false), "{scene}");
+        assert_eq!(said(&output).contains("no video, since the run was interrupted"), pictured, "{}", said(&output));
     }
 }
 

@@ -21,11 +21,21 @@ impl BuildError {
     }
 }
 
+/// What a body that diverges leaves: the finite numbers, or the range of its positions [m].
+pub fn what_was_left(range: Option<f64>) -> String {
+    match range {
+        None => "the finite numbers".into(),
+        Some(range) => {
+            format!("the range in which rounding is small beside its elements, {} m about the origin", number(range))
+        }
+    }
+}
+
 /// Why a substep could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
-    /// A position or velocity is not finite any more.
-    #[error("node {node} of body {body} left the finite numbers at t = {} s", number(*time))]
+    /// A position or velocity is not finite any more, or a position is so far from the origin that it is mostly rounding.
+    #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
     Diverged {
         /// The body, by its place in the island.
         body: usize,
@@ -33,6 +43,8 @@ pub enum StepError {
         node: u32,
         /// The time at the start of the substep [s].
         time: f64,
+        /// How far from the origin along an axis positions keep their digits [m], where the node went beyond that.
+        range: Option<f64>,
     },
     /// An implicit rule has not found the end of the step.
     #[error(

@@ -4,6 +4,7 @@ use crate::document::{self, Data, Entry, Node, Place};
 use crate::overrides;
 use crate::problem::SceneError;
 use crate::source::Source;
+use opruga_core::error::what_was_left;
 use opruga_math::words::number;
 use opruga_world::schema::MOST_SUBSTEPS;
 use opruga_world::{Warning, WorldError};
@@ -32,12 +33,17 @@ impl From<&WorldError> for SceneError {
                         ),
                     })
             }
-            WorldError::Diverged { body, node, time, last } => say(format!(
-                "body `{body}` diverged: node {node} left the finite numbers in the substep from t = {} s",
+            WorldError::Diverged { body, node, time, last, range } => say(format!(
+                "body `{body}` diverged: node {node} left {} in the substep from t = {} s",
+                what_was_left(*range),
                 number(*time)
             ))
             .value(time.to_string())
-            .hint(format!("the output ends with the last good frame, t = {} s; more substeps may help", number(*last))),
+            .hint(format!(
+                "the output ends with the last good frame, t = {} s; more substeps may help{}",
+                number(*last),
+                if range.is_some() { ", and `world.largest_distance` takes away what falls for ever" } else { "" }
+            )),
             WorldError::NotConverged { body, message, hint } => {
                 let said = split(say(format!("body `{body}`: {message}")));
                 let message = format!("{}; the world is at its last good frame", said.message);
@@ -72,6 +78,8 @@ fn path_of(error: &WorldError) -> String {
     };
     match error {
         WorldError::Build { place, source } => match body(place) {
+            // Where a body lies and how it is stepped is no matter of one model.
+            Some(body) if ["position", "stability"].contains(&source.kind.as_str()) => body,
             Some(body) => format!("{body}.models.{}", source.kind),
             None if place == "collider" => {
                 let number = source.kind.split(' ').nth(1).unwrap_or("0");

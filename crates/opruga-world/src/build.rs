@@ -5,6 +5,7 @@ use crate::carried::{BodyHistory, BodyState};
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::loads::{FollowerPressure, NodeForces};
+use crate::plausible;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
@@ -175,6 +176,11 @@ impl<const D: usize> Builder<'_, D> {
         let first = blueprints[0];
         let nodes = first.mesh.positions.len();
         let places = layout.places(nodes);
+        let range = plausible::range(&first.mesh);
+        for (body, state) in blueprints.iter().zip(states) {
+            plausible::check_range(&state.x, range)
+                .map_err(|source| WorldError::Build { place: format!("body `{}`", body.name), source })?;
+        }
         let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
         let masses: Vec<Vec<f64>> = blueprints.iter().map(|b| node_masses(b)).collect();
         // Unused lanes repeat the first body.
@@ -255,7 +261,7 @@ impl<const D: usize> Builder<'_, D> {
             state.history.restore(&mut system, l);
         }
         integrator.check(&system, !self.blueprint.colliders.is_empty()).map_err(refuse)?;
-        Ok(Island::new(system, integrator, bodies.to_vec()))
+        Ok(Island::new(system, integrator, bodies.to_vec(), range))
     }
 
     /// Refuses cells that two models of finite elements share, and cells that none has though models name groups.

@@ -1,17 +1,21 @@
 //! What is done to bodies while they move: drag, push, pin, free, set, add, remove.
 
-use crate::blueprint::{Action, CommandBlueprint, Selector};
+use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Selector};
 use crate::changes::Source;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
+use crate::selection::extent;
 use crate::world::World;
 use opruga_core::state::View;
-use opruga_core::system::Pin;
+use opruga_core::system::{Pin, System};
 use opruga_math::words;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError, RwLock};
+
+/// Where a scene is silent, a pull is at most that of a spring stretched by so many sizes of the body.
+const FARTHEST_PULL: f64 = 10.0;
 
 /// How far a command has come.
 #[derive(Clone, Debug, PartialEq)]
@@ -263,20 +267,9 @@ impl<const D: usize> World<D> {
             let layout = system.layout;
             let place = |node: u32| layout.place(node as usize, lane);
             match action {
-                Action::Drag { stiffness, largest_force, .. } => {
-                    let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (place(*n), *s)).collect();
-                    let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
-                    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
-                    // Left to itself, the spring would swing the whole body twice a second.
-                    let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
-                    system.add(Box::new(Pull::<D> {
-                        held,
-                        path: Arc::clone(&running.path),
-                        stiffness,
-                        damping: 2.0 * (stiffness * mass).sqrt(),
-                        largest_force: largest_force.unwrap_or(f64::INFINITY),
-                        limited: Arc::clone(&self.limited_pulls),
-                    }));
+                Action::Drag { .. } => {
+                    let limited = Arc::clone(&self.limited_pulls);
+                    system.add(Box::new(pull_of(running, system, lane, &self.blueprint.bodies[bodies[lane]], limited)));
                 }
                 Action::Push { force, .. } => {
                     let mut entries: Vec<(usize, [f64; D])> = held.iter().map(|(n, _)| (place(*n), *force)).collect();
@@ -315,23 +308,13 @@ impl<const D: usize> World<D> {
     pub(crate) fn pulls_here(&self) -> Vec<([f64; D], [f64; D], [f64; D])> {
         let mut out = Vec::new();
         for running in &self.running {
-            let Progress::Acting { held, .. } = &running.progress else { continue };
-            let Action::Drag { body, stiffness, largest_force, .. } = &running.command.action else { continue };
+            let (Progress::Acting { .. }, Action::Drag { body, .. }) = (&running.progress, &running.command.action)
+            else {
+                continue;
+            };
             let (island, lane) = self.place[*body];
             let system = &self.islands[island].system;
-            let held: Vec<(usize, f64)> =
-                held.iter().map(|(n, s)| (system.layout.place(*n as usize, lane), *s)).collect();
-            let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
-            let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.place(n, lane))).sum();
-            let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
-            let pull = Pull::<D> {
-                held,
-                path: Arc::clone(&running.path),
-                stiffness,
-                damping: 2.0 * (stiffness * mass).sqrt(),
-                largest_force: largest_force.unwrap_or(f64::INFINITY),
-                limited: Arc::new(AtomicU64::new(0)),
-            };
+            let pull = pull_of(running, system, lane, &self.blueprint.bodies[*body], Arc::default());
             let view = View {
                 x: system.state.x.slices(),
                 v: system.state.v.slices(),
@@ -344,6 +327,42 @@ impl<const D: usize> World<D> {
             out.push((x, pointer, force));
         }
         out
+    }
+}
+
+/// The pull of a drag that acts on the body in a lane of a system.
+///
+/// Left to itself, its spring would swing the whole body twice a second. Where the scene is silent it pulls at most as it does
+/// stretched by [`FARTHEST_PULL`] sizes of the body at rest, wherever the pointer gets to.
+fn pull_of<const D: usize>(
+    running: &Running<D>,
+    system: &System<D>,
+    lane: usize,
+    body: &BodyBlueprint<D>,
+    limited: Arc<AtomicU64>,
+) -> Pull<D> {
+    let (held, stiffness, largest_force) = match (&running.progress, &running.command.action) {
+        (Progress::Acting { held, .. }, Action::Drag { stiffness, largest_force, .. }) => {
+            (held.as_slice(), *stiffness, *largest_force)
+        }
+        _ => (&[][..], None, None),
+    };
+    let layout = system.layout;
+    let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (layout.place(*n as usize, lane), *s)).collect();
+    let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
+    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
+    let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
+    let (low, high) = extent(&body.mesh);
+    let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+    // A point has no size to measure the pull by.
+    let farthest = if size > 0.0 { FARTHEST_PULL * size * stiffness } else { f64::INFINITY };
+    Pull {
+        held,
+        path: Arc::clone(&running.path),
+        stiffness,
+        damping: 2.0 * (stiffness * mass).sqrt(),
+        largest_force: largest_force.unwrap_or(farthest),
+        limited,
     }
 }
 

@@ -162,6 +162,10 @@ impl<const D: usize> World<D> {
         /// A body that is not there, or has none, says nothing.
         pub fn cell_states(&self, body: usize) -> Vec<CellState> = cell_states_here;
 
+        /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, which the rules of
+        /// motion allow; none where all are right side out. Looked for anew by every call.
+        pub fn inverted_cells(&self) -> Option<Warning> = inverted_cells_here;
+
         /// Warnings so far, with counts.
         pub fn warnings(&self) -> Vec<Warning> = warnings_here;
 

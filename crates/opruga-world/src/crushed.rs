@@ -4,6 +4,7 @@ use crate::selection::extent;
 use crate::world::{Warning, World};
 use opruga_core::contacts::Contacts as _;
 use opruga_math::words::number;
+use opruga_mesh::Measure;
 
 /// The code of the warning.
 const NO_ROOM: &str = "contact.no_room";
@@ -12,12 +13,25 @@ const NO_ROOM: &str = "contact.no_room";
 /// in a little.
 const DEEP: f64 = 1e-3;
 
+/// Obstacles whose outer normals are opposite to within this leave nothing between them where they touch: −cos of the angle.
+const OPPOSITE: f64 = 0.999;
+
 /// A step so short that obstacles hardly move in it [s].
 const INSTANT: f64 = 1e-9;
 
+/// The node of a body that lies deepest between two obstacles.
+struct Squeezed {
+    /// How deep in the first of them [m].
+    depth: f64,
+    node: u32,
+    inside: usize,
+    touched: usize,
+}
+
 impl<const D: usize> World<D> {
-    /// Warns of a body of which free nodes touch one obstacle and lie inside another, which happens where obstacles that are led
-    /// meet or pass one another: no place for the nodes is right then. Counted per frame and body.
+    /// Warns of a body of which free nodes touch one obstacle and lie inside another, or lie between two whose surfaces meet there,
+    /// which happens where obstacles that are led meet or pass one another: no place for the nodes is right then. Counted per frame
+    /// and body. What has no thickness, a sheet in space or a wire, may lie between surfaces that meet.
     ///
     /// Obstacles that stand still are looked at once, before the first frame. Nothing is allocated unless there is a warning.
     pub(crate) fn warn_of_crushed_bodies(&mut self) {
@@ -32,31 +46,36 @@ impl<const D: usize> World<D> {
             }
             let (low, high) = extent(&self.blueprint.bodies[body].mesh);
             let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
-            let mut worst: Option<(f64, u32, usize, usize)> = None;
+            let thick = match self.blueprint.bodies[body].mesh.measure() {
+                Ok(Measure::Volume(_)) => true,
+                Ok(Measure::Area(_)) => D == 2,
+                _ => !self.blueprint.bodies[body].mesh.facets.is_empty(),
+            };
+            let mut worst: Option<Squeezed> = None;
             for node in 0..self.node_count(body) as u32 {
                 let x = self.position(body, node);
-                let mut deepest: Option<(f64, usize)> = None;
-                let mut other: Option<usize> = None;
+                let mut deepest: Option<(f64, usize, [f64; D])> = None;
+                let mut other: Option<(f64, usize, [f64; D])> = None;
                 colliders.touch(&x, &x, time, INSTANT, DEEP * size, &mut |touch| {
-                    let collider = colliders.collider_of(touch.surface);
+                    let this = (touch.gap, colliders.collider_of(touch.surface), touch.normal);
                     match deepest {
-                        Some((gap, known)) if touch.gap >= gap => {
-                            if collider != known {
-                                other = Some(collider);
+                        Some((_, known, _)) if known == this.1 => {
+                            if this.0 < deepest.map_or(f64::INFINITY, |deepest| deepest.0) {
+                                deepest = Some(this);
                             }
                         }
-                        Some((_, known)) if collider != known => {
-                            (deepest, other) = (Some((touch.gap, collider)), Some(known))
-                        }
-                        _ => deepest = Some((touch.gap, collider)),
+                        Some((gap, ..)) if this.0 >= gap => other = Some(this),
+                        _ => (deepest, other) = (Some(this), deepest.or(other)),
                     }
                 });
-                let Some(((gap, inside), touched)) = deepest.zip(other) else { continue };
-                if gap < -DEEP * size && worst.is_none_or(|(most, ..)| -gap > most) {
-                    worst = Some((-gap, node, inside, touched));
+                let Some(((gap, inside, out), (room, touched, back))) = deepest.zip(other) else { continue };
+                let opposite = -(0..D).map(|d| out[d] * back[d]).sum::<f64>() > OPPOSITE;
+                let met = thick && opposite && gap + room <= DEEP * size;
+                if (gap < -DEEP * size || met) && worst.as_ref().is_none_or(|most| -gap > most.depth) {
+                    worst = Some(Squeezed { depth: -gap, node, inside, touched });
                 }
             }
-            let Some((depth, node, inside, touched)) = worst else { continue };
+            let Some(Squeezed { depth, node, inside, touched }) = worst else { continue };
             // What is held goes where it is led.
             if self.held_nodes(body).binary_search(&node).is_ok() {
                 continue;
@@ -65,14 +84,18 @@ impl<const D: usize> World<D> {
                 Some(warning) => warning.count += 1,
                 None => {
                     let kind = |collider: usize| self.blueprint.colliders[collider].values.kind();
+                    let where_it_lay = if depth > DEEP * size {
+                        format!("lay {} m inside the first", number(depth))
+                    } else {
+                        "lay where they meet".into()
+                    };
                     let message = format!(
-                        "at t = {} s obstacles {inside} ({}) and {touched} ({}) left body `{}` no room: node {node} lay {} m \
-                         inside the first, counted per frame and body; obstacles that are led must not meet",
+                        "at t = {} s obstacles {inside} ({}) and {touched} ({}) left body `{}` no room: node {node} {where_it_lay}, \
+                         counted per frame and body; obstacles that are led must not meet",
                         number(time),
                         kind(inside),
                         kind(touched),
                         self.blueprint.bodies[body].name,
-                        number(depth),
                     );
                     self.warnings.push(Warning { code: NO_ROOM.into(), message, count: 1 });
                 }

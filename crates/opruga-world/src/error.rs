@@ -1,7 +1,7 @@
 //! What can go wrong in a world.
 
 use crate::schema::MOST_SUBSTEPS;
-use opruga_core::error::BuildError;
+use opruga_core::error::{BuildError, what_was_left};
 use opruga_math::words::number;
 
 /// What would help where so many substeps would be stable.
@@ -49,10 +49,10 @@ pub enum WorldError {
         /// The least number of substeps of a frame that is stable; a frame may not have as many ([`MOST_SUBSTEPS`]).
         substeps: u32,
     },
-    /// The motion left the finite numbers.
+    /// The motion left the finite numbers, or the range in which positions have digits.
     #[error(
-        "body `{body}` diverged: node {node} in the substep from t = {} s; the world is at its last good frame, t = {} s",
-        number(*time), number(*last)
+        "body `{body}` diverged: node {node} left {} in the substep from t = {} s; the world is at its last good frame, t = {} s",
+        what_was_left(*range), number(*time), number(*last)
     )]
     Diverged {
         /// The body.
@@ -63,6 +63,8 @@ pub enum WorldError {
         time: f64,
         /// The time of the last good frame [s].
         last: f64,
+        /// How far from the origin positions of the body keep their digits [m], where the node went beyond that.
+        range: Option<f64>,
     },
     /// A model has no meaning in the state reached.
     #[error("body `{body}`: {message}; the world is at its last good frame")]

@@ -22,6 +22,8 @@ pub(crate) struct Island<const D: usize> {
     pub(crate) bodies: Vec<usize>,
     pub(crate) stock: Stock,
     pub(crate) survey: Survey<D>,
+    /// How far from the origin along an axis its positions keep their digits [m].
+    pub(crate) range: f64,
     pub(crate) work: Work8,
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
@@ -101,7 +103,8 @@ pub(crate) struct FramePlan<'a, const D: usize> {
 }
 
 impl<const D: usize> Island<D> {
-    pub(crate) fn new(system: System<D>, integrator: Arc<dyn Integrator<D>>, bodies: Vec<usize>) -> Self {
+    /// An island of bodies whose positions keep their digits within `range` of the origin [m].
+    pub(crate) fn new(system: System<D>, integrator: Arc<dyn Integrator<D>>, bodies: Vec<usize>, range: f64) -> Self {
         let survey = survey(&system);
         let mut island = Island {
             system,
@@ -110,6 +113,7 @@ impl<const D: usize> Island<D> {
             bodies,
             stock: Stock::default(),
             survey,
+            range,
             work: Work8::default(),
             outcome: Ok(()),
             last: None,
@@ -228,10 +232,13 @@ impl<const D: usize> Island<D> {
             }
         }
         let survey = survey(&self.system);
-        if survey.finite {
+        let [low, high] = &survey.position;
+        let far = (0..D).any(|d| low[d] < -self.range || high[d] > self.range);
+        if survey.finite && !far {
             return Ok(survey);
         }
-        Err(self.culprit(plan.start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: plan.start }))
+        let range = survey.finite.then_some(self.range);
+        Err(self.culprit(plan.start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: plan.start, range }))
     }
 
     /// Repeats the frame, looking at every substep.
@@ -250,15 +257,17 @@ impl<const D: usize> Island<D> {
         None
     }
 
-    /// The first node that is not finite.
+    /// The first node that is not finite, or beyond the range.
     fn culprit(&self, time: f64) -> Option<StepError> {
         let system = &self.system;
         for node in 0..system.nodes {
             for body in 0..system.bodies {
                 let place = system.layout.place(node, body);
                 let (x, v) = (system.state.x.at(place), system.state.v.at(place));
-                if x.iter().chain(&v).any(|c| !c.is_finite()) {
-                    return Some(StepError::Diverged { body, node: node as u32, time });
+                let finite = x.iter().chain(&v).all(|c| c.is_finite());
+                if !finite || x.iter().any(|c| c.abs() > self.range) {
+                    let range = finite.then_some(self.range);
+                    return Some(StepError::Diverged { body, node: node as u32, time, range });
                 }
             }
         }

@@ -11,6 +11,7 @@ mod crushed;
 pub mod error;
 mod frame_hash;
 mod inputs;
+mod inverted;
 mod island;
 pub mod ledger;
 mod loads;

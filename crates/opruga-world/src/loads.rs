@@ -179,6 +179,9 @@ pub(crate) struct Pull<const D: usize> {
     pub(crate) limited: Arc<AtomicU64>,
 }
 
+/// Makes the squares of the largest numbers finite.
+const FAR: f64 = 1e-200;
+
 impl<const D: usize> Pull<D> {
     /// The held point, the pointer, and the force on the held point [N].
     pub(crate) fn force(&self, view: &View<D>) -> ([f64; D], [f64; D], [f64; D], bool) {
@@ -197,9 +200,15 @@ impl<const D: usize> Pull<D> {
             force[d] = self.stiffness * (pointer[d] - x[d]) + self.damping * (speed[d] - v[d]);
             square += force[d] * force[d];
         }
-        let limited = square > self.largest_force * self.largest_force;
+        let within = square <= self.largest_force * self.largest_force && square.is_finite();
+        let limited = !within && self.largest_force.is_finite();
         if limited {
-            let factor = self.largest_force / square.sqrt();
+            if !square.is_finite() {
+                // What is too large for a square still has a direction; what has none, between two infinite parts, does not pull.
+                force = force.map(|f| if f.is_nan() { 0.0 } else { FAR * f.clamp(-f64::MAX, f64::MAX) });
+                square = force.iter().map(|f| f * f).sum();
+            }
+            let factor = if square > 0.0 { self.largest_force / square.sqrt() } else { 0.0 };
             force = force.map(|f| f * factor);
         }
         (x, pointer, force, limited)

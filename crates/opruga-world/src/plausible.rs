@@ -4,9 +4,10 @@ use crate::blueprint::BodyBlueprint;
 use crate::build::node_masses;
 use crate::selection::extent;
 use crate::world::{Warning, World};
+use opruga_core::error::BuildError;
 use opruga_core::stability::Spectrum;
 use opruga_math::words::{counted, number, rounded};
-use opruga_mesh::Measure;
+use opruga_mesh::{Measure, Mesh};
 
 /// The code of the warning of [`sag`].
 pub(crate) const SAG: &str = "units.sag";
@@ -45,6 +46,38 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
         ),
         count: 1,
     })
+}
+
+/// Positions are rounded by at most this part of the distance between neighbouring nodes.
+const ROUNDING: f64 = 1e-6;
+
+/// How far from the origin along an axis the positions of a body keep their digits [m]: where they are rounded by 1e-6 of the
+/// distance between its nodes at rest, so that strains have an error of that size. Without an extent there is no limit.
+pub(crate) fn range<const D: usize>(mesh: &Mesh<D>) -> f64 {
+    let nodes = mesh.positions.len() as f64;
+    let apart = match mesh.measure() {
+        Ok(Measure::Length(length)) => length / nodes,
+        Ok(Measure::Area(area)) => (area / nodes).sqrt(),
+        Ok(Measure::Volume(volume)) => libm::cbrt(volume / nodes),
+        _ => 0.0,
+    };
+    if apart > 0.0 { ROUNDING * apart / f64::EPSILON } else { f64::INFINITY }
+}
+
+/// Refuses a body that lies beyond its [`range`].
+pub(crate) fn check_range<const D: usize>(x: &[[f64; D]], range: f64) -> Result<(), BuildError> {
+    let farthest = x.iter().flatten().fold(0.0, |most: f64, c| if c.abs() > most { c.abs() } else { most });
+    if farthest <= range {
+        return Ok(());
+    }
+    let message = format!(
+        "it begins {} m from the origin along an axis, where positions are rounded by {} m; allowed: at most {} m, where that is a \
+         millionth of the distance of its nodes; hint: move the scene to the origin",
+        rounded(farthest, 3),
+        rounded(farthest * f64::EPSILON, 2),
+        rounded(range, 3),
+    );
+    Err(BuildError::new("position", "scene.range", message))
 }
 
 /// The code of the warning of bodies that begin inside an obstacle.

@@ -248,7 +248,11 @@ impl<const D: usize> World<D> {
         };
         count("limit.force", "forces were shortened to `world.largest_force`", self.flows.limited_forces);
         count("limit.velocity", "velocities were shortened to `world.largest_velocity`", self.flows.limited_velocities);
-        count("limit.drag", "pulls were shortened to their `largest_force`", self.flows.limited_pulls);
+        count(
+            "limit.drag",
+            "pulls were shortened to their `largest_force`, where the scene is silent that of a spring stretched by ten sizes of the body",
+            self.flows.limited_pulls,
+        );
         count(
             "limit.distance",
             "bodies went farther than `world.largest_distance` and were taken away",
@@ -260,7 +264,14 @@ impl<const D: usize> World<D> {
         };
         // Contact begins and ends within steps, whatever the order of a rule.
         let help = if self.energy.loss_contact + self.energy.loss_friction > 0.0 {
-            "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it"
+            match self.islands.iter().all(|island| island.integrator.name() == "verlet") {
+                true => {
+                    "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps"
+                }
+                false => {
+                    "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it"
+                }
+            }
         } else {
             "more substeps make it smaller, and rules of higher order make less of it"
         };
@@ -282,7 +293,7 @@ impl<const D: usize> World<D> {
         count(
             "step.halved",
             "a step, of time or of the load, was made in two halves since Newton's method had not converged \
-             (`when_not_converged = \"halve\"`)",
+             (`when_not_converged = \"halve\"`, or in real time)",
             solver.halved,
         );
         count(

@@ -1,5 +1,7 @@
 //! The stable step of every kind of body, estimated before it is stepped.
 
+use crate::blueprint::BodyBlueprint;
+use crate::build::node_masses;
 use crate::error::WorldError;
 use crate::island::Island;
 use crate::plausible;
@@ -42,7 +44,11 @@ impl<const D: usize> World<D> {
                 Some(stability) => stability,
                 None => estimate(&island.system, &*island.integrator).map_err(|e| WorldError::Build {
                     place: format!("body `{name}`"),
-                    source: BuildError::new("stability", "step.not_finite", step_message(&e)),
+                    source: BuildError::new(
+                        "stability",
+                        "step.not_finite",
+                        format!("{}{}", step_message(&e), extremes(&self.blueprint.bodies[island.bodies[0]])),
+                    ),
                 })?,
             };
             island.stability = Some(stability);
@@ -164,6 +170,26 @@ fn held<const D: usize>(island: &Island<D>, lane: usize) -> Held {
     let stride = island.system.layout.stride();
     let own = island.system.pins.iter().filter(|pin| pin.place % stride == lane);
     own.map(|pin| (pin.place / stride, pin.axes.iter().fold(0, |bits, axis| bits * 2 + u8::from(*axis)))).collect()
+}
+
+/// The numbers of a body that most likely lie behind forces or frequencies that are not finite, and what is allowed.
+fn extremes<const D: usize>(body: &BodyBlueprint<D>) -> String {
+    let numbers = body.models.iter().flat_map(|model| {
+        let numbers = model.iter().filter_map(|(name, _)| Some((name, model.number(name)?)));
+        numbers.map(|(name, x)| (model.kind(), name, x))
+    });
+    let largest = numbers.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let lightest = node_masses(body)
+        .into_iter()
+        .filter(|mass| *mass > 0.0)
+        .fold(f64::INFINITY, |least, m| if m < least { m } else { least });
+    let number = largest.map_or(String::new(), |(kind, name, x)| {
+        format!("the largest number of its models is `{name}` = {} of `{kind}`, and ", words::number(x))
+    });
+    format!(
+        "; allowed: forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: {number}its lightest node has {} kg",
+        words::number(lightest)
+    )
 }
 
 /// What an error of the estimate says, without the name of the estimate.

@@ -224,8 +224,9 @@ impl<const D: usize> World<D> {
             }
             let body = |local: usize| self.blueprint.bodies[self.islands[first].bodies[local]].name.clone();
             return Err(match &self.islands[first].outcome {
-                Err(StepError::Diverged { body: local, node, time }) => {
-                    WorldError::Diverged { body: body(*local), node: *node, time: *time, last: self.time() }
+                Err(StepError::Diverged { body: local, node, time, range }) => {
+                    let (body, last) = (body(*local), self.time());
+                    WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
                 }
                 Err(StepError::Model { model, message }) => {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }

@@ -391,5 +391,8 @@ fn numbers_that_are_not_finite_stay_outside() {
         }
         assert!(world.frames() < 20, "it diverges");
     };
-    assert!(error.starts_with("body `ball[0]` diverged: node 0 in the substep from t = 0.05"), "{error}");
+    assert!(
+        error.starts_with("body `ball[0]` diverged: node 0 left the finite numbers in the substep from t = 0.05"),
+        "{error}"
+    );
 }

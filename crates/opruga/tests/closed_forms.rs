@@ -228,6 +228,26 @@ fn a_block_on_a_slope_stays_at_rest_and_walks_only_where_it_vibrates() {
     println!("at rest: creeps by {crept:.1e} m in 10 s");
     assert!(crept < 1e-9, "{crept}");
 
+    // Friction that falls to a hundredth above tan θ = 0.5 lets it settle anew and holds it. At the limit itself nothing holds and
+    // nothing drives: the little speed that settling gave it stays as it is.
+    for (mu, holds) in [(0.505, true), (0.5, false)] {
+        let mut world = scene(0.6, 20.0, 64, "symplectic_euler");
+        frames(&mut world, 120);
+        world.set("collider.0.friction", Value::Number(mu)).expect("a parameter");
+        frames(&mut world, 300);
+        let mut ways = [0.0; 2];
+        for way in &mut ways {
+            let start = along(&world);
+            frames(&mut world, 300);
+            *way = along(&world) - start;
+        }
+        println!("µ = {mu}: {ways:?} m in 5 s");
+        match holds {
+            true => assert!(ways.iter().all(|way| way.abs() < 1e-9), "{ways:?}"),
+            false => assert!((0.0..0.05).contains(&ways[0]) && (ways[1] - ways[0]).abs() < 1e-4, "{ways:?}"),
+        }
+    }
+
     let speed = |mu, substeps, rule: &str| {
         let mut world = scene(mu, 2.0, substeps, rule);
         frames(&mut world, 300);

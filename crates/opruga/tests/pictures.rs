@@ -2,6 +2,7 @@
 
 mod common;
 use common::*;
+use opruga::World;
 use opruga::blueprint::AnyBlueprint;
 use opruga::pictures::Scenery;
 use opruga::scenes;
@@ -99,4 +100,28 @@ fn a_held_solid_shows_where_it_lay_and_one_that_falls_does_not() {
     };
     assert!(far(&croatia.rest.positions, &start.bodies[1].positions) < 1e-6, "the lines stay where it lay");
     assert!(far(&croatia.rest.positions, &croatia.positions) > 0.1, "and it has moved");
+}
+
+#[test]
+fn bodies_at_rest_show_no_rounding() {
+    for name in ["heart-solid", "jelly", "hanging-net", "cloth-over-ball"] {
+        let text = scenes::find(name).expect("a scene");
+        let scalars: Vec<f32> = match read(text).expect("a scene of ours") {
+            AnyBlueprint::Plane(blueprint) => shown(built(blueprint)),
+            AnyBlueprint::Space(blueprint) => shown(built(blueprint)),
+        };
+        assert!(!scalars.is_empty() && scalars.iter().all(|scalar| *scalar == 0.0), "{name}: {scalars:?}");
+    }
+}
+
+/// The numbers behind the colours of all bodies at the start.
+fn shown<const D: usize>(mut world: World<D>) -> Vec<f32> {
+    let scenery = Scenery::new(&world);
+    let moment = scenery.capture(&mut world, false);
+    scenery
+        .picture(&moment)
+        .bodies
+        .iter()
+        .flat_map(|body| body.scalar.iter().map(|s| *s as f32).collect::<Vec<_>>())
+        .collect()
 }

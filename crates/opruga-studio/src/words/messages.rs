@@ -186,9 +186,12 @@ impl Language {
                     self.kind(Part::Integrator, integrator)
                 )
             }
-            WorldError::Diverged { body, node, time, last } => format!(
-                "Tijelo `{body}` je divergiralo: čvor {node}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
-                 t = {last} s"
+            WorldError::Diverged { body, node, time, last, range } => format!(
+                "Tijelo `{body}` je divergiralo: čvor {node}{}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
+                 t = {last} s",
+                range.map_or(String::new(), |range| format!(
+                    " dalje od {range:.1e} m od ishodišta, gdje položaji gube znamenke"
+                ))
             ),
             WorldError::NotConverged { body, message, hint } => format!(
                 "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",

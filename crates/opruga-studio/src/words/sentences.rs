@@ -8,6 +8,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("edge {} has no length; `modulus` needs one", "brid {} nema duljinu, a `modulus` je treba"),
     ("exactly one of `{}` and `{}` must be given", "treba zadati točno jedno od `{}` i `{}`"),
     (
+        "it begins {} m from the origin along an axis, where positions are rounded by {} m; allowed: at most {} m, where that is a \
+         millionth of the distance of its nodes; hint: move the scene to the origin",
+        "počinje {} m od ishodišta duž jedne osi, gdje se položaji zaokružuju za {} m; dopušteno: najviše {} m, gdje je to milijunti \
+         dio razmaka čvorova; savjet: pomakni prizor u ishodište",
+    ),
+    (
         "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline",
         "`modulus` treba trokute uz bridove; za lanac ili obris zadaj `stiffness`",
     ),
@@ -125,7 +131,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "a frame has at most {} substeps: a shorter one, a softer or heavier body, or another integrator",
         "sličica ima najviše {} podkoraka: pomaže kraća sličica, mekše ili teže tijelo, ili drugi integrator",
     ),
-    ("more substeps, or `accuracy = \"exact\"`", "više podkoraka, ili `accuracy = \"exact\"`"),
+    (
+        "more substeps, or `accuracy = \"exact\"`; the step was already halved down to 1/256",
+        "više podkoraka, ili `accuracy = \"exact\"`; korak je već prepolovljen do 1/256",
+    ),
     (
         "more substeps, or more `iterations`; the step was already halved down to 1/256",
         "više podkoraka ili više `iterations`; korak je već prepolavljan do 1/256",
@@ -209,12 +218,20 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("`{}` is {#}; allowed: {~}", "`{}` je {#}; dopušteno: {~}"),
     ("is {#}; allowed: {~}", "je {#}; dopušteno: {~}"),
     (
+        "the forces around the state are not finite, so no stable step can be given{~}",
+        "sile oko stanja nisu konačne, pa se ne može dati stabilni korak{~}",
+    ),
+    (
+        "; allowed: forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: {~}its lightest node has {} kg",
+        "; dopušteno: sile, krutosti i njihovi omjeri prema masama čvorova ispod 1e300; savjet: {~}najlakši čvor ima {} kg",
+    ),
+    (
         "the forces around the state are not finite, so no stable step can be given",
         "sile oko stanja nisu konačne, pa se ne može dati stabilni korak",
     ),
     (
-        "body `{}` diverged: node {} in the substep from t = {} s; the world is at its last good frame, t = {} s",
-        "tijelo `{}` je divergiralo: čvor {}, u podkoraku od t = {} s; svijet je na zadnjoj dobroj sličici, t = {} s",
+        "body `{}` diverged: node {} left {~} in the substep from t = {} s; the world is at its last good frame, t = {} s",
+        "tijelo `{}` je divergiralo: čvor {} napustio je {~} u podkoraku od t = {} s; svijet je na zadnjoj dobroj sličici, t = {} s",
     ),
     (
         "body `{}`: {~}; the world is at its last good frame; hint: {~}",
@@ -234,10 +251,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("moved by ({}) m it would be free", "pomaknuto za ({}) m bilo bi slobodno"),
     (
-        "at t = {} s obstacles {} ({}) and {} ({}) left body `{}` no room: node {} lay {} m inside the first, counted per frame \
-         and body; obstacles that are led must not meet",
-        "u t = {} s prepreke {} ({}) i {} ({}) nisu ostavile mjesta tijelu `{}`: čvor {} bio je {} m u prvoj, brojeno po slici \
-         i tijelu; vođene prepreke ne smiju se sresti",
+        "at t = {} s obstacles {} ({}) and {} ({}) left body `{}` no room: node {} {~}, counted per frame and body; obstacles \
+         that are led must not meet",
+        "u t = {} s prepreke {} ({}) i {} ({}) nisu ostavile mjesta tijelu `{}`: čvor {} {~}, brojeno po slici i tijelu; vođene \
+         prepreke ne smiju se sresti",
     ),
     ("no shift along the surfaces around it would free it", "nijedan pomak duž ploha oko njega ne bi ga oslobodio"),
     (
@@ -259,7 +276,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("commands on body `{}` ended when it was taken away", "naredbe tijelu `{}` završile su kad je uklonjeno"),
     ("forces were shortened to `world.largest_force`", "sile su skraćene na `world.largest_force`"),
     ("velocities were shortened to `world.largest_velocity`", "brzine su skraćene na `world.largest_velocity`"),
-    ("pulls were shortened to their `largest_force`", "vuče su skraćene na svoju `largest_force`"),
+    (
+        "pulls were shortened to their `largest_force`, where the scene is silent that of a spring stretched by ten sizes of the body",
+        "vuče su skraćene na svoju `largest_force`, a gdje prizor šuti na silu opruge rastegnute za deset veličina tijela",
+    ),
     (
         "bodies went farther than `world.largest_distance` and were taken away",
         "tijela su otišla dalje od `world.largest_distance` i uklonjena su",
@@ -275,6 +295,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila; najmanja je kod `verlet`",
     ),
     (
+        "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps",
+        "tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila: više podkoraka",
+    ),
+    (
         "more substeps make it smaller, and rules of higher order make less of it",
         "s više podkoraka je manja, a manja je i kod pravila višeg reda",
     ),
@@ -284,9 +308,9 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "a step, of time or of the load, was made in two halves since Newton's method had not converged (`when_not_converged = \
-         \"halve\"`)",
+         \"halve\"`, or in real time)",
         "korak, vremena ili tereta, učinjen je u dvije polovice jer Newtonova metoda nije konvergirala (`when_not_converged = \
-         \"halve\"`)",
+         \"halve\"`, ili u stvarnom vremenu)",
     ),
     (
         "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of \
@@ -332,6 +356,17 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
 pub(super) const PARTS: &[(&str, &str)] = &[
     ("is turned inside out", "je izvrnuta"),
     ("has no volume", "nema obujma"),
+    ("the finite numbers", "konačne brojeve"),
+    (
+        "the range in which rounding is small beside its elements, {} m about the origin",
+        "područje u kojem je zaokruživanje sitno prema njegovim elementima, {} m oko ishodišta",
+    ),
+    ("lay {} m inside the first", "bio je {} m u prvoj"),
+    ("lay where they meet", "bio je gdje se sreću"),
+    (
+        "the largest number of its models is `{}` = {} of `{}`, and ",
+        "najveći broj njegovih modela je `{}` = {} modela `{}`, a ",
+    ),
     (
         "; now the cell farthest from its volume is {} of body `{}`, J = {}",
         "; ćelija najdalje od svojeg obujma je {} tijela `{}`, J = {}",

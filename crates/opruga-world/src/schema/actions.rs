@@ -91,7 +91,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::POSITIVE,
                     "N",
                     Default::Absent,
-                    "The largest force; every time it acts is counted.",
+                    "The largest force, every time it acts is counted; that of the spring stretched by ten sizes of the body where the scene is silent.",
                 ),
             ],
         ),

@@ -68,6 +68,9 @@ impl Quantity {
     }
 }
 
+/// Strains below this, and stresses of such strains, are rounding of positions, which would be seen in all colours at rest.
+const ROUNDING: f64 = 1e-11;
+
 /// Adds a quantity at every node of a body.
 pub(super) fn push_quantity<const D: usize>(
     world: &mut World<D>,
@@ -80,7 +83,13 @@ pub(super) fn push_quantity<const D: usize>(
     match quantity {
         Quantity::Strain | Quantity::Plain => {}
         Quantity::Speed => scalars.extend((0..nodes as u32).map(|node| size(world.velocity(body, node)))),
-        Quantity::VonMises => push_means(world, body, nodes, CellState::von_mises, scalars),
+        Quantity::VonMises => {
+            let models = &world.blueprint().bodies[body].models;
+            let moduli = models.iter().filter_map(|model| model.number("youngs_modulus"));
+            let rounding = ROUNDING * moduli.fold(0.0, |largest: f64, e| if e > largest { e } else { largest });
+            let seen = |state: &CellState| Some(state.von_mises()).filter(|stress| *stress > rounding).unwrap_or(0.0);
+            push_means(world, body, nodes, seen, scalars);
+        }
         Quantity::VolumeRatio => push_means(world, body, nodes, |state| state.volume_ratio, scalars),
         Quantity::ElasticForce => {
             let forces = world.node_forces(body, Some(Account::Elastic));
@@ -125,7 +134,8 @@ pub(super) fn strain(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
     for ([a, b], rest) in &fixed.edges {
         let (p, q) = (positions[*a as usize], positions[*b as usize]);
         let length = p.iter().zip(&q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
-        let stretch = if *rest > 0.0 { 100.0 * (length / rest - 1.0) } else { 0.0 };
+        let stretch = if *rest > 0.0 { length / rest - 1.0 } else { 0.0 };
+        let stretch = if stretch.abs() > ROUNDING { 100.0 * stretch } else { 0.0 };
         for node in [*a as usize, *b as usize] {
             sum[node] += stretch;
             count[node] += 1.0;

@@ -93,6 +93,14 @@ fn plates_that_meet_are_told_with_time_and_pair() {
     let time: f64 = said["at t = ".len()..].split(' ').next().and_then(|t| t.parse().ok()).expect("a time");
     assert!((1.375..1.41).contains(&time), "{said}");
     assert!(said.contains("obstacles 0 (half_space) and 1 (half_space) left body `b` no room: node "), "{said}");
+    // Plates that just meet leave no room either, and so do those that stop a hair before.
+    for way in [1.1, 1.0999] {
+        let mut world = press(way, "");
+        frames(&mut world, 120);
+        let warning = world.warnings().into_iter().find(|w| w.code == "contact.no_room").expect("a warning");
+        assert!((30..=32).contains(&warning.count), "{warning:?}");
+        assert!(warning.message.contains("lay where they meet"), "{}", warning.message);
+    }
     // Nodes that are held lie where they are led, which is no fault of the plates.
     let mut held = press(
         1.2,
@@ -128,6 +136,9 @@ fn pointers_pull_within_bounds() {
     for (path, most) in [
         ("[[0, 0, 0], [0.5, 5000, 0], [1, -5000, 0]]", "largest_force = 40.0"),
         ("[[0, 1e9, 1e9], [1, 1e9, 1e9]]", "largest_force = 40.0"),
+        // Without a limit of its own a pull is that of a spring stretched by ten sizes of the body, and numbers have an end.
+        ("[[0, 0, 0], [1, 10000, 0]]", "# limited"),
+        ("[[0, 1e300, -1e300], [1e-3, -1e300, 1e300]]\nuntil = 1", "# limited"),
         ("[[0, 0.5, 0.6], [1, 0.5, 0.6]]", ""),
     ] {
         let command = format!("{FLOOR}[[command]]\ndo = \"drag\"\nat = 0\nbody = \"b\"\npath = {path}\n{most}\n");

@@ -49,11 +49,11 @@ fn parameters_that_make_no_sense() {
         (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
         (
             ring(16, "{ kind = \"mass_spring\" }", ""),
-            "model.one_of: body `b`: mass_spring: exactly one of `stiffness` and `modulus` must be given",
+            "error[model.one_of]: exactly one of `stiffness` and `modulus` must be given; here are none of them",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
-            "exactly one of `stiffness` and `modulus` must be given",
+            "exactly one of `stiffness` and `modulus` must be given; here are `stiffness` and `modulus`",
         ),
         (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
         (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
@@ -65,7 +65,40 @@ fn parameters_that_make_no_sense() {
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
-            "step.not_finite: body `b`: stability: the forces around the state are not finite",
+            "step.not_finite: body `b`: stability: the forces around the state are not finite, so no stable step can be given; allowed: \
+             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is \
+             `stiffness` = 1e300 of `mass_spring`, and its lightest node has 0.0416667 kg",
+        ),
+        // 58: pins that lead a node to two places
+        (
+            ring(
+                16,
+                BALL,
+                "pin = [{ select = { nodes = [0, 1] }, motion = [[0, 0, 0], [1, 1, 0]] }, { select = { nodes = [1, 2] }, motion = [[0, 0, 0], [1, -1, 0]] }]",
+            ),
+            "error[scene.conflict]: node 1 of body `b` is held by `body.0.pin.0.select` in line ",
+        ),
+        (
+            ring(
+                16,
+                BALL,
+                "fixed = true\npin = [{ select = { node = 3 }, axes = \"y\", motion = [[0, 5, 0], [1, 5, 1]] }]",
+            ),
+            "too, which leads it elsewhere along y at t = 1 s",
+        ),
+        // 63: so far away that an element is a few roundings across
+        (
+            ring(64, BALL, "").replace("center = [0, 0.6]", "center = [1e12, 0.6]"),
+            "scene.range: body `b`: position: it begins 1e12 m from the origin along an axis",
+        ),
+        // 72: a drag that would end when it begins
+        (
+            ring(16, BALL, "[[command]]\ndo = \"drag\"\nat = 1\nbody = \"b\"\npath = [[1, 0, 0]]"),
+            "error[scene.missing]: `until` is missing: a path of one point does not say when the drag ends",
+        ),
+        (
+            ring(16, BALL, "[[command]]\ndo = \"push\"\nat = 1\nuntil = 1\nbody = \"b\"\nforce = [1, 0]"),
+            "error[scene.range]: the command ends at 1 s, when it begins at 1 s",
         ),
         (ring(16, "{ kind = \"mass_spring\", stiffness = 1, damping = 1e12 }", ""), "step.unstable: the step h = "),
         // 53: gas
@@ -84,6 +117,36 @@ fn parameters_that_make_no_sense() {
         assert!(said.contains(expected), "expected {expected}, said: {said}\n{text}");
         assert!(!said.contains("NaN") && said.len() < 2000, "{said}");
     }
+}
+
+/// All that is wrong with a body is said at once: choices in its models, the direction of an obstacle, and every model that refuses
+/// the mesh; bodies that have errors of their own are not denied.
+#[test]
+fn everything_that_is_wrong_is_said_at_once() {
+    let text = ring(
+        16,
+        "{ kind = \"mass_spring\" }, { kind = \"pressure\", nRT = 1, pressure = 1 }, { kind = \"bending\" }",
+        FLOOR,
+    )
+    .replace("point = [0, 0]", "point = [0, inf]")
+    .replace("normal = [0, 1]", "normal = [0, 0]");
+    let said = said(&text);
+    println!("{said}");
+    assert_eq!(said.matches("error[model.one_of]").count(), 3, "{said}");
+    assert!(said.contains("`normal` is [0, 0]") && said.contains("`point` is not finite"), "{said}");
+    let broken = ring(16, "{ kind = \"mass_spring\" }", "[[command]]\ndo = \"remove\"\nat = 1\nbody = \"c\"\n");
+    let said = super::said(&broken.replace("radius = 0.5", "radius = -1"));
+    assert!(said.contains("there is no body `c`") && !said.contains("has no bodies"), "{said}");
+
+    // Neither springs nor gas nor bending find in a cloud of one chain what they need.
+    let chain = format!(
+        "{}[[body]]\nname = \"c\"\nmass = 1\nshape = {{ kind = \"polyline\", points = [[0, 0], [1, 0]] }}\n\
+         models = [{{ kind = \"mass_spring\", modulus = 1 }}, {{ kind = \"pressure\", nRT = 1 }}, {{ kind = \"bending\", stiffness = 1 }}]\n",
+        head(1.0 / 60.0, 16, 0.0, "symplectic_euler")
+    );
+    let problems = World::problems(&plane(&chain), &Options::default());
+    let codes: Vec<&str> = problems.iter().map(opruga::WorldError::code).collect();
+    assert_eq!(codes, ["model.no_area", "model.open_surface", "model.no_hinges"], "{problems:?}");
 }
 
 /// Rows 44 to 58: what looks odd and runs.

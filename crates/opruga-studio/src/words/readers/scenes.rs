@@ -4,7 +4,28 @@
 pub(super) const SENTENCES: &[(&str, &str)] = &[
     // Commands and probes.
     ("the command ends at {} s, before it begins at {} s", "naredba završava u {} s, prije nego što počinje u {} s"),
+    ("the command ends at {} s, when it begins at {} s", "naredba završava u {} s, kad i počinje u {} s"),
     ("a time from {}", "vrijeme od {}"),
+    ("a time after {}", "vrijeme nakon {}"),
+    (
+        "`until` is missing: a path of one point does not say when the drag ends",
+        "nedostaje `until`: put od jedne točke ne kaže kad vuča prestaje",
+    ),
+    (
+        "a path of several points ends the drag with its last one",
+        "put od više točaka završava vuču svojom zadnjom točkom",
+    ),
+    (
+        "node {} of body `{}` is held by `{}` in line {} too, which leads it elsewhere along {} at t = {} s",
+        "čvor {} tijela `{}` drži i `{}` u retku {}, koji ga vodi drugamo duž osi {} u t = {} s",
+    ),
+    ("one motion for every node along every axis", "jedno gibanje za svaki čvor duž svake osi"),
+    (
+        "let the selectors have no nodes in common, or the pins different `axes`",
+        "neka izbori nemaju zajedničkih čvorova, ili neka pribadače drže različite osi (`axes`)",
+    ),
+    ("{~}; here are none of them", "{~}; ovdje nema nijednoga"),
+    ("{~}; here are {}", "{~}; ovdje su {}"),
     (
         "the command begins at {} s, before `{}` is added at {} s",
         "naredba počinje u {} s, prije nego što se `{}` dodaje u {} s",
@@ -44,6 +65,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "exactly one of mass, density, density_of_cells, node_mass",
         "točno jedno od mass, density, density_of_cells, node_mass",
     ),
+    ("exactly one of {}, {}", "točno jedno od {}, {}"),
     ("a body that never moves is `fixed = true`", "tijelo koje se nikad ne miče je `fixed = true`"),
     ("`axes` is \"{}\"", "`axes` je \"{}\""),
     ("one of \"x\", \"y\", \"xy\"", "jedno od \"x\", \"y\", \"xy\""),
