@@ -43,6 +43,8 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
+    /// Whether what is left may have made energy.
+    pub(crate) doubtful: bool,
 }
 
 /// Which derivatives a direction is made of.

@@ -39,6 +39,9 @@ const PRODUCTS: u32 = 1000;
 /// A potential that has risen by this part of its parts has risen: rounding, and what obstacles push back, are less.
 const RISE: f64 = 1e-6;
 
+/// Corrections below this part of the extent are those of a body that is whole.
+const SHORT: f64 = 0.1;
+
 /// How many iterations steps get that few led astray.
 const MOST_ITERATIONS: u32 = 50;
 
@@ -229,11 +232,11 @@ impl Task<'_> {
 
 /// Looks for the stage from the displacement in `room.u` on; forces and residual belong to what is found.
 ///
-/// What few iterations lead to counts only where it makes no energy. What they leave of a body in the air pushes and turns it, and what
-/// they leave of one on an obstacle is taken for an impulse of that: where this is more than a thousandth, or than promised without
-/// contact, the step is solved by Newton's method with its line search, and made in two halves where that does not converge. So is
-/// one whose incremental potential is above that of a body that stays where it is; looked at are bodies in the air, and others whose
-/// matrix was made anew on the way or that are left farther out of balance than promised.
+/// What few iterations lead to counts only where it makes no energy: else the step is solved by Newton's method with its line search,
+/// and made in two halves where that does not converge. Its incremental potential must not be above that of a body that stays where it
+/// is; looked at are bodies in the air, and others whose matrix was made anew on the way, or that went far or are left farther out of
+/// balance than promised. What is left of a body on an obstacle is taken for an impulse of that, which the potential
+/// does not know: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
 pub(crate) fn solve<const D: usize>(
     system: &mut System<D>,
     room: &mut Room<D>,
@@ -244,6 +247,9 @@ pub(crate) fn solve<const D: usize>(
     let outcome = iterate(system, room, balance, settings);
     let spent = match &outcome {
         Ok((solved, Trust::Whole)) => return Ok(*solved),
+        Ok((solved, Trust::IfNoGain)) if !has_risen(system, room, balance)? => {
+            return Ok(Solved { doubtful: true, ..*solved });
+        }
         Ok((solved, Trust::IfDownhill)) if !has_risen(system, room, balance)? => return Ok(*solved),
         Ok((solved, _)) => *solved,
         // A law that has no meaning where the iteration led to.
@@ -251,38 +257,45 @@ pub(crate) fn solve<const D: usize>(
         Err(_) => return outcome.map(|(solved, _)| solved),
     };
     (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
-    let kind = &mut system.history.numbers[room.own.numbers];
-    *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
+    distrust(system, room);
     room.contacting.clear(system.nodes);
     for k in 0..room.u.len() {
         room.u[k] = if room.held[k].is_nan() { balance.theta * balance.h * room.v0[k] } else { room.held[k] };
     }
-    let settings = Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings };
-    let mut solved = newton::solve(system, room, balance, &settings)?;
+    let mut solved = newton::solve(system, room, balance, &exactly(settings))?;
     solved.iterations += spent.iterations;
     solved.products += spent.products;
     Ok(solved)
 }
 
+/// The settings of steps that few iterations led astray.
+pub(crate) fn exactly(settings: &Settings) -> Settings {
+    Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
+}
+
+/// Lets the next step make its matrix anew.
+pub(crate) fn distrust<const D: usize>(system: &mut System<D>, room: &Room<D>) {
+    let kind = &mut system.history.numbers[room.own.numbers];
+    *kind = if *kind > 0.0 { -CLAMPED } else { *kind };
+}
+
 /// Whether the incremental potential of what was found is above that of the body where it was, but for what is held; not a number
-/// counts as above. Where forces have no potential, or it cannot be told, speeds alone say that it has not.
+/// counts as above, and so does what forces without a potential may have done.
 fn has_risen<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<bool, StepError> {
-    let Some((after, size)) = potential(system, room, balance, false) else {
-        return Ok(!room.u.iter().all(|u| u.is_finite()));
-    };
+    let Some((after, size)) = potential(system, room, balance, false) else { return Ok(true) };
     if !after.is_finite() {
         return Ok(true);
     }
     for k in 0..room.u.len() {
         room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
     }
-    // A body that stood where its law has no meaning has nothing to compare with.
+    // Where a body stood where its law has no meaning there is nothing to compare with.
     let before = match evaluate(system, room, balance, true) {
         Ok(()) => potential(system, room, balance, true),
         Err(_) => None,
     };
     evaluate(system, room, balance, false)?;
-    Ok(before.is_some_and(|(before, parts)| after - before > RISE * (size + parts)))
+    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts)))
 }
 
 /// Whether what few iterations lead to may count.
@@ -292,6 +305,8 @@ enum Trust {
     Whole,
     /// It does unless the incremental potential has risen.
     IfDownhill,
+    /// It does unless the body has more energy at the end of the step than before.
+    IfNoGain,
     /// It does not.
     None,
 }
@@ -346,12 +361,12 @@ fn iterate<const D: usize>(
                 work.cut_off += 1;
                 work.left = left.larger(work.left);
             }
+            // A part of what was torn at first is still torn; what is no number is not short.
+            let short = solved.correction <= SHORT * room.extent;
             let trust = match (is_loose(system), as_promised) {
-                // Written so that what is no number is not near.
-                (true, _) if size <= (LOOSE * first).larger(floor) => Trust::Whole,
-                (true, false) => Trust::None,
-                (true, true) if room.contacting.any() => Trust::None,
-                (false, true) if !remade => Trust::Whole,
+                (true, _) if !short => Trust::None,
+                (true, _) if room.contacting.any() => Trust::IfNoGain,
+                (false, true) if !remade && short => Trust::Whole,
                 _ => Trust::IfDownhill,
             };
             return Ok((solved, trust));

@@ -134,9 +134,8 @@ pub(crate) const ACCURACY: Field = Field::new(
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
 from the motion of the last step, each with the factor or at most 1000 products of a matrix that is kept as long as it leads \
-to the end of a step; a fifth of what is out of balance may be left, and is made up for in the steps that follow. Where they lead \
-uphill, or leave more than a thousandth out of balance on an obstacle, as when a soft body strikes the floor, the step is solved \
-exactly, which takes several times as long and makes no energy. Measured \
+to the end of a step; a fifth of what is out of balance may be left, and is made up for in the steps that follow. Where that \
+would make energy, as when a soft body strikes the floor, the step is solved exactly, which takes several times as long. Measured \
 against exact steps of the same length, of clamped cubes and beams that swing under their weight: amplitude within 3 %, period \
 within 1 %, at rest within 1 % of the statics. Steps that end with more left are counted in a warning (`step.cut_off`) with the \
 size of what is left. Not for results that are compared with others, for bodies that are slender and of many thousand nodes, \
