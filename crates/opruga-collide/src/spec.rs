@@ -18,7 +18,7 @@ macro_rules! collider {
             dimensions: &[$dimension],
             fields: &[
                 $($own,)+
-                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact."),
+                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before is that at the end of the step in which a node meets the collider, with all that forces gave it in the step: with 1 a node that is pushed on gains a little in every impact, the less the shorter the steps, and `loss_contact` is negative then."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
                 Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
                 Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),

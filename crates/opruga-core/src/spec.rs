@@ -113,6 +113,8 @@ pub enum Allowed {
     Numbers,
     /// A curve over time: `[[t, value], …]`, t rising.
     Curve,
+    /// The same of values that are not negative.
+    CurveNotNegative,
     /// A path over time: `[[t, x, y(, z)], …]`, t rising.
     Path,
 }
@@ -378,6 +380,11 @@ impl Allowed {
             (Allowed::Integers, Value::Integers(_)) => Ok(value),
             (Allowed::Points, Value::Rows(rows)) if rows_ok(rows, dimension) => Ok(value),
             (Allowed::Curve, Value::Rows(rows)) if rows_ok(rows, 2) && rising(rows) => Ok(value),
+            (Allowed::CurveNotNegative, Value::Rows(rows))
+                if rows_ok(rows, 2) && rising(rows) && rows.iter().all(|row| row[1] >= 0.0) =>
+            {
+                Ok(value)
+            }
             (Allowed::Path, Value::Rows(rows)) if rows_ok(rows, dimension + 1) && rising(rows) => Ok(value),
             _ => refuse(&value),
         }
@@ -412,6 +419,9 @@ impl Allowed {
             Allowed::Integers => "a list of whole numbers from 0".into(),
             Allowed::Points => format!("a list of points of {dimension} finite numbers"),
             Allowed::Curve => "a curve [[t, value], …] of finite numbers with rising t".into(),
+            Allowed::CurveNotNegative => {
+                "a curve [[t, value], …] of finite numbers with rising t and values >= 0".into()
+            }
             Allowed::Path => format!(
                 "a path [[t, {}], …] of finite numbers with rising t",
                 if dimension == 2 { "x, y" } else { "x, y, z" }

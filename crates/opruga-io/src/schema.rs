@@ -166,7 +166,7 @@ fn allowed(range: &Allowed) -> Value {
         Allowed::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
         Allowed::Integers => json!({ "type": "array", "items": { "type": "integer", "minimum": 0 } }),
         Allowed::Points => json!({ "type": "array", "items": numbers(2, 3), "minItems": 1 }),
-        Allowed::Curve => json!({ "type": "array", "items": numbers(2, 2), "minItems": 1 }),
+        Allowed::Curve | Allowed::CurveNotNegative => json!({ "type": "array", "items": numbers(2, 2), "minItems": 1 }),
         Allowed::Path => json!({ "type": "array", "items": numbers(3, 4), "minItems": 1 }),
     }
 }

@@ -4,6 +4,7 @@
 mod common;
 use common::*;
 use opruga::World;
+use opruga::core::spec::Value;
 
 /// N R² sin(2π/N)/2 for N = 36, R = 0.5 m, a metre deep [m³].
 const VOLUME: f64 = 0.781_416_799_501_186_5;
@@ -49,7 +50,7 @@ fn a_leak_brings_the_pressure_down_to_that_outside() {
             let outside = ambient * VOLUME;
             let expected = outside + (80.0 - outside) * (-1.5 * 0.02 * f64::from(frame)).exp();
             let found = reading(&mut world, "nRT");
-            assert!((found - expected).abs() < 0.03, "{ambient} Pa, frame {frame}: {found} {expected}");
+            assert!((found - expected).abs() < 1e-9, "{ambient} Pa, frame {frame}: {found} {expected}");
         }
         // After 4 s, six times the time constant.
         assert!((reading(&mut world, "pressure") - ambient).abs() < 0.3);
@@ -66,5 +67,79 @@ fn temperature_follows_its_curve() {
         }
         let found = reading(&mut world, "pressure") * VOLUME / 80.0;
         assert!((found - factor).abs() < 1e-9, "frame {frame}: {found}");
+    }
+}
+
+/// d(nRT)/dt = A/T − λ (P − P_a) V while a ramp of T lets A in: nRT = c (1 − e^(−λt)) with c = A/(λT) + P_a V.
+#[test]
+fn a_leak_loses_what_a_ramp_has_let_in_and_no_more() {
+    for (amount, leak, ambient, ramp) in
+        [(50.0, 1.0, 90.0, 1.0), (150.0 * VOLUME, 0.4, 90.0, 0.5), (50.0, 0.5, 0.0, 2.0)]
+    {
+        let mut world = held(&format!("nRT = {amount:?}, leak = {leak:?}, ambient = {ambient:?}, ramp = {ramp:?}"));
+        let most = amount / (leak * ramp) + ambient * VOLUME;
+        for frame in 1..=(ramp / 0.02) as u32 {
+            frames(&mut world, 1);
+            let expected = most * (1.0 - (-leak * 0.02 * f64::from(frame)).exp());
+            let found = reading(&mut world, "nRT");
+            assert!((found - expected).abs() < 1e-5 * most, "{amount} J, frame {frame}: {found} {expected}");
+        }
+        // Full, it goes on to the pressure outside.
+        let full = reading(&mut world, "nRT");
+        frames(&mut world, 50);
+        let expected = ambient * VOLUME + (full - ambient * VOLUME) * (-leak).exp();
+        assert!((reading(&mut world, "nRT") - expected).abs() < 1e-9 * most);
+        assert!(world.energy().closure < 1e-9, "{:?}", world.energy());
+    }
+}
+
+#[test]
+fn what_has_leaked_stays_lost_when_the_leak_is_closed_and_setting_the_amount_fills_anew() {
+    let mut world = held("nRT = 50.0, leak = 0.5");
+    let set = |world: &mut World<2>, field: &str, value: f64| {
+        world.set(&format!("body.ring.models.pressure.{field}"), Value::Number(value)).expect("a parameter");
+    };
+    frames(&mut world, 50);
+    let left = 50.0 * (-0.5_f64).exp();
+    assert!((reading(&mut world, "nRT") - left).abs() < 1e-9);
+    set(&mut world, "leak", 0.0);
+    frames(&mut world, 25);
+    assert!((reading(&mut world, "nRT") - left).abs() < 1e-9, "nothing comes back");
+    set(&mut world, "leak", 0.1);
+    frames(&mut world, 50);
+    let left = left * (-0.1_f64).exp();
+    assert!((reading(&mut world, "nRT") - left).abs() < 1e-9);
+    set(&mut world, "nRT", 70.0);
+    assert!((reading(&mut world, "nRT") - 70.0).abs() < 1e-9, "filled anew");
+    frames(&mut world, 50);
+    assert!((reading(&mut world, "nRT") - 70.0 * (-0.1_f64).exp()).abs() < 1e-9);
+}
+
+/// However fast it is, a leak brings the pressure to that outside and not beyond, from above and from nothing.
+#[test]
+fn a_leak_faster_than_a_step_ends_at_the_pressure_outside() {
+    for gas in ["nRT = 50.0", "nRT = 50.0, process = \"adiabatic\"", "nRT = 0.0", "nRT = 0.0, process = \"adiabatic\""]
+    {
+        let mut world = held(&format!("{gas}, leak = 1e5, ambient = 90.0"));
+        frames(&mut world, 3);
+        assert!((reading(&mut world, "pressure") - 90.0).abs() < 1e-9, "{gas}");
+        assert!((reading(&mut world, "nRT") - 90.0 * VOLUME).abs() < 1e-9, "{gas}");
+        assert!(world.energy().closure < 1e-9, "{gas}: {:?}", world.energy());
+    }
+}
+
+/// What a command changes is somebody's work: at every moment the energy is that of the start and what the channels have brought.
+#[test]
+fn the_energy_that_comes_with_a_parameter_is_entered_as_work() {
+    let mut world = held("nRT = 50.0, ambient = 20.0");
+    let start = world.energy().total();
+    for (field, value) in [("ambient", Value::Number(60.0)), ("process", Value::Text("adiabatic".into()))] {
+        let before = world.energy();
+        world.set(&format!("body.ring.models.pressure.{field}"), value).expect("a parameter");
+        frames(&mut world, 2);
+        let energy = world.energy();
+        assert!((energy.total() - before.total()).abs() > 1.0, "{field}: {energy:?}");
+        assert!((energy.total() - start - energy.work_user).abs() < 1e-9, "{field}: {energy:?}");
+        assert!(energy.loss_integrator.abs() < 1e-9, "{field}: {energy:?}");
     }
 }

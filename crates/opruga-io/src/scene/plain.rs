@@ -49,7 +49,7 @@ impl Reader<'_> {
             },
             Allowed::Integers => Value::Integers(self.naturals(node, path, range)?),
             Allowed::Points => Value::Rows(self.rows(node, path, self.dimension, false, range)?),
-            Allowed::Curve => Value::Rows(self.rows(node, path, 2, true, range)?),
+            Allowed::Curve | Allowed::CurveNotNegative => Value::Rows(self.rows(node, path, 2, true, range)?),
             Allowed::Path => Value::Rows(self.rows(node, path, self.dimension + 1, true, range)?),
         };
         match range.accept(value, self.dimension) {

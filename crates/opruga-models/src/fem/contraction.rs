@@ -1,7 +1,7 @@
 //! Tangents at the points of elements to the blocks of their matrices, for every set of vector instructions.
 
 use super::elements::Shape;
-use super::law::{PRINCIPAL, read_matrix, write_matrix};
+use super::law::{INVARIANTS, PRINCIPAL, read_matrix, write_matrix};
 use super::section::Group;
 use super::work::geometry;
 use core::marker::PhantomData;
@@ -179,5 +179,98 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<
                 }
             }
         }
+    }
+}
+
+/// The same for simplices from derivatives by the invariants I = tr FᵀF and J = det F.
+///
+/// With g = ∂N/∂X, f = F g and c = cof F g the block K_ab is
+/// V (2ψ_I gᵃ·gᵇ 1 + 4ψ_II fᵃ fᵇᵀ + ψ_JJ cᵃ cᵇᵀ + ψ_J W) with Wᵢₖ = εᵢₖₘ wₘ and w = F (gᵃ × gᵇ).
+pub(super) struct ContractInvariants<'a, E, const D: usize, const N: usize> {
+    pub(super) shape: PhantomData<E>,
+    pub(super) group: Group<'a>,
+    /// Which pack of the group.
+    pub(super) pack: usize,
+    /// Deformation gradients.
+    pub(super) gradient: &'a [f64],
+    /// As [`super::law::Form::Invariants`] says.
+    pub(super) invariants: &'a [f64],
+    pub(super) blocks: &'a mut [f64],
+}
+
+impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants<'_, E, D, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let size = D * D * WIDTH;
+        let numbers = &self.invariants[self.pack * INVARIANTS * WIDTH..(self.pack + 1) * INVARIANTS * WIDTH];
+        for part in 0..P::PARTS {
+            // Rows are nodes: g of the node a + 1.
+            let (slopes, measure) = geometry::<P::Part, D>(&self.group, self.group.first + self.pack, 0, part);
+            let number = |k: usize| measure * P::Part::load(&numbers[k * WIDTH + part * P::Part::NUMBERS..]);
+            let [stretch, stretch_twice, volume, volume_twice] = [number(0), number(1), number(2), number(3)];
+            let f = read_matrix::<P::Part, D>(&self.gradient[self.pack * size..], part);
+            let along = matrix::product_transposed(&slopes, &f);
+            let across = matrix::product_transposed(&slopes, &matrix::cofactor(&f));
+            let mut blocks = [[[[P::Part::zero(); D]; D]; N]; N];
+            for a in 0..D {
+                let mut along_left = along[a];
+                let mut across_left = across[a];
+                for i in 0..D {
+                    along_left[i] = stretch_twice * along_left[i];
+                    across_left[i] = volume_twice * across_left[i];
+                }
+                for b in a..D {
+                    let mut inner = slopes[a][0] * slopes[b][0];
+                    for j in 1..D {
+                        inner += slopes[a][j] * slopes[b][j];
+                    }
+                    let block = &mut blocks[a + 1][b + 1];
+                    for i in 0..D {
+                        for k in 0..D {
+                            // What is symmetric is so to the bit.
+                            block[i][k] = if a == b && k < i {
+                                block[k][i]
+                            } else {
+                                along_left[i] * along[b][k] + across_left[i] * across[b][k]
+                            };
+                        }
+                        block[i][i] += stretch * inner;
+                    }
+                    if a != b {
+                        add_turn(block, volume, &f, &slopes[a], &slopes[b]);
+                    }
+                }
+            }
+            complete(&mut blocks);
+            for a in 0..N {
+                for b in a..N {
+                    write_matrix(&mut self.blocks[(a * N + b) * size..], part, &blocks[a][b]);
+                }
+            }
+        }
+    }
+}
+
+/// Adds s εᵢₖₘ wₘ with w = F (a × b); in the plane, where F has nothing to do with it, the same of vectors along it.
+#[inline(always)]
+fn add_turn<R: Register, const D: usize>(block: &mut Matrix<R, D>, s: R, f: &Matrix<R, D>, a: &[R; D], b: &[R; D]) {
+    let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    if D == 2 {
+        let turn = s * cross(0, 1);
+        block[0][1] += turn;
+        block[1][0] -= turn;
+        return;
+    }
+    let normal = [cross(1, 2), cross(2, 0), cross(0, 1)];
+    for m in 0..D {
+        let mut sum = f[m][0] * normal[0];
+        for j in 1..D {
+            sum += f[m][j] * normal[j];
+        }
+        let turn = s * sum;
+        let (i, k) = ((m + 1) % D, (m + 2) % D);
+        block[i][k] += turn;
+        block[k][i] -= turn;
     }
 }

@@ -29,9 +29,11 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]);
     /// Tangents (D⁴ packs per pack of points).
     fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]);
-    /// Tangents without negative eigenvalues in the frame of the singular vectors ([`PRINCIPAL`] · D² packs per pack of points);
-    /// whether the law has them.
-    fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool;
+    /// Tangents as short as the law knows to say them, in the form that it names.
+    fn short_tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, out: &mut [f64]) -> Form {
+        self.tangent(simd, points, keep, out);
+        Form::Whole
+    }
     /// Writes the stretch across the plane that the law finds at every point (a pack per pack of points); whether it finds one.
     fn thickness(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
@@ -41,6 +43,20 @@ pub(super) trait Law<const D: usize>: Send + Sync + Debug {
     /// Whether its energy at rest is a difference of parts as large as the moduli.
     fn cancels(&self) -> bool;
 }
+
+/// How a tangent is said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Form {
+    /// D⁴ packs per pack of points.
+    Whole,
+    /// In the frame of the singular vectors: [`PRINCIPAL`] · D² packs per pack of points.
+    Principal,
+    /// By the invariants of F: [`INVARIANTS`] packs per pack of points, in the order of [`super::material::Invariants`].
+    Invariants,
+}
+
+/// Numbers of [`super::material::Invariants`].
+pub(super) const INVARIANTS: usize = 4;
 
 /// Matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for pairs of
 /// axes what the tangent makes of u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
@@ -60,9 +76,16 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
             Definiteness::Clamped => simd.run(Tangents::<M, D, true> { points, tangent, material: self.0 }),
         }
     }
-    fn principal(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool {
-        simd.run(Principals::<M, D> { points, out, material: self.0 });
-        true
+    fn short_tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, out: &mut [f64]) -> Form {
+        if keep == Definiteness::Clamped {
+            simd.run(Principals::<M, D> { points, out, material: self.0 });
+            return Form::Principal;
+        }
+        if simd.run(ByInvariants::<M, D> { points, out, material: self.0 }) {
+            return Form::Invariants;
+        }
+        self.tangent(simd, points, keep, out);
+        Form::Whole
     }
     fn turns(&self) -> bool {
         M::TURNS
@@ -154,6 +177,32 @@ impl<M: Material<D>, const D: usize, const CLAMPED: bool> Work for Tangents<'_, 
                 }
             }
         }
+    }
+}
+
+/// Whether the material has a tangent by invariants, and what it is made of.
+struct ByInvariants<'a, M, const D: usize> {
+    points: Points<'a>,
+    out: &'a mut [f64],
+    #[allow(dead_code)] // says which material
+    material: M,
+}
+impl<M: Material<D>, const D: usize> Work for ByInvariants<'_, M, D> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<P: Pack>(self) -> bool {
+        for pack in 0..self.points.count {
+            let out = &mut self.out[pack * INVARIANTS * WIDTH..(pack + 1) * INVARIANTS * WIDTH];
+            for part in 0..P::PARTS {
+                let (p, f) = read::<P::Part, D>(&self.points, pack, part);
+                let Some(of) = M::invariants(&p, &f) else { return false };
+                let twice = of.stretch_twice.unwrap_or(P::Part::zero());
+                for (k, number) in [of.stretch, twice, of.volume, of.volume_twice].into_iter().enumerate() {
+                    number.store(&mut out[k * WIDTH + part * P::Part::NUMBERS..]);
+                }
+            }
+        }
+        true
     }
 }
 

@@ -35,11 +35,48 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The singular vectors of F, and the second derivatives by principal stretches: ∂P/∂F in their frame [Pa].
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>);
-    /// The tangent ∂P/∂F [Pa]; worth a formula of its own where it needs no singular vectors.
+    /// The derivatives by tr FᵀF and det F, of a law that knows of nothing else: its tangent needs no more.
+    #[inline(always)]
+    fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
+        None
+    }
+    /// The tangent ∂P/∂F [Pa]; worth a formula of its own where it needs neither invariants nor singular vectors.
     #[inline(always)]
     fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+        if let Some(invariants) = Self::invariants(p, f) {
+            return invariants.tangent(f);
+        }
         let (singular, principal) = Self::principal(p, f);
         principal.tangent(&singular)
+    }
+}
+
+/// Derivatives of an energy ψ(I, J) with I = tr FᵀF and J = det F [Pa]: all that its tangent is made of,
+/// ∂P/∂F = 2ψ_I 1 + 4ψ_II F ⊗ F + ψ_JJ cof F ⊗ cof F + ψ_J ∂(cof F)/∂F, where ψ_IJ = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Invariants<S> {
+    /// 2 ∂ψ/∂I.
+    pub stretch: S,
+    /// 4 ∂²ψ/∂I²; none of a law that is linear in I.
+    pub stretch_twice: Option<S>,
+    /// ∂ψ/∂J.
+    pub volume: S,
+    /// ∂²ψ/∂J².
+    pub volume_twice: S,
+}
+
+impl<S: Lane> Invariants<S> {
+    /// The tangent.
+    #[inline(always)]
+    pub fn tangent<const D: usize>(&self, f: &Matrix<S, D>) -> Tangent<S, D> {
+        let mut out = no_tangent();
+        add_identity(&mut out, self.stretch);
+        if let Some(twice) = self.stretch_twice {
+            add_square(&mut out, twice, f);
+        }
+        add_square(&mut out, self.volume_twice, &matrix::cofactor(f));
+        add_cofactor_derivative(&mut out, self.volume, f);
+        out
     }
 }
 

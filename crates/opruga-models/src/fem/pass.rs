@@ -4,9 +4,9 @@
 //! what they are after out of it.
 
 use super::boxes::{self, Deform, DeformRates, KEPT, Of, Push, Rates};
-use super::contraction::{Contract, ContractPrincipal};
+use super::contraction::{Contract, ContractInvariants, ContractPrincipal};
 use super::elements::Shape;
-use super::law::{PARAMETERS, PRINCIPAL, Points};
+use super::law::{Form, PARAMETERS, Points};
 use super::nodal_volume::Pressures;
 use super::part::{Part, Totals};
 use super::pressures::{Means, PressedStress, PressedTangents};
@@ -187,22 +187,22 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             }
             self.deform(&group, positions, pressures);
             let points = self.points(&group);
-            let principal = match matrix {
+            // What the pressures make of the second derivatives of J may be negative.
+            let pressed = section.nodal && group.turns && matches!(matrix, Matrix::Hessian(Definiteness::Exact));
+            let form = match matrix {
+                Matrix::Hessian(keep) if E::SIMPLEX && !pressed => {
+                    section.law.short_tangent(simd, points, keep, tangent)
+                }
                 Matrix::Hessian(keep) => {
-                    let principal = E::SIMPLEX && keep == Definiteness::Clamped;
-                    let principal = principal && section.law.principal(simd, points, tangent);
-                    if !principal {
-                        section.law.tangent(simd, points, keep, tangent);
-                    }
-                    principal
+                    section.law.tangent(simd, points, keep, tangent);
+                    Form::Whole
                 }
                 Matrix::Damping => {
                     simd.run(ViscousTangents::<D> { points, times: &self.times.0, tangent });
-                    false
+                    Form::Whole
                 }
             };
-            // What the pressures make of the second derivatives of J may be negative.
-            if section.nodal && group.turns && matches!(matrix, Matrix::Hessian(Definiteness::Exact)) {
+            if pressed {
                 simd.run(PressedTangents::<D> { points, pressures: &self.pressures.0, tangent });
             }
             // Boxes turn and stretch what their points are under.
@@ -228,11 +228,24 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         times,
                         blocks,
                     });
-                } else if principal {
-                    let principal = &tangent[..points.count * PRINCIPAL * D * D * WIDTH];
-                    simd.run(ContractPrincipal::<E, D, N> { shape, group, pack, principal, blocks });
                 } else {
-                    simd.run(Contract::<E, D, N> { shape, group, pack, tangent, blocks });
+                    match form {
+                        Form::Whole => simd.run(Contract::<E, D, N> { shape, group, pack, tangent, blocks }),
+                        Form::Principal => {
+                            simd.run(ContractPrincipal::<E, D, N> { shape, group, pack, principal: tangent, blocks })
+                        }
+                        Form::Invariants => {
+                            let gradient = points.gradient;
+                            simd.run(ContractInvariants::<E, D, N> {
+                                shape,
+                                group,
+                                pack,
+                                gradient,
+                                invariants: tangent,
+                                blocks,
+                            });
+                        }
+                    }
                 }
                 let count = group.present(group.first + pack);
                 let places = places[pack].as_flattened();
@@ -243,7 +256,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
 
     /// Stress and volume ratio of the cells of a share, of one body.
     pub(super) fn cell_states(mut self, share: &Share, positions: Nodes<'_, D>, body: usize, out: &mut Vec<CellState>) {
-        let (section, simd) = (self.section, self.simd);
+        let (section, simd, turns) = (self.section, self.simd, self.section.law.turns());
         let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut stress = Room([0.0; MOST_PACKS * 9 * WIDTH]);
         let mut density = Room([0.0; MOST_PACKS * WIDTH]);
@@ -280,16 +293,19 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         measure += weight;
                         now += weight * ratio;
                     }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one.
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one; a law of small motions knows of one shape, and of
+                    // one symmetric stress.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {
-                                sum[i][j] += weight * stress.0[(q * axes * axes + i * axes + k) * WIDTH + l] * f(j, k);
+                                let along = if turns { f(j, k) } else { f64::from(u8::from(j == k)) };
+                                sum[i][j] += weight * stress.0[(q * axes * axes + i * axes + k) * WIDTH + l] * along;
                             }
                         }
                     }
                 }
-                let stress = sum.map(|row| row.map(|s| s / now));
+                let over = if turns { now } else { measure };
+                let stress = sum.map(|row| row.map(|s| s / over));
                 out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure, measure });
             }
         }

@@ -101,10 +101,6 @@ impl Law<2> for PlaneStress {
         }
         true
     }
-    /// The condensed tangent has other eigenvectors.
-    fn principal(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
-        false
-    }
     fn turns(&self) -> bool {
         self.0.turns()
     }

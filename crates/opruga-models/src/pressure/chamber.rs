@@ -1,5 +1,6 @@
 //! The boundary of a chamber: its volume and how it changes with every node.
 
+use super::curved::{CurvedSides, second_of_pair, second_of_triple};
 use opruga_core::pair::{PairLaw, PairTable, PairTerm};
 use opruga_core::potential::Sink;
 use opruga_core::state::{Layout, OrderedSum, Parameter, View, load};
@@ -14,6 +15,8 @@ pub(super) enum Boundary {
     Plane(PairTable),
     /// The ring of neighbours of every node of a triangulated surface, counter-clockwise seen from outside.
     Space(NodeRings),
+    /// Sides of cells that bend.
+    Curved(CurvedSides),
 }
 
 /// Rings of neighbours, eight nodes side by side.
@@ -137,6 +140,14 @@ impl Boundary {
                 twice * P::splat(0.5)
             }
             Boundary::Space(rings) => rings.volume::<P, D>(view, &origin, area),
+            Boundary::Curved(sides) => {
+                area.fill(0.0);
+                let mut volumes = [0.0; WIDTH];
+                for (body, volume) in volumes.iter_mut().enumerate().take(view.layout.stride()) {
+                    *volume = sides.volume_of(view, body, area);
+                }
+                P::load(&volumes)
+            }
         }
     }
 
@@ -151,7 +162,7 @@ impl Boundary {
     ) {
         match self {
             Boundary::Plane(edges) => edges.add_force(simd, EdgePush { layout: view.layout, gauge }, view, tile),
-            Boundary::Space(_) => simd.run(Push { layout: view.layout, gauge, area, tile }),
+            Boundary::Space(_) | Boundary::Curved(_) => simd.run(Push { layout: view.layout, gauge, area, tile }),
         }
     }
 
@@ -169,6 +180,17 @@ impl Boundary {
                         entry[1] -= 0.5 * (xb[0] - xa[0]);
                     }
                 }
+            }
+            Boundary::Curved(sides) => {
+                sides.volume(
+                    |node| view.position(at(node)),
+                    |node, by| {
+                        let entry = slope.entry(at(node)).or_insert([0.0; D]);
+                        for d in 0..D {
+                            entry[d] += by[d];
+                        }
+                    },
+                );
             }
             Boundary::Space(rings) => {
                 for facet in &rings.facets {
@@ -196,33 +218,16 @@ impl Boundary {
     ) {
         let at = |node: u32| view.layout.place(node as usize, body);
         match self {
-            Boundary::Plane(edges) => {
-                // A = ½ Σ (xₐ y_b − x_b yₐ)
-                let mut block = [[0.0; D]; D];
-                block[0][1] = 0.5 * factor;
-                block[1][0] = -0.5 * factor;
-                let transposed = core::array::from_fn(|i| core::array::from_fn(|j| block[j][i]));
-                for &[a, b] in edges.pairs() {
-                    sink.block(at(a), at(b), block);
-                    sink.block(at(b), at(a), transposed);
-                }
-            }
+            Boundary::Plane(edges) => edges.pairs().iter().for_each(|pair| second_of_pair(pair.map(at), factor, sink)),
             Boundary::Space(rings) => {
-                // V = ⅙ Σ xₐ·(x_b × x_c): ∂²V/∂xₐ∂x_b = −⅙ [x_c]×, cyclically.
-                for facet in &rings.facets {
-                    for k in 0..3 {
-                        let [a, b, c] = [facet[k], facet[(k + 1) % 3], facet[(k + 2) % 3]];
-                        let x = view.position(at(c)).map(|v| v * factor / 6.0);
-                        let mut block = [[0.0; D]; D];
-                        for d in 0..3 {
-                            let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-                            // [x]× has −x_f at (d, e) and x_e at (d, f).
-                            block[d][e] = x[f];
-                            block[d][f] = -x[e];
-                        }
-                        let transposed = core::array::from_fn(|i| core::array::from_fn(|j| block[j][i]));
-                        sink.block(at(a), at(b), block);
-                        sink.block(at(b), at(a), transposed);
+                rings.facets.iter().for_each(|facet| second_of_triple(view, facet.map(at), factor, sink));
+            }
+            Boundary::Curved(sides) => {
+                for (nodes, weight) in &sides.terms {
+                    if D == 2 {
+                        second_of_pair([at(nodes[0]), at(nodes[1])], weight * factor, sink);
+                    } else {
+                        second_of_triple(view, nodes.map(at), weight * factor, sink);
                     }
                 }
             }
@@ -242,6 +247,7 @@ impl Boundary {
         match self {
             Boundary::Plane(edges) => edges.pairs().as_flattened(),
             Boundary::Space(rings) => rings.facets.as_flattened(),
+            Boundary::Curved(sides) => &sides.nodes,
         }
     }
 
@@ -249,7 +255,7 @@ impl Boundary {
     pub(super) fn area_len<const D: usize>(&self, layout: Layout, nodes: usize) -> usize {
         match self {
             Boundary::Plane(_) => 0,
-            Boundary::Space(_) => D * layout.places(nodes),
+            Boundary::Space(_) | Boundary::Curved(_) => D * layout.places(nodes),
         }
     }
 
@@ -261,6 +267,9 @@ impl Boundary {
                 (rings.neighbour.capacity() + rings.widths.capacity()) * 4
                     + rings.together.capacity()
                     + rings.facets.capacity() * 12
+            }
+            Boundary::Curved(sides) => {
+                sides.terms.capacity() * size_of::<([u32; 3], f64)>() + sides.nodes.capacity() * size_of::<u32>()
             }
         }
     }

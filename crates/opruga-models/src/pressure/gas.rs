@@ -79,12 +79,56 @@ impl Gas {
             temperature,
         }
     }
-    /// nRT at the rest volume at a time, if this fraction has not leaked [J].
-    pub(super) fn amount_at(&self, time: f64, fraction: f64) -> f64 {
+    /// nRT₀ that was let in until a time, less what was lost since [J].
+    pub(super) fn cold_at(&self, time: f64, lost: f64) -> f64 {
         let ramp = if self.ramp > 0.0 { (time / self.ramp).larger(0.0).smaller(1.0) } else { 1.0 };
-        let warmth = opruga_core::system::along_path::<1>(&self.temperature, time).0[0];
-        let warmth = if self.temperature.is_empty() { 1.0 } else { warmth };
-        self.amount * fraction * ramp * warmth
+        // A ramp that is made longer while it lasts may have let in less than was lost.
+        (self.amount * ramp - lost).larger(0.0)
+    }
+    /// T/T₀ at a time.
+    pub(super) fn warmth(&self, time: f64) -> f64 {
+        if self.temperature.is_empty() {
+            return 1.0;
+        }
+        opruga_core::system::along_path::<1>(&self.temperature, time).0[0]
+    }
+    /// nRT at the rest volume at a time, when so much nRT₀ was lost [J].
+    pub(super) fn amount_at(&self, time: f64, lost: f64) -> f64 {
+        self.cold_at(time, lost) * self.warmth(time)
+    }
+    /// What is left of nRT₀ after a leak of h [s] at a volume that stays the same [J].
+    ///
+    /// dP/dt = −λ (P − P_a) there, so P goes to P_a + (P − P_a) e^(−λh), however fast that is, and the gas with it.
+    pub(super) fn after_leak(&self, cold: f64, warmth: f64, volume: f64, h: f64) -> f64 {
+        if self.leak <= 0.0 || warmth <= 0.0 {
+            return cold;
+        }
+        let pressure = self.at(volume, cold * warmth).pressure;
+        let kept = Lane::exp(-self.leak * h);
+        let after = self.ambient + (pressure - self.ambient) * kept;
+        if pressure > 0.0 {
+            return cold * (after / pressure);
+        }
+        // An empty chamber: how much gas has a pressure of one.
+        let v = volume.larger(self.smallest_volume * self.rest_volume);
+        let unit = match self.process {
+            Process::Isothermal => v,
+            Process::Adiabatic { gamma } => self.rest_volume * Lane::exp(gamma * Lane::ln(v / self.rest_volume)),
+        };
+        after * unit / warmth
+    }
+    /// P V of this nRT at the rest volume, at the volume where the gas is [J]: what nRT has become.
+    pub(super) fn heat(&self, volume: f64, amount: f64) -> f64 {
+        match self.process {
+            Process::Isothermal => amount,
+            Process::Adiabatic { gamma } => {
+                let mut v = volume.larger(self.smallest_volume * self.rest_volume);
+                if let Some(cap) = self.largest_pressure {
+                    v = v.larger(self.volume_at(cap, amount));
+                }
+                amount * Lane::exp((1.0 - gamma) * Lane::ln(v / self.rest_volume))
+            }
+        }
     }
     /// The state at a volume V for this nRT (at the rest volume).
     ///
@@ -136,6 +180,41 @@ impl Gas {
             Process::Adiabatic { gamma } => {
                 let ratio = amount / self.rest_volume / pressure;
                 if ratio > 0.0 { self.rest_volume * Lane::exp(Lane::ln(ratio) / gamma) } else { 0.0 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga_core::spec::Value;
+
+    fn gas(process: &str) -> Gas {
+        let spec = &super::super::SPEC;
+        let mut values = Values::defaults(spec, 2);
+        for (name, value) in [
+            ("nRT", Value::Number(100.0)),
+            ("leak", Value::Number(0.5)),
+            ("ambient", Value::Number(30.0)),
+            ("process", Value::Text(process.into())),
+        ] {
+            values.set(spec, name, value, 2).expect("allowed");
+        }
+        Gas::new(&values, 1.0)
+    }
+
+    /// dP/dt = −λ (P − P_a) at a volume that stays the same, however far the gas is compressed.
+    #[test]
+    fn a_leak_is_as_fast_in_a_compressed_gas_of_either_process() {
+        for process in ["isothermal", "adiabatic"] {
+            let gas = gas(process);
+            for volume in [0.4, 1.0, 1.7] {
+                let before = gas.at(volume, 100.0);
+                let after = gas.at(volume, gas.after_leak(100.0, 1.0, volume, 0.8));
+                let expected = 30.0 + (before.pressure - 30.0) * Lane::exp(-0.4);
+                assert!((after.pressure - expected).abs() < 1e-12 * expected, "{process}, {volume} m³");
+                assert!((gas.heat(volume, 100.0) - before.pressure * volume).abs() < 1e-12 * 100.0, "{process}");
             }
         }
     }

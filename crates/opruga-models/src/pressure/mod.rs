@@ -12,10 +12,12 @@
 //! How this differs from the published program (errors E1 to E11) is told in the documentation of `as_published`.
 
 mod chamber;
+mod curved;
 mod gas;
 mod spec;
 
 use chamber::{Boundary, NodeRings};
+use curved::CurvedSides;
 use gas::Gas;
 pub use spec::SPEC;
 
@@ -25,7 +27,7 @@ use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, P
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
-use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
+use opruga_math::{Pack, Simd, WIDTH, Work};
 use opruga_mesh::{Mesh, MeshError};
 
 /// The kind `pressure`.
@@ -57,9 +59,14 @@ struct Chamber {
 /// Numbers of a chamber in the scratch, before its area vectors.
 const NUMBERS: usize = 4 * WIDTH;
 
-/// Memory of a chamber, per body: the fraction of gas that has not leaked, how often the pressure was limited, and how often
-/// the chamber enclosed nothing.
-const MEMORY: usize = 3 * WIDTH;
+/// Memory of a chamber, per body: nRT₀ that was lost [J], how often the pressure was limited, how often the chamber enclosed
+/// nothing, and the full nRT₀ [J] that the loss counts from.
+const MEMORY: usize = 4 * WIDTH;
+
+/// What a gas has lost since it was filled, of the memory of its chamber [J]: nothing where a scene has set another amount since.
+fn lost(gas: &Gas, memory: &[f64], body: usize) -> f64 {
+    if memory[3 * WIDTH + body] == gas.amount { memory[body] } else { 0.0 }
+}
 
 impl<const D: usize> Model<D> for PressureModel {
     fn spec(&self) -> &'static Spec {
@@ -79,13 +86,23 @@ impl<const D: usize> Model<D> for PressureModel {
         let nodes = mesh.positions.len();
         let mut scratch = 0;
         let mut chambers = Vec::new();
+        let bends = |side: &Vec<u32>| side.len() > D;
+        let all: Vec<u32> = if mesh.cells.is_empty() { Vec::new() } else { (0..nodes as u32).collect() };
+        let sides: Vec<Vec<u32>> = mesh.boundary_sides(&all).into_iter().filter(bends).collect();
         for (number, facets) in parts.iter().enumerate() {
-            let rest_volume = opruga_mesh::signed_volume(facets, &mesh.positions) * depth;
+            let curved = CurvedSides::of(facets, &sides);
+            let rest_volume = depth
+                * match &curved {
+                    Some(sides) => sides.volume(|node| mesh.positions[node as usize], |_, _| {}),
+                    None => opruga_mesh::signed_volume(facets, &mesh.positions),
+                };
             if rest_volume.is_nan() || rest_volume <= 0.0 {
                 let message = format!("chamber {number} encloses {rest_volume} m³; allowed: > 0 (is it inside out?)");
                 return Err(BuildError::new("pressure", "model.volume", message));
             }
-            let boundary = if D == 2 {
+            let boundary = if let Some(sides) = curved {
+                Boundary::Curved(sides)
+            } else if D == 2 {
                 let edges: Vec<[u32; 2]> = facets.iter().map(|f| [f[0], f[1]]).collect();
                 Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
             } else {
@@ -163,8 +180,8 @@ impl Pressure {
     /// Volume [m³], pressure [Pa] and nRT [J] of a chamber of one of the bodies.
     fn chamber_state(&self, chamber: &Chamber, scratch: &[f64], body: usize) -> (f64, f64, f64) {
         let known = chamber.known(scratch);
-        let (volume, amount) = (known.volume[body] * self.depth, known.amount[body]);
-        (volume, chamber.gas(body).at(volume, amount).pressure, amount)
+        let (volume, amount, gas) = (known.volume[body] * self.depth, known.amount[body], chamber.gas(body));
+        (volume, gas.at(volume, amount).pressure, gas.heat(volume, amount))
     }
 }
 
@@ -185,9 +202,9 @@ impl<const D: usize> Potential<D> for Pressure {
     }
     fn initial_memory(&self) -> Vec<f64> {
         let mut memory = Vec::new();
-        for _ in &self.chambers {
-            memory.extend([1.0; WIDTH]);
-            memory.extend([0.0; MEMORY - WIDTH]);
+        for chamber in &self.chambers {
+            memory.extend([0.0; 3 * WIDTH]);
+            memory.extend((0..WIDTH).map(|body| chamber.gas(body).amount));
         }
         memory
     }
@@ -200,8 +217,8 @@ impl<const D: usize> Potential<D> for Pressure {
             let scratch = &mut scratch[chamber.scratch..chamber.scratch + NUMBERS];
             for body in 0..self.bodies() {
                 let gas = chamber.gas(body);
-                let amount =
-                    if gas.changes { gas.amount_at(view.time, memory[number * MEMORY + body]) } else { gas.amount };
+                let lost = lost(gas, &memory[number * MEMORY..], body);
+                let amount = if gas.changes || lost != 0.0 { gas.amount_at(view.time, lost) } else { gas.amount };
                 let (pressure, limited) = gas.pressure_at(scratch[body] * self.depth, amount);
                 scratch[WIDTH + body] = (pressure - gas.ambient) * self.depth;
                 scratch[2 * WIDTH + body] = amount;
@@ -221,8 +238,11 @@ impl<const D: usize> Potential<D> for Pressure {
         for (number, chamber) in self.chambers.iter().enumerate() {
             let known = chamber.known(scratch);
             for body in 0..self.bodies() {
-                memory[number * MEMORY + WIDTH + body] += known.limited[body];
-                memory[number * MEMORY + 2 * WIDTH + body] += f64::from(known.volume[body] <= 0.0);
+                let (gas, memory) = (chamber.gas(body), &mut memory[number * MEMORY..]);
+                memory[body] = lost(gas, memory, body);
+                memory[WIDTH + body] += known.limited[body];
+                memory[2 * WIDTH + body] += f64::from(known.volume[body] <= 0.0);
+                memory[3 * WIDTH + body] = gas.amount;
             }
         }
         if !self.changes {
@@ -238,11 +258,11 @@ impl<const D: usize> Potential<D> for Pressure {
                 }
                 let volume = scratch[chamber.scratch + body] * self.depth;
                 let before = gas.amount_at(view.time - h, memory[body]);
-                if gas.leak > 0.0 && before > 0.0 {
-                    // d ln(nRT)/dt = −λ (P − P_a) V / nRT, over one step with its pressure held.
-                    let pressure = gas.at(volume, before).pressure;
-                    let exponent = -gas.leak * h * (pressure - gas.ambient) * volume / before;
-                    memory[body] *= Lane::exp(exponent);
+                if gas.leak > 0.0 {
+                    // Half of what is let in, the leak, the other half.
+                    let middle = view.time - 0.5 * h;
+                    let cold = gas.cold_at(middle, memory[body]);
+                    memory[body] += cold - gas.after_leak(cold, gas.warmth(middle), volume, h);
                 }
                 let after = gas.amount_at(view.time, memory[body]);
                 given[body] += gas.at(volume, after).energy - gas.at(volume, before).energy;

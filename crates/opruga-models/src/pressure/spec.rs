@@ -11,10 +11,10 @@ pub const SPEC: Spec = Spec {
     summary: "ideal gas inside closed boundaries: isothermal or adiabatic, with ambient pressure, ramp, leak and heating",
     documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, \
 U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − P_a) ∂V/∂x on every node, half of an edge's in 2D and a third of a triangle's in 3D. \
-V is the enclosed area times thickness in 2D, the enclosed volume in 3D, by the divergence theorem; holes count negative by their orientation, \
+V is the enclosed area times thickness in 2D, the enclosed volume in 3D, by the divergence theorem, and sides of quadratic cells and of boxes bend in it as the cells do, so that an even pressure leaves an even stress; holes count negative by their orientation, \
 and every closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs \
 into its cavities: `inside = \"cavities\"`, each a chamber of its own. \
-`diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT of all chambers of the body NAME, \
+`diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT (P V also of an adiabatic gas, whose temperature changes) of all chambers of the body NAME, \
 and the mean of their pressures weighed by volume. A body of several chambers has besides `NAME.chamber1.volume`, `NAME.chamber1.pressure`, \
 `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on, in the order of the boundaries in the shape, that of a chamber being the first of its facets. \
 Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure stays P(V_s), through zero and for a body turned inside out: \
@@ -29,7 +29,8 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "J",
             Default::OneOf(AMOUNT),
-            "Amount of gas times temperature; exactly one of `nRT` and `pressure`.",
+            "Amount of gas times temperature; exactly one of `nRT` and `pressure`. A command that sets either fills the chamber anew, \
+             whatever had leaked.",
         ),
         Field::new(
             "pressure",
@@ -80,11 +81,13 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "1/s",
             Default::Number(0.0),
-            "Rate λ of loss: d(nRT)/dt = −λ (P − P_a) V; nothing leaks once the pressures are equal.",
+            "Rate λ of loss: d(nRT)/dt = −λ (1 − P_a/P) nRT, which is −λ (P − P_a) V, so that in a volume that stays the same the \
+             pressure nears that outside by e^(−λt); air flows in where it is lower than that. What has leaked stays lost when the \
+             rate changes.",
         ),
         Field::new(
             "temperature",
-            Allowed::Curve,
+            Allowed::CurveNotNegative,
             "",
             Default::Absent,
             "T/T₀ over time: `[[t, factor], …]`, straight between its points.",

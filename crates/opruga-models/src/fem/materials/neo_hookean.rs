@@ -1,9 +1,6 @@
 //! The neo-Hookean solid in its logarithmic form.
 
-use crate::fem::material::{
-    Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, logarithm_of_volume,
-    no_tangent,
-};
+use crate::fem::material::{Invariants, Material, Parameters, Principal, logarithm_of_volume};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::{Singular, singular};
@@ -40,14 +37,9 @@ impl<const D: usize> Material<D> for NeoHookean {
         (energy, matrix::plus(&matrix::scaled(f, p.mu), factor, &cofactors))
     }
     #[inline(always)]
-    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
-        let cofactors = matrix::cofactor(f);
-        let (first, second) = volumetric(p, matrix::determinant_by(f, &cofactors));
-        let mut out = no_tangent();
-        add_identity(&mut out, p.mu);
-        add_square(&mut out, second, &cofactors);
-        add_cofactor_derivative(&mut out, first, f);
-        out
+    fn invariants<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Option<Invariants<S>> {
+        let (volume, volume_twice) = volumetric(p, matrix::determinant(f));
+        Some(Invariants { stretch: p.mu, stretch_twice: None, volume, volume_twice })
     }
     #[inline(always)]
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {

@@ -1,8 +1,6 @@
 //! The stable neo-Hookean solid.
 
-use crate::fem::material::{
-    Material, Parameters, Principal, Tangent, add_cofactor_derivative, add_identity, add_square, no_tangent,
-};
+use crate::fem::material::{Invariants, Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::{Singular, singular};
@@ -47,17 +45,16 @@ impl<const D: usize> Material<D> for StableNeoHookean {
         (energy, matrix::plus(&stress, l * change - rest, &cofactors))
     }
     #[inline(always)]
-    fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
+    fn invariants<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Option<Invariants<S>> {
         let (m, l) = moduli(p);
-        let cofactors = matrix::cofactor(f);
-        let change = matrix::determinant_by(f, &cofactors) - S::one();
+        let change = matrix::determinant(f) - S::one();
         let inverse = S::one() / (stretch(f) + S::one());
-        let mut out = no_tangent();
-        add_identity(&mut out, m - m * inverse);
-        add_square(&mut out, S::splat(2.0) * m * inverse * inverse, f);
-        add_square(&mut out, l, &cofactors);
-        add_cofactor_derivative(&mut out, l * change - S::splat(0.75) * m, f);
-        out
+        Some(Invariants {
+            stretch: m - m * inverse,
+            stretch_twice: Some(S::splat(2.0) * m * inverse * inverse),
+            volume: l * change - S::splat(0.75) * m,
+            volume_twice: l,
+        })
     }
     #[inline(always)]
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
