@@ -49,6 +49,9 @@ impl<const D: usize> System<D> {
                         self.velocity_before[d][..range.len()].copy_from_slice(&self.state.v.0[d][range]);
                     }
                 }
+                if step.is_some() {
+                    self.keep_positions(done);
+                }
                 self.update_tile(done, update);
                 if let Some(h) = step.filter(|_| hindered) {
                     if several {
@@ -130,16 +133,22 @@ impl<const D: usize> System<D> {
         }
     }
 
+    /// Keeps where the nodes of a tile were: obstacles look at the way from there.
+    #[inline]
+    fn keep_positions(&mut self, tile: usize) {
+        if self.contacts.is_some() {
+            let range = self.plan.range(tile);
+            for d in 0..D {
+                self.before[d][..range.len()].copy_from_slice(&self.state.x.0[d][range.clone()]);
+            }
+        }
+    }
+
     /// Lets the integrator move the nodes of a tile.
     #[inline]
     fn update_tile<U: Update<D>>(&mut self, tile: usize, update: &U) {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
-        if self.contacts.is_some() {
-            for d in 0..D {
-                self.before[d][..range.len()].copy_from_slice(&self.state.x.0[d][range.clone()]);
-            }
-        }
         let force = self.forces.each_ref().map(|f| &f[buffer..buffer + range.len() + WIDTH]);
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }

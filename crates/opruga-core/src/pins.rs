@@ -23,6 +23,15 @@ impl<const D: usize> Pin<D> {
         let (offset, rate) = along_path::<D>(&self.motion, time);
         (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
     }
+    /// The acceleration of the path about a time [m/s²]: the velocity over so long after it less that over as long before it,
+    /// so that corners of the path count by what they change of the velocity.
+    pub fn acceleration(&self, time: f64, span: f64) -> [f64; D] {
+        if self.motion.is_empty() {
+            return [0.0; D];
+        }
+        let [before, now, after] = [time - span, time, time + span].map(|time| along_path::<D>(&self.motion, time).0);
+        core::array::from_fn(|d| ((after[d] - now[d]) - (now[d] - before[d])) / (span * span))
+    }
 }
 
 /// The point and its velocity on a piecewise straight path with rows `[t, x, y(, z)]`, at rest before and after it.
@@ -126,7 +135,8 @@ impl<const D: usize> System<D> {
         self.held.learn(&self.pins, self.time, h);
     }
 
-    /// Puts held nodes where they are prescribed to be.
+    /// Puts held nodes where they are prescribed to be, at the velocity of their path there; where a mass matrix couples them
+    /// to others they keep the one that the step has given them, since a change of it is an impulse on those too.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
         let (x, v) = match stage {
             Stage::Current => (&mut self.state.x, &mut self.state.v),
@@ -140,7 +150,9 @@ impl<const D: usize> System<D> {
             for d in 0..D {
                 if pin.axes[d] {
                     x.0[d][pin.place] = position[d];
-                    v.0[d][pin.place] = velocity[d];
+                    if self.inertia.is_none() {
+                        v.0[d][pin.place] = velocity[d];
+                    }
                 }
             }
         }

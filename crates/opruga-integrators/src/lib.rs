@@ -16,6 +16,8 @@ pub mod verlet;
 #[cfg(test)]
 mod testing;
 
+pub use implicit::holding::accelerations;
+
 use core::any::Any;
 use opruga_core::integrator::IntegratorKind;
 

@@ -245,6 +245,28 @@ pub enum MeshError {
         /// Its signed area [m²] or volume [m³].
         signed_volume: f64,
     },
+    /// Two rings of one body have points in common.
+    #[error("the rings {first} and {second} cross or touch")]
+    RingsMeet {
+        /// The one, by its number from 0.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// A ring lies in a ring, or a hole in a hole: the area would count twice, or be left out twice.
+    #[error("ring {inner} lies inside ring {outer}, and their radii have the same sign")]
+    RingsAlike {
+        /// The one around, by its number from 0.
+        outer: usize,
+        /// The one inside.
+        inner: usize,
+    },
+    /// A ring that is a hole lies in no other ring.
+    #[error("ring {ring} is a hole, by its negative radius, and lies inside no other ring")]
+    HoleInNothing {
+        /// Its number from 0.
+        ring: usize,
+    },
     /// Elements of different dimension share one mesh, so that one density cannot give a mass.
     #[error("the mesh mixes {first} and {second} elements, which have no common measure")]
     MixedMeasures {

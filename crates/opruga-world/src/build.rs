@@ -430,8 +430,9 @@ fn no_view(model: &str, integrator: &str) -> BuildError {
 
 fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
     WorldError::Path {
-        path: format!("load on `{}`", body.name),
-        message: "the selected nodes hold no whole facet of the boundary".into(),
+        path: format!("load on {}", body.name),
+        message: "the selected nodes hold no whole facet of the boundary; allowed: all nodes of one facet at least"
+            .into(),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::changes::Source;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
-use crate::selection::extent;
+use crate::selection::longest_side;
 use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::{Pin, System};
@@ -66,9 +66,28 @@ impl<const D: usize> Action<D> {
             Action::Set { .. } | Action::Add(_) | Action::Remove { .. } => None,
         }
     }
+
+    /// The word of a scene for what is done.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Action::Drag { .. } => "drag",
+            Action::Push { .. } => "push",
+            Action::Pin { .. } => "pin",
+            Action::Free { .. } => "free",
+            Action::Set { .. } => "set",
+            Action::Change { .. } => "change",
+            Action::Add(_) => "add",
+            Action::Remove { .. } => "remove",
+        }
+    }
 }
 
 impl<const D: usize> World<D> {
+    /// The command that the last call of [`World::frame`] has refused: the cause of its error.
+    pub fn refused_command(&self) -> Option<&CommandBlueprint<D>> {
+        self.refused.as_deref()
+    }
+
     pub(crate) fn command_here(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
             && !self.alive.get(body).copied().unwrap_or(false)
@@ -138,6 +157,7 @@ impl<const D: usize> World<D> {
         let soon = now + 1e-9 * self.blueprint.time.frame;
         let mut touched = BTreeSet::new();
         let mut failed = Ok(());
+        self.refused = None;
         for number in 0..self.running.len() {
             let running = &self.running[number];
             let over = soon >= running.command.until && running.command.until > running.command.at;
@@ -148,6 +168,9 @@ impl<const D: usize> World<D> {
                     // It is told once; what else begins now begins all the same.
                     Err(error) => {
                         self.running[number].progress = Progress::Done;
+                        if failed.is_ok() {
+                            self.refused = Some(Box::new(self.running[number].command.clone()));
+                        }
                         failed = failed.and(Err(error));
                     }
                 },
@@ -352,8 +375,7 @@ fn pull_of<const D: usize>(
     let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
     let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
     let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
-    let (low, high) = extent(&body.mesh);
-    let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+    let size = longest_side(&body.mesh);
     // A point has no size to measure the pull by.
     let farthest = if size > 0.0 { FARTHEST_PULL * size * stiffness } else { f64::INFINITY };
     Pull {

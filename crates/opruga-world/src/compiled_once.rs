@@ -254,6 +254,13 @@ impl<const D: usize> World<D> {
         /// [`WorldError`] if its time is not that of the coming frame or if it is refused; then it was never given.
         pub fn act(&mut self, command @ CommandBlueprint<D>) -> Result<usize, WorldError> = act_here;
 
+        /// Begins and ends what is due now without waiting for the coming frame, which then finds it done: what is to be seen
+        /// at a moment that was gone back to.
+        ///
+        /// # Errors
+        /// [`WorldError`] of the first command that is refused; the others begin all the same.
+        pub fn begin_what_is_due(&mut self) -> Result<(), WorldError> = run_commands;
+
         /// Leads the pointer of a drag: adds a row `[t, x, y(, z)]` to the end of its path.
         ///
         /// What was stepped before does not change if the row lies behind the frame that comes next.

@@ -1,6 +1,6 @@
 //! Bodies between moving obstacles that leave them no room.
 
-use crate::selection::extent;
+use crate::selection::longest_side;
 use crate::world::{Warning, World};
 use opruga_core::contacts::Contacts as _;
 use opruga_math::words::number;
@@ -44,8 +44,7 @@ impl<const D: usize> World<D> {
             if self.handle(body).is_none() {
                 continue;
             }
-            let (low, high) = extent(&self.blueprint.bodies[body].mesh);
-            let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+            let size = longest_side(&self.blueprint.bodies[body].mesh);
             let thick = match self.blueprint.bodies[body].mesh.measure() {
                 Ok(Measure::Volume(_)) => true,
                 Ok(Measure::Area(_)) => D == 2,

@@ -16,7 +16,8 @@ pub struct Energy {
     pub gas: f64,
     /// Potential energy −Σ m g·x.
     pub gravity: f64,
-    /// Work of loads, pushes, pulls, moving obstacles and pins.
+    /// Work of loads, pushes, pulls, moving obstacles and pins, and the energy that came or went with a change of the scene:
+    /// a parameter that was set, a body that was added or taken away.
     pub work_user: f64,
     /// Energy given to the gas by ramps, heating and leaks.
     pub work_gas: f64,
@@ -295,8 +296,10 @@ pub(crate) struct Flows {
     pub(crate) friction: f64,
     pub(crate) contact: f64,
     pub(crate) correction: f64,
-    /// The energy at the start, moved by what commands put in or took out by changing the scene.
+    /// The energy at the start, moved by what changes of the scene put in or took out.
     pub(crate) start: f64,
+    /// What changes of the scene put in so far, less what they took out.
+    pub(crate) changed: f64,
     /// The largest energy in motion so far.
     pub(crate) largest: f64,
     pub(crate) limited_forces: u64,
@@ -329,7 +332,7 @@ impl Flows {
         islands: impl Iterator<Item = (&'a Stock, &'a Survey<D>)>,
     ) -> (Energy, Momentum<D>) {
         let mut energy = Energy {
-            work_user: self.user,
+            work_user: self.user + self.changed,
             work_gas: self.gas,
             loss_damping: self.damping,
             loss_friction: self.friction,

@@ -2,7 +2,7 @@
 
 use crate::blueprint::BodyBlueprint;
 use crate::build::node_masses;
-use crate::selection::extent;
+use crate::selection::{extent, longest_side};
 use crate::world::{Warning, World};
 use opruga_core::error::BuildError;
 use opruga_core::stability::Spectrum;
@@ -28,8 +28,7 @@ pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], s
     };
     let stiffness = 0.25 * spectrum.omega * spectrum.omega * mass / nodes * across;
     let g = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-    let (low, high) = extent(&body.mesh);
-    let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+    let size = longest_side(&body.mesh);
     let sag = mass * g / stiffness;
     // Without models there is nothing to sag; not a number where all is zero.
     let odd = stiffness > 0.0 && sag.is_finite() && sag > size && size > 0.0;
@@ -95,7 +94,7 @@ impl<const D: usize> World<D> {
         for body in 0..self.blueprint.bodies.len() {
             let own = &self.blueprint.bodies[body];
             let (low, high) = extent(&own.mesh);
-            let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+            let size = longest_side(&own.mesh);
             let box_at = |corner: &[f64; D]| core::array::from_fn(|d| corner[d] + own.translation[d]);
             if !colliders.reach(0.0, 0.0, &box_at(&low), &box_at(&high)) {
                 continue;

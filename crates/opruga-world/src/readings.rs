@@ -10,6 +10,7 @@ use opruga_core::potential::{Account, CellState, Count, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::state::Columns;
 use opruga_core::system::{SolverWork, Stage};
+use opruga_integrators::accelerations;
 use opruga_math::WIDTH;
 use opruga_math::words::number;
 
@@ -225,15 +226,35 @@ impl<const D: usize> World<D> {
     }
     pub(crate) fn reaction_here(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
         let (island, lane) = self.place[body];
+        let still = self.islands[island].integrator.is_static();
+        let frame = self.blueprint.time.frame;
         let system = &mut self.islands[island].system;
         let mut sum = [0.0; D];
         let Ok(forces) = system.forces(true) else { return sum };
-        for node in nodes {
-            let place = system.layout.place(*node as usize, lane);
+        // How pins accelerate what they hold; nothing does in statics.
+        let mut held = vec![None; system.nodes * D];
+        for pin in &system.pins {
+            let node = pin.place / system.layout.stride();
+            if system.layout.place(node, lane) != pin.place {
+                continue;
+            }
+            let rate = if still { [0.0; D] } else { pin.acceleration(system.time, frame) };
+            (0..D).filter(|d| pin.axes[*d]).for_each(|d| held[node * D + d] = Some(rate[d]));
+        }
+        let inertia = system.inertia.as_ref().filter(|_| !still).map(|inertia| {
+            let mut a: Vec<f64> = held.iter().map(|rate| rate.unwrap_or(0.0)).collect();
+            let is_held: Vec<bool> = held.iter().map(Option::is_some).collect();
+            // Where masses are coupled there are no obstacles, so that these are all forces on what is free.
+            accelerations(system, &is_held, &system.node_by_node(&forces), &mut a);
+            (inertia, a)
+        });
+        for node in nodes.iter().map(|node| *node as usize) {
+            let place = system.layout.place(node, lane);
+            let more = inertia.as_ref().map_or([0.0; D], |(inertia, a)| inertia.product::<D>(node, a));
             // A node that two pins hold is held by one force all the same.
             for d in 0..D {
-                if system.pins.iter().any(|pin| pin.place == place && pin.axes[d]) {
-                    sum[d] -= forces.0[d][place];
+                if let Some(rate) = held[node * D + d] {
+                    sum[d] += system.mass.at(place) * rate + more[d] - forces.0[d][place];
                 }
             }
         }

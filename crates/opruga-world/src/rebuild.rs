@@ -143,9 +143,12 @@ impl<const D: usize> World<D> {
         self.apply_running(number);
     }
 
-    /// What a change of the scene does to the energy is nobody's work or loss.
+    /// What a change of the scene does to the energy is the work of whoever changed it. It moves the energy from which motion is
+    /// counted: a body that is added high up has not fallen from the ground.
     fn shift_start(&mut self, before: f64) {
-        self.flows.start += self.stock_energy() - before;
+        let change = self.stock_energy() - before;
+        self.flows.start += change;
+        self.flows.changed += change;
         self.refresh_ledger();
     }
 

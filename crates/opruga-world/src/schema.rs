@@ -343,7 +343,9 @@ pub const PIN: Section = Section {
         "Nodes held at their place, or moved in a prescribed way",
         "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant. A held \
          node is where its pin leads it, through obstacles too: these stop its neighbours, not the node. What the pin does \
-         against springs and obstacles is work of the user.",
+         against springs and obstacles is work of the user. Where a node is caught in flight, or its motion has a corner, the \
+         pin changes its velocity by an impulse on that node; with `mass = \"consistent\"`, where a node has inertia with those \
+         beside it, these are thrown back by it, the same under every integrator: a fine table of motion accelerates them.",
         &[
             Field::new(
                 "axes",

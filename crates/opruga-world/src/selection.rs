@@ -148,3 +148,9 @@ pub fn extent<const D: usize>(mesh: &Mesh<D>) -> ([f64; D], [f64; D]) {
     }
     (low, high)
 }
+
+/// The longest side of the bounding box of a mesh [m]; zero where it has no nodes.
+pub fn longest_side<const D: usize>(mesh: &Mesh<D>) -> f64 {
+    let (low, high) = extent(mesh);
+    (0..D).map(|a| high[a] - low[a]).fold(0.0, |most, side| if side > most { side } else { most })
+}

@@ -2,6 +2,7 @@
 
 mod filling;
 mod from_files;
+mod rings;
 
 pub use filling::{Filling, LOST_AND_TOLD, Loss, filling};
 pub use from_files::is_from_file;
@@ -41,7 +42,7 @@ static RING: Spec = Spec {
 static RINGS: Spec = Spec {
     kind: "rings",
     summary: "several round outlines in one body: chambers, and holes in them",
-    documentation: "Circles of `vertices` nodes each, one after the other. A negative radius is a hole: it runs clockwise, and the gas of the ring around it leaves it out. Rings should not cross.",
+    documentation: "Circles of `vertices` nodes each, one after the other. A negative radius is a hole: it runs clockwise, and the gas of the ring around it leaves it out. Rings neither cross nor touch; in a ring lie holes alone, in a hole rings alone, and every hole lies in a ring.",
     dimensions: &[2],
     fields: &[
         Field::new("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
@@ -330,34 +331,12 @@ fn points<const D: usize>(rows: &[Vec<f64>]) -> Vec<[f64; D]> {
     rows.iter().map(|row| core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))).collect()
 }
 
-/// Rings one after the other; those of negative radius run clockwise.
-fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
-    let (centers, radii) = (points::<2>(shape.rows("centers")), shape.numbers("radii").unwrap_or(&[]));
-    if radii.len() != centers.len() {
-        let (value, wanted) = (radii.len() as u64, centers.len() as u64);
-        return Err(MeshError::Count { what: "length of `radii`", value, least: wanted, most: wanted });
-    }
-    let mut all = Mesh::<2>::default();
-    for (center, radius) in centers.iter().zip(radii) {
-        let mut ring = Mesh::ring(radius.abs(), number(shape, "vertices"), *center, 0.0)?;
-        let first = all.positions.len() as u32;
-        all.positions.append(&mut ring.positions);
-        let hole = *radius < 0.0;
-        all.facets.extend(
-            ring.facets.iter().map(|[a, b]| if hole { [b + first, a + first] } else { [a + first, b + first] }),
-        );
-    }
-    // A hole in nothing is refused here, not only when a gas is filled in.
-    all.chambers()?;
-    Ok(all)
-}
-
 fn plane(shape: &Values, transform: &Transform<'_>) -> Result<Made<2>, MeshError> {
     let (radius, start) = (shape.number("radius").unwrap_or(0.0), shape.number("start_angle").unwrap_or(0.0));
     let mut flipped = false;
     let mut mesh = match shape.kind() {
         "ring" => Mesh::ring(radius, number(shape, "vertices"), shape.vector("center"), start)?,
-        "rings" => rings(shape)?,
+        "rings" => rings::rings(shape)?,
         "regular_polygon" => Mesh::regular_polygon(
             number(shape, "sides"),
             radius,

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 4;
+const VERSION: u64 = 5;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -95,7 +95,7 @@ impl<const D: usize> World<D> {
             }
         }
         let f = &self.flows;
-        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.largest] {
+        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.changed, f.largest] {
             out.number(x);
         }
         for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
@@ -236,7 +236,7 @@ impl<const D: usize> World<D> {
             }
             rest.progress.resize(commands.len(), Progress::Waiting);
         }
-        let mut numbers = [0.0; 8];
+        let mut numbers = [0.0; 9];
         for x in &mut numbers {
             *x = reader.number()?;
         }
@@ -252,7 +252,7 @@ impl<const D: usize> World<D> {
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
-        let [user, gas, damping, friction, contact, correction, start, largest] = numbers;
+        let [user, gas, damping, friction, contact, correction, start, changed, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
         let [steps, iterations, linear_iterations, accepted, halved, cut_off, disturbed, odd_rests] = solver;
         rest.flows = Flows {
@@ -263,6 +263,7 @@ impl<const D: usize> World<D> {
             contact,
             correction,
             start,
+            changed,
             largest,
             limited_forces,
             limited_velocities,

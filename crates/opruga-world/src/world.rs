@@ -1,6 +1,6 @@
 //! The world: bodies, obstacles, time.
 
-use crate::blueprint::{Blueprint, BodyBlueprint};
+use crate::blueprint::{Blueprint, BodyBlueprint, CommandBlueprint};
 use crate::build::{build_colliders, build_integrator, initial_state};
 use crate::changes::Change;
 use crate::commands::Running;
@@ -83,6 +83,8 @@ pub struct World<const D: usize> {
     pub(crate) alive: Vec<bool>,
     pub(crate) generation: Vec<u32>,
     pub(crate) running: Vec<Running<D>>,
+    /// The first command that could not begin in the last frame.
+    pub(crate) refused: Option<Box<CommandBlueprint<D>>>,
     pub(crate) user_forces: Vec<(usize, Arc<ForceLaw<D>>)>,
     pub(crate) limited_pulls: Arc<AtomicU64>,
     pub(crate) flows: Flows,
@@ -136,6 +138,7 @@ impl<const D: usize> World<D> {
         let states = blueprint.bodies.iter().map(initial_state).enumerate().collect();
         let mut world = World {
             running: blueprint.commands.iter().map(|c| Running::waiting(c.clone())).collect(),
+            refused: None,
             simd: options.simd.unwrap_or_else(Simd::best),
             blueprint,
             registry,
@@ -168,7 +171,7 @@ impl<const D: usize> World<D> {
         // The ledger starts from here.
         world.flows.start = 0.0;
         let start = world.stock_energy();
-        world.flows.start = start;
+        (world.flows.start, world.flows.changed) = (start, 0.0);
         world.refresh_ledger();
         Ok(world)
     }

@@ -261,6 +261,45 @@ fn disturbances_are_repeatable_and_counted() {
     assert!(a.warnings().iter().any(|warning| warning.code == "step.disturbed"));
 }
 
+/// A viscous body that was stretched and let go creeps back: its elastic forces are out of balance all the way, by U/ε a
+/// strain of ε, however slowly it moves. Only damping holds them, which is no rest, and no cell is flat or inside out. So no
+/// step may put energy into it: where strains are small, what it stores falls as exp(−2t/τ).
+#[test]
+fn a_body_that_creeps_back_against_its_viscosity_is_never_taken_for_one_at_rest() {
+    let tau = 20.0;
+    for stretch in [1.2, 2.0] {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [4, 2]).unwrap();
+        let mut blueprint = solid(
+            mesh.clone(),
+            "backward_euler",
+            &[],
+            &[
+                ("material", text("neo_hookean")),
+                ("youngs_modulus", Value::Number(1e5)),
+                ("poissons_ratio", Value::Number(0.3)),
+                ("damping", Value::Number(tau)),
+            ],
+        );
+        blueprint.time.frame = 0.05;
+        let mut world = World::new(blueprint, Options::default()).unwrap();
+        for (node, x) in mesh.positions.iter().enumerate() {
+            world.place_node(0, node as u32, [stretch * x[0], x[1]], [0.0; 2]).unwrap();
+        }
+        let (mut before, mut late) = (f64::INFINITY, f64::NAN);
+        while world.time() < 70.0 - 0.025 {
+            world.frame().unwrap();
+            let energy = world.energy();
+            let now = energy.elastic + energy.kinetic;
+            assert!(now < before, "stretched {stretch} times, at {} s: {now} J after {before} J", world.time());
+            before = now;
+            late = if world.time() < 60.0 + 0.025 { now } else { late };
+        }
+        assert_eq!((world.solver_work().disturbed, world.solver_work().odd_rests), (0, 0), "stretched {stretch} times");
+        let kept = before / late * libm::exp(2.0 * 10.0 / tau);
+        assert!(stretch > 1.2 || (kept - 1.0).abs() < 0.1, "{before} J ten seconds after {late} J");
+    }
+}
+
 /// Steps that count though they did not converge may not lead beyond every measure.
 #[test]
 fn accepted_steps_that_blow_a_body_up_end_in_an_error() {

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{clamp, solid, text};
-use opruga_core::spec::Value;
+use opruga_core::spec::{Value, Values};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
 use opruga_world::{Options, World, WorldError};
@@ -220,4 +220,73 @@ fn what_is_too_much_at_once_is_put_on_by_halves_or_said_to_have_gone_so_far() {
     let (outcome, _, work, _) = bent(2, "accept", 10.0);
     outcome.unwrap();
     assert_eq!(work.accepted, 1);
+}
+
+/// Three squares in a row of which the middle one is left out: one body of two pieces.
+fn two_squares() -> Blueprint<2> {
+    let mut mesh = Mesh::<2>::grid([0.0; 2], [3.0, 1.0], [3, 1]).unwrap();
+    mesh.cells.quadrilaterals.remove(1);
+    statics(mesh, &[])
+}
+
+/// A piece that nothing holds has no equilibrium under its weight and many without, whatever holds the others: the two squares
+/// share no node, so the first one, clamped, carries nothing of the second, which has the three rigid motions of the plane.
+#[test]
+fn every_piece_of_a_body_has_to_be_held_with_weight_and_without() {
+    for weight in [0.0, 1.0] {
+        let mut islands = two_squares();
+        islands.surroundings.gravity = [0.0, -weight];
+        islands.bodies[0].pins = clamp();
+        let told = refusal(&islands).expect("a refusal");
+        assert_eq!(
+            told,
+            "the body is in 2 pieces, and nothing holds that of 4 nodes about (2.5, 0.5) m against translation along x, \
+             translation along y, rotation: 3 rigid modes",
+            "{weight}"
+        );
+        // What nothing holds at all is told as a whole.
+        islands.bodies[0].pins.clear();
+        assert!(refusal(&islands).is_some_and(|told| told.starts_with("translation along x")), "{weight}");
+        // Node 2 is a corner of the second square: held there it turns, and under its weight it hangs or stands.
+        islands.bodies[0].pins = clamp();
+        pin(&mut islands, 2, [true; 2]);
+        let told = refusal(&islands);
+        match weight {
+            0.0 => assert!(told.is_some_and(|told| told.ends_with("against rotation: 1 rigid mode"))),
+            _ => assert_eq!(told, None),
+        }
+        pin(&mut islands, 3, [false, true]);
+        assert_eq!(refusal(&islands), None, "{weight}");
+        let mut world = World::new(islands, Options::default()).unwrap();
+        world.frame().unwrap();
+    }
+    // A body in one piece is not told of pieces.
+    let mut one = statics(Mesh::<2>::grid([0.0; 2], [3.0, 1.0], [3, 1]).unwrap(), &[]);
+    one.bodies[0].pins = clamp();
+    assert_eq!(refusal(&one), None);
+}
+
+/// The ground at height 0, which does not rub.
+fn floor() -> ColliderBlueprint {
+    let spec = opruga_collide::all(2).into_iter().find(|s| s.kind == "half_space").expect("a floor");
+    let mut values = Values::defaults(spec, 2);
+    for (name, value) in [("point", vec![0.0, 0.0]), ("normal", vec![0.0, 1.0])] {
+        values.set(spec, name, Value::Numbers(value), 2).expect("a field");
+    }
+    ColliderBlueprint { values }
+}
+
+/// On a floor that does not rub a piece slides, though the other is clamped.
+#[test]
+fn a_piece_that_a_smooth_floor_alone_holds_is_named_with_the_way_it_slides() {
+    let mut islands = two_squares();
+    islands.surroundings.gravity = [0.0, -1.0];
+    islands.bodies[0].pins = clamp();
+    islands.colliders = vec![floor()];
+    let mut world = World::new(islands.clone(), Options::default()).unwrap();
+    let told = world.frame().expect_err("a refusal").to_string();
+    let wanted = "the body is in 2 pieces, and that of 4 nodes about (2.5, 0.";
+    assert!(told.contains(wanted) && told.contains("hold it against translation along x; "), "{told}");
+    pin(&mut islands, 2, [true, false]);
+    World::new(islands, Options::default()).unwrap().frame().unwrap();
 }

@@ -83,9 +83,19 @@ impl<const D: usize> Rule<D> for Bdf2 {
             for d in 0..D {
                 let k = node * D + d;
                 let velocity = room.v0[k];
-                room.z[k] = share * way.0[d][node];
-                room.y[k] = room.z[k] + span * (velocity + share * (velocity - before.0[d][node]));
+                // A jump of velocity by pins is one of all that is remembered too: the difference across it is no force.
+                let jump = room.kick.get(k).copied().unwrap_or(0.0);
+                room.z[k] = share * (way.0[d][node] + last * jump);
+                room.y[k] = room.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
             }
+        }
+        if system.inertia.is_some() {
+            // What pins hold goes on as if it had always moved as it does in this step; its neighbours would feel more.
+            system.held_axes(&mut |node, d| {
+                let k = node * D + d;
+                room.z[k] = share * last * room.v0[k];
+                room.y[k] = room.z[k] + span * room.v0[k];
+            });
         }
         if r == 0.0 {
             for k in 0..room.z.len() {

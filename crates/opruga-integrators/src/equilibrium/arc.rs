@@ -2,6 +2,10 @@
 //!
 //! Obstacles hold nodes as in every other step of statics: who is held is decided anew in every iteration, so the curve has a
 //! kink where a node comes to a surface or leaves it, and the way of a step leads around it.
+//!
+//! Two points of the curve lie a way apart from where a step begins: one on, one back. Where the curve turns sharply the iteration
+//! may find the one that it came from, and which way is on is told by the last step alone. So a step in which the curve
+//! turns by more than 60° is gone again in halves, but for the kinks that obstacles make.
 
 use super::{COMPLETE, Equilibrium, Reached, SPEC};
 use crate::implicit::contact_derivatives::Sight;
@@ -12,10 +16,14 @@ use crate::implicit::step::report;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
+use opruga_math::words::number;
 use opruga_solve::{Indefinite, dot};
 
 /// Halvings of the way of a step at most.
 const MOST_HALVINGS: u32 = 10;
+
+/// The cosine of the angle by which the curve may turn from step to step and within one.
+const LEAST_COSINE: f64 = 0.5;
 
 /// Iterations of a step at most, alone and on obstacles, whose friction follows slowly: more mean that the way is too long.
 const ITERATIONS: u32 = 25;
@@ -37,13 +45,13 @@ pub(super) fn follow<const D: usize>(
     }
     let start = room.u.clone();
     let mut way = length * (system.nodes as f64).sqrt();
-    let mut solved = Solved::default();
+    let mut tried = Tried::default();
     for _ in 0..=MOST_HALVINGS {
         room.u.copy_from_slice(&start);
-        if let Some(reached) = one_step(rule, system, room, way, load, h, &mut solved)? {
+        if let Some(reached) = one_step(rule, system, room, way, load, h, &mut tried)? {
             system.work.solver.steps += 1;
-            system.work.solver.iterations += u64::from(solved.iterations);
-            system.work.solver.linear_iterations += u64::from(solved.iterations);
+            system.work.solver.iterations += u64::from(tried.solved.iterations);
+            system.work.solver.linear_iterations += u64::from(tried.solved.iterations);
             if reached < 1.0 {
                 return Ok(reached);
             }
@@ -54,8 +62,31 @@ pub(super) fn follow<const D: usize>(
         }
         way *= 0.5;
     }
-    report(SPEC.kind, &rule.settings, system, room, &Solved { converged: false, ..solved })?;
+    if tried.turned {
+        let message = format!(
+            "the curve of equilibria turns back or sharply aside at {} of the load, however short the step, down to a thousandth \
+             of `arc_length`; a branch of another form may begin here; hint: a small force or a shape that leads onto one \
+             branch, or the whole load at once, without `arc_length`",
+            number(load)
+        );
+        return Err(StepError::Model { model: SPEC.kind, message });
+    }
+    report(SPEC.kind, &rule.settings, system, room, &Solved { converged: false, ..tried.solved })?;
     Ok(load)
+}
+
+/// How a step went.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tried {
+    solved: Solved,
+    /// Whether it found a point of the curve, but one that lies back or far aside.
+    turned: bool,
+}
+
+/// Whether two vectors point the same way within the angle by which the curve may turn; a vector of no length has any way.
+fn agree(a: &[f64], b: &[f64]) -> bool {
+    // Written so that what is no number does not.
+    dot(a, b) >= LEAST_COSINE * (dot(a, a) * dot(b, b)).sqrt()
 }
 
 /// Newton's method for displacement and load on |Δu| = way; none where it does not converge.
@@ -66,9 +97,14 @@ fn one_step<const D: usize>(
     way: f64,
     load: f64,
     h: f64,
-    solved: &mut Solved,
+    tried: &mut Tried,
 ) -> Result<Option<f64>, StepError> {
+    let Tried { solved, turned } = tried;
+    *turned = false;
     let start = room.u.clone();
+    // Of what is free: what pins move does not tell how the curve goes on.
+    let free = |k: usize| if room.held[k].is_nan() { 1.0 } else { 0.0 };
+    let last: Vec<f64> = (0..start.len()).map(|k| free(k) * system.history.columns[0].0[k % D][k / D]).collect();
     let mut now = load;
     let mut gone = vec![0.0; start.len()];
     let goal = rule.settings.tolerance * room.extent;
@@ -88,12 +124,11 @@ fn one_step<const D: usize>(
         let mut step;
         if iteration == 0 {
             // On from where the last step has led; the first step puts load on.
-            let last: f64 = (0..tangent.len()).map(|k| system.history.columns[0].0[k % D][k / D] * tangent[k]).sum();
             let size = dot(&tangent, &tangent).sqrt();
             if size.is_nan() || size == 0.0 && !leans {
                 return Ok(None);
             }
-            step = if last < 0.0 { -way / size } else { way / size };
+            step = if dot(&last, &tangent) < 0.0 { -way / size } else { way / size };
         } else {
             // 2 Δu·(δu + δλ u_t) = way² − |Δu|²
             let across = dot(&gone, &tangent);
@@ -135,6 +170,14 @@ fn one_step<const D: usize>(
             changed |= verdict.anew || verdict.unsettled;
         }
         if iteration > 0 && !changed && solved.correction <= goal {
+            if system.contacts.is_none() {
+                // Where the load falls on the way on, the tangent points back.
+                let back: Vec<f64> = tangent.iter().map(|t| -t).collect();
+                *turned = !agree(&gone, &last) || !(agree(&gone, &tangent) || agree(&gone, &back));
+                if *turned {
+                    return Ok(None);
+                }
+            }
             let balance = Balance { load: now, ..balance };
             return Ok(evaluate(system, room, &balance, false).is_ok().then_some(now));
         }

@@ -23,13 +23,15 @@
 //! Obstacles stop the curve where the body meets them, and it goes on along their surface; a body that is held by obstacles
 //! alone has no curve, which begins without any load.
 //!
-//! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free.
+//! A body that nothing holds has no equilibrium, or many: it is refused with the names of the motions that are free, and so is
+//! one of several pieces, such as a map with islands, of which one is free.
 //! Without `arc_length` obstacles hold it too; a direction without any stiffness is then held by a billionth of the stiffness of the others,
 //! within the iteration only. Where that leads nowhere, the motions are named that contact leaves free.
 //!
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
 mod arc;
+mod pieces;
 mod restraint;
 pub mod rigid;
 #[cfg(test)]
@@ -54,7 +56,7 @@ pub const SPEC: Spec = Spec {
     kind: "equilibrium",
     summary: "statics: every step ends in the balance of all forces, through a snap by arc length",
     documentation: "F(x, 0, t) = 0 by Newton's method, downhill on the potential; velocities are zero. The state at the end \
-(`final.csv`) is the equilibrium under the loads at that time. A body that nothing holds is refused with the names of its \
+(`final.csv`) is the equilibrium under the loads at that time. A body that nothing holds, or a piece of one, is refused with the names of its \
 rigid modes. With `arc_length` every step goes so far along the curve of equilibria, through its limits, until the whole load \
 is on; `load_factor` in diagnostics.csv is the part that is on.",
     dimensions: &[2, 3],
@@ -199,7 +201,7 @@ impl Equilibrium {
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Solved::default();
         // A body that lies on obstacles may still be free to slide or to roll, which no iteration ends, or at any place.
-        let loose = system.contacts.is_some() && !rigid::unheld_motions(system).is_empty();
+        let loose = system.contacts.is_some() && rigid::is_loose(system);
         let all = self.settings.iterations;
         for most in if loose { [EARLY.min(all), all] } else { [all, all] } {
             if most == solved.iterations || solved.converged {
@@ -322,7 +324,7 @@ impl<const D: usize> Integrator<D> for Equilibrium {
         if !obstacles {
             return rigid::refuse_free_motions(system);
         }
-        if self.arc_length.is_some() && !rigid::unheld_motions(system).is_empty() {
+        if self.arc_length.is_some() && rigid::is_loose(system) {
             let message = "`arc_length` is given, and pins do not hold the body, which nothing presses onto obstacles where the curve \
                            begins, without any load; allowed: pins that hold it, or the whole load at once, in as many \
                            `load_steps` as it takes";

@@ -29,18 +29,19 @@ const TURN: f64 = 0.9;
 const SINE: f64 = 0.783_326_909_627_483_4;
 const COSINE: f64 = 0.621_609_968_270_664_4;
 
-/// The motions of the whole that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that hold nodes along the
-/// given directions, with the nodes at the given places; translations first.
+/// The motions of the whole, or of a piece, that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that
+/// hold nodes along the given directions, with the nodes at the given places; translations first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
+    piece: &[usize],
     touched: &[(usize, [f64; D])],
 ) -> Vec<Motion<D>> {
-    let mut free = unpinned_motions(system, x, touched);
-    let center = center(x, system.nodes);
+    let mut free = unpinned_motions(system, x, piece, touched);
+    let center = center(x, piece);
     // Loads with a stiffness, where the body is.
     for member in outer(system) {
-        let mut restraint = Restraint::new(&free, center);
+        let mut restraint = Restraint::new(&free, piece, center);
         for time in TIMES {
             restraint.add(system, x, Source::Stiff(member), system.time + time);
         }
@@ -50,9 +51,9 @@ pub(super) fn free_motions<const D: usize>(
         return free;
     }
     // The others and the weight, which may hold what only turns.
-    let mut restraint = Restraint::new(&free, center);
+    let mut restraint = Restraint::new(&free, piece, center);
     let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
-    for x in poses(system, x, &free, &center) {
+    for x in poses(x, piece, &free, &center) {
         for time in times {
             restraint.add(system, &x, Source::Dead, system.time + time);
         }
@@ -75,20 +76,22 @@ enum Source<'a, const D: usize> {
 /// The sum of PᵀP over poses, times and loads, each P relative to the size of its parts.
 struct Restraint<'a, const D: usize> {
     motions: &'a [Motion<D>],
+    /// The nodes that move.
+    piece: &'a [usize],
     /// What they turn about.
     center: [f64; D],
     sum: Vec<f64>,
 }
 
 impl<'a, const D: usize> Restraint<'a, D> {
-    fn new(motions: &'a [Motion<D>], center: [f64; D]) -> Self {
-        Restraint { motions, center, sum: vec![0.0; motions.len() * motions.len()] }
+    fn new(motions: &'a [Motion<D>], piece: &'a [usize], center: [f64; D]) -> Self {
+        Restraint { motions, piece, center, sum: vec![0.0; motions.len() * motions.len()] }
     }
 
     /// Adds what loads do in a pose, at a time.
     fn add(&mut self, system: &System<D>, x: &Columns<D>, source: Source<'_, D>, time: f64) {
         let n = self.motions.len();
-        let shape = |motion| shape_at(x, system.nodes, motion, &self.center);
+        let shape = |motion| shape_at(x, system.nodes, self.piece, motion, &self.center);
         let shapes: Vec<Vec<f64>> = self.motions.iter().map(shape).collect();
         let rest = Columns::zeros(system.places());
         let view = View {
@@ -128,8 +131,8 @@ impl<'a, const D: usize> Restraint<'a, D> {
         }
         for (p, shape) in shapes.iter().enumerate() {
             for (q, motion) in self.motions.iter().enumerate() {
-                for (node, force) in force.iter().enumerate() {
-                    let turned = turned(motion, force);
+                for node in self.piece {
+                    let turned = turned(motion, &force[*node]);
                     // Motions are scaled to ways of about one.
                     for d in 0..D {
                         part[p * n + q] += shape[node * D + d] * turned[d];
@@ -193,13 +196,8 @@ fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
     displacement(&turn, force, &[0.0; D])
 }
 
-/// The body as it is, turned by each of the motions, and by all of them.
-fn poses<const D: usize>(
-    system: &System<D>,
-    x: &Columns<D>,
-    motions: &[Motion<D>],
-    center: &[f64; D],
-) -> Vec<Columns<D>> {
+/// The body as it is, and with a piece turned by each of the motions, and by all of them.
+fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>], center: &[f64; D]) -> Vec<Columns<D>> {
     let turns = if D == 2 { 1 } else { 3 };
     let mut all = Motion { translation: [0.0; D], rotation: vec![0.0; turns] };
     for motion in motions {
@@ -209,11 +207,11 @@ fn poses<const D: usize>(
         all.rotation.iter_mut().zip(&motion.rotation).for_each(|(sum, r)| *sum += r);
     }
     let others = motions.iter().chain((motions.len() > 1).then_some(&all));
-    core::iter::once(x.clone()).chain(others.map(|motion| pose(x, system.nodes, motion, center))).collect()
+    core::iter::once(x.clone()).chain(others.map(|motion| pose(x, piece, motion, center))).collect()
 }
 
-/// The body after a motion was gone on with until it had turned by [`TURN`].
-fn pose<const D: usize>(x: &Columns<D>, nodes: usize, motion: &Motion<D>, center: &[f64; D]) -> Columns<D> {
+/// The body after a motion of a piece was gone on with until it had turned by [`TURN`].
+fn pose<const D: usize>(x: &Columns<D>, piece: &[usize], motion: &Motion<D>, center: &[f64; D]) -> Columns<D> {
     let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
     let mut out = x.clone();
     if speed == 0.0 {
@@ -225,8 +223,8 @@ fn pose<const D: usize>(x: &Columns<D>, nodes: usize, motion: &Motion<D>, center
     let across = turned(&unit, &motion.translation);
     let through: [f64; D] = core::array::from_fn(|d| center[d] + across[d] / speed);
     let along: f64 = if D == 3 { (0..D).map(|d| axis[d] * motion.translation[d]).sum() } else { 0.0 };
-    for node in 0..nodes {
-        let x = x.at(node);
+    for node in piece {
+        let x = x.at(*node);
         let arm: [f64; D] = core::array::from_fn(|d| x[d] - through[d]);
         // Rodrigues: x + sin θ n × r + (1 − cos θ) n × (n × r).
         let first = turned(&unit, &arm);
@@ -235,7 +233,7 @@ fn pose<const D: usize>(x: &Columns<D>, nodes: usize, motion: &Motion<D>, center
         for d in 0..D {
             to[d] += if D == 3 { axis[d] * along * TURN / speed } else { 0.0 };
         }
-        out.set(node, to);
+        out.set(*node, to);
     }
     out
 }

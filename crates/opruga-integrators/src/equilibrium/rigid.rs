@@ -1,27 +1,64 @@
-//! The motions of a body as a whole that nothing holds.
+//! The motions of a body as a whole, or of each of its pieces, that nothing holds.
 
+use super::pieces::{pieces, whole};
 use super::restraint::free_motions;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
+use opruga_math::words::number;
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
 
-/// Refuses a body that can move as a whole.
+/// Refuses a body that can move as a whole, or of which a piece can.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
-    let free = free_motions(system, &system.state.x, &[]);
-    if free.is_empty() {
-        return Ok(());
+    let x = &system.state.x;
+    let refused = |message: String| Err(BuildError::new("equilibrium", "static.rigid_modes", message));
+    let free = free_motions(system, x, &whole(system), &[]);
+    if !free.is_empty() {
+        return refused(format!(
+            "nothing holds the body against {}; an equilibrium needs a body that is held; hint: pin as many axes of nodes \
+             as there are rigid modes, or give it something to rest on",
+            counted(&free)
+        ));
     }
-    let names: Vec<String> = free.iter().map(Motion::name).collect();
-    let count = if names.len() == 1 { "1 rigid mode".into() } else { format!("{} rigid modes", names.len()) };
-    let message = format!(
-        "nothing holds the body against {}: {count}; an equilibrium needs a body that is held; hint: pin as many axes of nodes \
-         as there are rigid modes, or give it something to rest on",
-        names.join(", ")
-    );
-    Err(BuildError::new("equilibrium", "static.rigid_modes", message))
+    let pieces = pieces(system);
+    if pieces.len() > 1 {
+        for piece in &pieces {
+            let free = free_motions(system, x, piece, &[]);
+            if !free.is_empty() {
+                return refused(format!(
+                    "the body is in {} pieces, and nothing holds that of {} about {} against {}; an equilibrium needs every \
+                     piece held; hint: pin as many axes of its nodes as it has rigid modes, join it to the others, or leave it out",
+                    pieces.len(),
+                    number_of(piece.len()),
+                    place(&center(x, piece)),
+                    counted(&free)
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// `translation along x, rotation: 2 rigid modes`.
+fn counted<const D: usize>(free: &[Motion<D>]) -> String {
+    let count = if free.len() == 1 { "1 rigid mode".into() } else { format!("{} rigid modes", free.len()) };
+    format!("{}: {count}", names(free))
+}
+
+fn names<const D: usize>(free: &[Motion<D>]) -> String {
+    free.iter().map(Motion::name).collect::<Vec<String>>().join(", ")
+}
+
+fn number_of(nodes: usize) -> String {
+    if nodes == 1 { "1 node".into() } else { format!("{nodes} nodes") }
+}
+
+/// `(0.5, 2)`, a place in metres with four digits.
+fn place<const D: usize>(x: &[f64; D]) -> String {
+    let numbers: Vec<String> = x.iter().map(|x| number(*x)).collect();
+    format!("({}) m", numbers.join(", "))
 }
 
 /// A motion of the whole: a translation and a rotation about the centre.
@@ -93,13 +130,13 @@ impl<const D: usize> Sink<D> for Projection<'_> {
     }
 }
 
-/// The mean of the places of the nodes.
-pub(super) fn center<const D: usize>(x: &Columns<D>, nodes: usize) -> [f64; D] {
+/// The mean of the places of some nodes.
+pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D] {
     let mut center = [0.0; D];
-    for node in 0..nodes {
-        let x = x.at(node);
+    for node in piece {
+        let x = x.at(*node);
         for d in 0..D {
-            center[d] += x[d] / nodes as f64;
+            center[d] += x[d] / piece.len() as f64;
         }
     }
     center
@@ -115,44 +152,71 @@ pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     if touched.is_empty() {
         return Ok(());
     }
-    let free = free_motions(system, x, touched);
-    if free.is_empty() {
-        return Ok(());
+    let free = free_motions(system, x, &whole(system), touched);
+    if !free.is_empty() {
+        let message = format!(
+            "the body lies on an obstacle, and neither that nor pins hold it against {}; an equilibrium needs a body that is \
+             held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
+            names(&free)
+        );
+        return Err(StepError::Model { model: "equilibrium", message });
     }
-    let names: Vec<String> = free.iter().map(Motion::name).collect();
-    let message = format!(
-        "the body lies on an obstacle, and neither that nor pins hold it against {}; an equilibrium needs a body that is \
-         held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
-        names.join(", ")
-    );
-    Err(StepError::Model { model: "equilibrium", message })
+    let pieces = pieces(system);
+    // A piece that has not met an obstacle yet may still do so.
+    let lies = |piece: &&Vec<usize>| touched.iter().any(|(node, _)| piece.binary_search(node).is_ok());
+    for piece in pieces.iter().filter(|_| pieces.len() > 1).filter(lies) {
+        let own: Vec<(usize, [f64; D])> =
+            touched.iter().filter(|(node, _)| piece.binary_search(node).is_ok()).copied().collect();
+        let free = free_motions(system, x, piece, &own);
+        if !free.is_empty() {
+            let message = format!(
+                "the body is in {} pieces, and that of {} about {} lies on an obstacle, and neither that nor pins hold it \
+                 against {}; an equilibrium needs every piece held; hint: pin an axis of a node for each, or let the obstacle rub \
+                 (`friction`)",
+                pieces.len(),
+                number_of(piece.len()),
+                place(&center(x, piece)),
+                names(&free)
+            );
+            return Err(StepError::Model { model: "equilibrium", message });
+        }
+    }
+    Ok(())
+}
+
+/// Whether neither pins nor loads with a stiffness hold a body or one of its pieces.
+pub(super) fn is_loose<const D: usize>(system: &System<D>) -> bool {
+    let x = &system.state.x;
+    !unheld_motions(system).is_empty()
+        || pieces(system).iter().any(|piece| !loose_motions(system, x, piece, &[], true).is_empty())
 }
 
 /// The motions of the whole that neither pins nor loads with a stiffness hold, translations first.
 pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
-    loose_motions(system, &system.state.x, &[], true)
+    loose_motions(system, &system.state.x, &whole(system), &[], true)
 }
 
-/// The motions of the whole that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
+/// The motions of a piece that neither pins hold nor what holds nodes along the given directions, with the nodes at the given
 /// places; translations first.
 pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
+    piece: &[usize],
     touched: &[(usize, [f64; D])],
 ) -> Vec<Motion<D>> {
-    loose_motions(system, x, touched, false)
+    loose_motions(system, x, piece, touched, false)
 }
 
-/// All motions of the whole: translations, then rotations about the centre, each scaled to a mean displacement of one.
-fn all_motions<const D: usize>(x: &Columns<D>, nodes: usize) -> Vec<Motion<D>> {
-    let center = center(x, nodes);
+/// All motions of a piece: translations, then rotations about its centre, each scaled to a mean displacement of one.
+fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
+    let center = center(x, piece);
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
-    for node in 0..nodes {
-        let x = x.at(node);
+    for node in piece {
+        let x = x.at(*node);
         size += (0..D).map(|d| (x[d] - center[d]) * (x[d] - center[d])).sum::<f64>();
     }
-    let size = (size / nodes as f64).sqrt();
+    let size = (size / piece.len() as f64).sqrt();
     let mut motions: Vec<Motion<D>> = Vec::new();
     for d in 0..D {
         let mut translation = [0.0; D];
@@ -172,13 +236,14 @@ fn all_motions<const D: usize>(x: &Columns<D>, nodes: usize) -> Vec<Motion<D>> {
 fn loose_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
+    piece: &[usize],
     touched: &[(usize, [f64; D])],
     by_stiffness: bool,
 ) -> Vec<Motion<D>> {
-    let nodes = system.nodes;
-    let motions = all_motions(x, nodes);
-    let center = center(x, nodes);
-    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_at(x, nodes, motion, &center)).collect();
+    let motions = all_motions(x, piece);
+    let center = center(x, piece);
+    let shapes: Vec<Vec<f64>> =
+        motions.iter().map(|motion| shape_at(x, system.nodes, piece, motion, &center)).collect();
     let n = motions.len();
 
     // How much each combination moves held axes, or strains what acts from outside.
@@ -214,7 +279,7 @@ fn loose_motions<const D: usize>(
     let real: Vec<Vec<f64>> = extents
         .iter()
         .zip(&axes)
-        .filter(|(extent, _)| **extent > 1e-12 * nodes as f64)
+        .filter(|(extent, _)| **extent > 1e-12 * piece.len() as f64)
         .map(|(extent, axis)| axis.iter().map(|c| c / extent.sqrt()).collect())
         .collect();
     let m = real.len();
@@ -261,18 +326,23 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
 
 /// The displacements of all nodes in a motion, one coordinate after the other.
 pub fn shape_of<const D: usize>(system: &System<D>, motion: &Motion<D>) -> Vec<f64> {
-    let (x, nodes) = (&system.state.x, system.nodes);
-    shape_at(x, nodes, motion, &center(x, nodes))
+    let (x, all) = (&system.state.x, whole(system));
+    shape_at(x, system.nodes, &all, motion, &center(x, &all))
 }
 
-/// The same of nodes at the given places, of a motion about the given centre.
+/// The displacements of all nodes, at the given places, in a motion of a piece about the given centre: the others stay.
 pub(super) fn shape_at<const D: usize>(
     x: &Columns<D>,
     nodes: usize,
+    piece: &[usize],
     motion: &Motion<D>,
     center: &[f64; D],
 ) -> Vec<f64> {
-    (0..nodes).flat_map(|node| displacement(motion, &x.at(node), center)).collect()
+    let mut shape = vec![0.0; nodes * D];
+    for node in piece {
+        shape[node * D..][..D].copy_from_slice(&displacement(motion, &x.at(*node), center));
+    }
+    shape
 }
 
 /// Row echelon form from the rotations backward: as many motions as possible are plain translations along axes.

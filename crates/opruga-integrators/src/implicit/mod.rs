@@ -44,6 +44,7 @@ pub(crate) mod approach;
 pub(crate) mod contact;
 pub(crate) mod contact_derivatives;
 mod growth;
+pub(crate) mod holding;
 pub(crate) mod impact;
 mod kept;
 mod line_search;

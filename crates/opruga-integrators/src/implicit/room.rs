@@ -19,6 +19,8 @@ pub(crate) struct Room<const D: usize> {
     /// State at the start.
     pub(crate) x0: Vec<f64>,
     pub(crate) v0: Vec<f64>,
+    /// What pins have changed velocities by at the start of the step; empty: nothing.
+    pub(crate) kick: Vec<f64>,
     /// Acceleration at the start, of rules that have one [m/s²].
     pub(crate) a0: Vec<f64>,
     /// Mass of every node [kg].
@@ -74,6 +76,7 @@ impl<const D: usize> Default for Room<D> {
         Room {
             x0: Vec::new(),
             v0: Vec::new(),
+            kick: Vec::new(),
             a0: Vec::new(),
             mass: Vec::new(),
             y: Vec::new(),

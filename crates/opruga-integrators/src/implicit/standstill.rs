@@ -8,15 +8,17 @@
 //! counted. What is still so after the last time stays, and is counted as such.
 //!
 //! At rest is a body whose kinetic energy and whose forces out of balance are small against the energy U that its cells hold,
-//! ½ Σ m v² ≪ U and Σ m |a| L ≪ U; the time to leave is a multiple of L √(M/U), where L is its size and M its mass.
+//! ½ Σ m v² ≪ U and Σ m |a| L ≪ U, and which does not give it to damping: one that creeps against its viscosity, as slowly as it
+//! may, is on its way. The time to leave is a multiple of L √(M/U), where L is its size and M its mass; a body at rest would lose
+//! little of U in that time.
 //!
 //! Bodies of models without cells, such as springs, are left alone.
 
-use super::room::Room;
+use super::room::{Room, write};
 use opruga_core::error::StepError;
 use opruga_core::potential::{Account, CellState};
 use opruga_core::state::Columns;
-use opruga_core::system::{Stage, System};
+use opruga_core::system::{Stage, State, System};
 use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_solve::blocks::nodes;
 use opruga_solve::dense::symmetric_eigen;
@@ -68,11 +70,12 @@ pub(crate) fn look<const D: usize>(
         return Ok(());
     }
     let energy = stored(system, &mut room.force)?;
-    let (kinetic, push, mass) = motion(system, room, h);
+    let Motion { kinetic, push, mass, fading } = motion(system, room, h)?;
     let patience = PATIENCE * size * (mass / energy).sqrt();
     let had_time = system.time - last > patience;
     let waits = times > 0.0 && !had_time;
-    if waits || !(kinetic <= REST * energy && push * size <= REST * energy) {
+    let rests = |part: f64| part <= REST * energy;
+    if waits || !(rests(kinetic) && rests(push * size) && rests(fading * patience)) {
         return Ok(());
     }
     system.history.numbers[first + 1] = times + 1.0;
@@ -101,9 +104,26 @@ pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut
     true
 }
 
-/// The kinetic energy [J], the sum of the forces that change velocities [N], and the mass [kg] of a body; a free one as seen
-/// from its centre of mass, and from axes that turn with it: what spins stands still too.
-fn motion<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> (f64, f64, f64) {
+/// How a body moves.
+struct Motion {
+    /// The kinetic energy [J].
+    kinetic: f64,
+    /// The sum of the forces that change velocities [N].
+    push: f64,
+    /// The mass [kg].
+    mass: f64,
+    /// The energy that damping takes [W].
+    fading: f64,
+}
+
+/// The motion of a body; of a free one as seen from its centre of mass, and from axes that turn with it: what spins stands still
+/// too. After [`stored`], which leaves the forces of the state in `room.force`.
+fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) -> Result<Motion, StepError> {
+    let damped = system.is_damped();
+    if damped {
+        undamped(system, &mut room.outer)?;
+    }
+    let (system, room) = (&*system, &*room);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
     for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
@@ -124,18 +144,31 @@ fn motion<const D: usize>(system: &System<D>, room: &Room<D>, h: f64) -> (f64, f
         core::array::from_fn(|d| x[d] - center[d] / mass)
     };
     let spin = if free { spin(system, &speed.map(|p| p / mass), &arm) } else { [0.0; 3] };
-    let (mut kinetic, mut push) = (0.0, 0.0);
+    let (mut kinetic, mut push, mut fading) = (0.0, 0.0, 0.0);
     for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
         let (v, m) = (system.state.v.at(node), system.mass.at(node));
         let turning = turned(&spin, &arm(node));
         let inward = turned(&spin, &turning);
+        let (all, rest) = (room.force.at(node), room.outer.at(node));
         for d in 0..D {
             let own = v[d] - speed[d] / mass - turning[d];
             kinetic += 0.5 * m * own * own;
             push += m * ((v[d] - old[d] - change[d] / mass) / h - inward[d]).abs();
+            // Held nodes are led by others.
+            if damped && room.held[node * D + d].is_nan() {
+                fading -= (all[d] - rest[d]) * own;
+            }
         }
     }
-    (kinetic, push, mass)
+    Ok(Motion { kinetic, push, mass, fading })
+}
+
+/// The forces on the nodes of a state as they would be if nothing moved [N].
+fn undamped<const D: usize>(system: &mut System<D>, out: &mut Columns<D>) -> Result<(), StepError> {
+    let (places, nodes, threads) = (system.places(), system.nodes, system.threads);
+    let State { x, work, .. } = &mut system.state;
+    write(places, nodes, threads, work[0].each_mut(), |k| [x.0[k % D][k / D], 0.0]);
+    system.evaluate(Room::<D>::STAGE, 0.0, 0.0, out)
 }
 
 /// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean.

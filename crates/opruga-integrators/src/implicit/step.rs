@@ -2,6 +2,7 @@
 
 use super::contact::{SMALL, dot};
 use super::growth;
+use super::holding;
 use super::impact::Ending;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
@@ -127,9 +128,13 @@ fn advance_in<R: Rule<D>, const D: usize>(
     halvings: u32,
 ) -> Result<(), StepError> {
     let work = system.work;
+    let velocities = holding::take_hold(system, &mut room.kick, h);
     let outcome = attempt(rule, settings, system, room, h);
     if outcome.is_err() {
-        // Nothing has been written but the ledger.
+        // Nothing has been written but the ledger, and velocities that pins have changed.
+        if let Some(before) = velocities {
+            system.state.v = before;
+        }
         let solver = system.work.solver;
         system.work = work;
         system.work.solver = solver;
@@ -213,6 +218,12 @@ fn attempt<R: Rule<D>, const D: usize>(
     if !rule.is_trapezoid() {
         // Damping, loads and pins by the forces of the stage, which was evaluated last.
         system.evaluate_again(Room::<D>::STAGE, balance.time, h, &mut room.force);
+    }
+    if system.inertia.is_some() {
+        // Where held nodes are coupled, they have the velocity of the step to its end.
+        let Room { v0, v1, .. } = &mut *room;
+        system.held_axes(&mut |node, d| v1[node * D + d] = v0[node * D + d]);
+        holding::enter_work(system, v0, v1);
     }
     commit(system, room);
     if rule.is_trapezoid() {

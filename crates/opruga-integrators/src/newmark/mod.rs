@@ -19,6 +19,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::implicit::holding::{accelerations, held};
 use crate::implicit::newton::Balance;
 use crate::implicit::room::Room;
 use crate::implicit::settings::fields;
@@ -28,8 +29,7 @@ use opruga_core::error::BuildError;
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
 use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
-use opruga_solve::blocks::{Block, isotropic, times};
-use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
+use opruga_solve::blocks::times;
 
 /// The parameters.
 pub const SPEC: Spec = Spec {
@@ -138,10 +138,16 @@ impl<const D: usize> Rule<D> for Newmark {
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
         first_acceleration(system, room);
+        // What pins have just taken hold of is not accelerated any more; its neighbours would feel it.
+        let stopped = if begun && system.inertia.is_some() { held(system) } else { Vec::new() };
         for node in 0..system.nodes {
             for d in 0..D {
                 let k = node * D + d;
-                let a = if begun { system.history.columns[0].0[d][node] } else { room.a0[k] };
+                let a = match stopped.get(k) {
+                    Some(true) => 0.0,
+                    _ if begun => system.history.columns[0].0[d][node],
+                    _ => room.a0[k],
+                };
                 let v = room.v0[k];
                 room.a0[k] = a;
                 let way = h * v + h * h * (0.5 - beta) * a;
@@ -203,38 +209,16 @@ impl<const D: usize> Rule<D> for Newmark {
 
 /// M a₀ = F at the start; where nodes are coupled, those that are held do not accelerate.
 fn first_acceleration<const D: usize>(system: &System<D>, room: &mut Room<D>) {
-    let Room { a0, force, mass, step, right, .. } = room;
-    a0.resize(step.len(), 0.0);
-    for node in 0..system.nodes {
-        let inverse = system.inverse_mass.at(node);
-        for d in 0..D {
-            a0[node * D + d] = force.0[d][node] * inverse;
+    let Room { a0, force, right, .. } = room;
+    a0.clear();
+    a0.resize(right.len(), 0.0);
+    if system.inertia.is_none() {
+        for (k, a) in a0.iter_mut().enumerate() {
+            *a = force.0[k % D][k / D] * system.inverse_mass.at(k / D);
         }
-    }
-    let Some(inertia) = system.inertia.as_ref().filter(|_| system.history.numbers[0] <= 0.0) else { return };
-    // The rule begins before the step knows what is held.
-    let mut held = vec![false; right.len()];
-    system.held_axes(&mut |node, d| held[node * D + d] = true);
-    for (k, b) in right.iter_mut().enumerate() {
-        *b = if held[k] { 0.0 } else { force.0[k % D][k / D] };
-    }
-    let multiply = |x: &[f64], y: &mut [f64]| {
-        for node in 0..system.nodes {
-            let coupled = inertia.product::<D>(node, x);
-            for d in 0..D {
-                let k = node * D + d;
-                y[k] = if held[k] { x[k] } else { mass[node] * x[k] + coupled[d] };
-            }
-        }
-    };
-    let blocks: Vec<Block<D>> = mass.iter().map(|mass| isotropic(*mass)).collect();
-    let mut lumped = BlockJacobi::default();
-    // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
-    let solved = lumped
-        .update(blocks.iter())
-        .and_then(|()| conjugate_gradients(multiply, &lumped, right, step, 1e-14, 1000, &mut Directions::default()));
-    if solved.is_ok() {
-        a0.copy_from_slice(step);
+    } else if system.history.numbers[0] <= 0.0 {
+        right.iter_mut().enumerate().for_each(|(k, force_on)| *force_on = force.0[k % D][k / D]);
+        accelerations(system, &held(system), right, a0);
     }
 }
 

@@ -8,7 +8,7 @@ use opruga_core::spec::Values;
 use opruga_core::system::along_path;
 use opruga_world::blueprint::{BodyBlueprint, PinBlueprint};
 use opruga_world::schema;
-use opruga_world::selection::extent;
+use opruga_world::selection::longest_side;
 use std::collections::BTreeMap;
 
 /// A pin with the place of its selector in the file and its path.
@@ -41,8 +41,7 @@ pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Placed<
     if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {
         return;
     }
-    let (low, high) = extent(&body.mesh);
-    let size = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m });
+    let size = longest_side(&body.mesh);
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     let mut told: Vec<[usize; 2]> = Vec::new();
     for (number, (pin, place, path)) in pins.iter().enumerate() {

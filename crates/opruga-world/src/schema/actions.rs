@@ -59,8 +59,20 @@ pub const LOADS: &[Section] = &[
     },
 ];
 
-const AT: Field = Field::new("at", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it begins.");
-const UNTIL: Field = Field::new("until", Allowed::NOT_NEGATIVE, "s", Default::Required, "When it ends.");
+const AT: Field = Field::new(
+    "at",
+    Allowed::NOT_NEGATIVE,
+    "s",
+    Default::Required,
+    "When it begins: with the first frame that begins then or later.",
+);
+const UNTIL: Field = Field::new(
+    "until",
+    Allowed::NOT_NEGATIVE,
+    "s",
+    Default::Required,
+    "When it ends: with the first frame that begins then or later.",
+);
 
 /// `[[command]]`, by `do`.
 pub const COMMANDS: &[Section] = &[
@@ -76,7 +88,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::NOT_NEGATIVE,
                     "s",
                     Default::Absent,
-                    "When it ends; the end of the path where the scene is silent.",
+                    "When it ends: with the first frame that begins then or later; the end of the path where the scene is silent.",
                 ),
                 Field::new("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
                 Field::new(
@@ -207,7 +219,9 @@ pub const PROBE: Section = Section {
     spec: &section(
         "probe",
         "Columns of diagnostics.csv that follow nodes",
-        "Of positions and velocities the mean over the nodes is written, of reactions the sum.",
+        "Of positions and velocities the mean over the nodes is written, of reactions the sum: the force that pins give, mass \
+times acceleration less the forces of the models and the weight on what is held. How a pin accelerates is taken from its motion \
+over the frame before and the one after. The impulse with which a pin takes hold of what moves is not in it.",
         &[Field::new(
             "name",
             Allowed::Text,

@@ -1,0 +1,125 @@
+//! What pins do to the motion of nodes that a consistent mass matrix couples to theirs.
+//!
+//! A held node has the velocity of its pin from the moment on at which it is held, in a step the mean velocity w over the step.
+//! Where that is another than it had (a body is caught in flight, a table of motion has a corner, or accelerates in many small
+//! ones), the pin gives an impulse at the start of the step. It acts on the held node alone; but consistent masses couple nodes,
+//! so that those beside it are thrown back, as a bat is where one does not hold it:
+//!
+//! M_ff Δv_f + M_fp (w − v_p) = 0,
+//!
+//! the motion that is nearest to the one before in the norm of M, and never one of more energy where the pins stand still. Within
+//! the step held nodes do not accelerate, whatever the rule, and at its end they still have the velocity w: what a rule makes of
+//! a jump of velocity within a step is its own, and would be another motion with every rule.
+//!
+//! With lumped masses no impulse reaches a neighbour, and nothing of this is needed.
+
+use opruga_core::state::Columns;
+use opruga_core::system::System;
+use opruga_math::WIDTH;
+use opruga_solve::blocks::{Block, isotropic};
+use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
+
+/// Gives the nodes that pins hold the velocities of the step of `h` to come, and those beside them what the masses make of it;
+/// the change of kinetic energy is work of the pins. `kick` is then the change of every velocity, and empty where there is
+/// none. Gives the velocities as they were, where they have changed.
+pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f64>, h: f64) -> Option<Columns<D>> {
+    kick.clear();
+    if system.inertia.is_none() || system.pins.is_empty() {
+        return None;
+    }
+    let held = held(system);
+    let mut jumps = vec![0.0; held.len()];
+    let mut any = false;
+    for pin in &system.pins {
+        let (target, _) = pin.target(system.time + h);
+        for d in (0..D).filter(|d| pin.axes[*d]) {
+            let (x, v) = (system.state.x.0[d][pin.place], system.state.v.0[d][pin.place]);
+            let jump = (target[d] - x) / h - v;
+            jumps[pin.place * D + d] = jump;
+            any |= jump != 0.0;
+        }
+    }
+    if !any {
+        return None;
+    }
+    let before = (system.state.v.clone(), system.kinetic_energy());
+    accelerations(system, &held, &vec![0.0; jumps.len()], &mut jumps);
+    for node in 0..system.nodes {
+        let v = system.state.v.at(node);
+        system.state.v.set(node, core::array::from_fn(|d| v[d] + jumps[node * D + d]));
+    }
+    system.work.user[0] += system.kinetic_energy() - before.1;
+    *kick = jumps;
+    Some(before.0)
+}
+
+/// Enters the work that pins do within a step against the inertia of the nodes beside theirs, w · M_pf Δv_f.
+pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1: &[f64]) {
+    let Some(inertia) = system.inertia.as_ref().filter(|_| !system.pins.is_empty()) else { return };
+    let change: Vec<f64> = v0.iter().zip(v1).map(|(before, after)| after - before).collect();
+    let mut work = [0.0; WIDTH];
+    system.held_axes(&mut |node, d| {
+        let velocity = v0[node * D + d];
+        if velocity != 0.0 {
+            work[node % WIDTH] += velocity * inertia.product::<D>(node, &change)[d];
+        }
+    });
+    for (user, work) in system.work.user.iter_mut().zip(work) {
+        *user += work;
+    }
+}
+
+/// Which coordinates pins hold.
+pub(crate) fn held<const D: usize>(system: &System<D>) -> Vec<bool> {
+    let mut held = vec![false; system.nodes * D];
+    system.held_axes(&mut |node, d| held[node * D + d] = true);
+    held
+}
+
+/// The accelerations of the coordinates that are not held, in `a`, from the forces on them and the accelerations of those that
+/// are, which `a` holds: M_ff a_f = F_f − M_fp a_p. Changes of velocity by impulses are the same.
+pub fn accelerations<const D: usize>(system: &System<D>, held: &[bool], force: &[f64], a: &mut [f64]) {
+    let Some(inertia) = &system.inertia else {
+        for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !held[*k]) {
+            *a = force[k] * system.inverse_mass.at(k / D);
+        }
+        return;
+    };
+    a.iter_mut().zip(held).filter(|(_, held)| !**held).for_each(|(a, _)| *a = 0.0);
+    let given = a.to_vec();
+    let mut right = vec![0.0; held.len()];
+    for node in 0..system.nodes {
+        let coupled = inertia.product::<D>(node, &given);
+        for d in (0..D).filter(|d| !held[node * D + d]) {
+            right[node * D + d] = force[node * D + d] - coupled[d];
+        }
+    }
+    // What is held stays zero: its rows are those of the unit matrix.
+    let multiply = |x: &[f64], y: &mut [f64]| {
+        for node in 0..system.nodes {
+            let (mass, coupled) = (system.mass.at(node), inertia.product::<D>(node, x));
+            for d in 0..D {
+                let k = node * D + d;
+                y[k] = if held[k] { x[k] } else { mass * x[k] + coupled[d] };
+            }
+        }
+    };
+    let blocks: Vec<Block<D>> = (0..system.nodes).map(|node| isotropic(system.mass.at(node))).collect();
+    let mut lumped = BlockJacobi::default();
+    let mut out = vec![0.0; held.len()];
+    // The matrix of masses is as well conditioned as a cell: some tens of products are enough for all digits.
+    let solved = lumped.update(blocks.iter()).and_then(|()| {
+        let mut room = Directions::default();
+        conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut room)
+    });
+    if solved.is_ok() {
+        for k in (0..out.len()).filter(|k| !held[*k]) {
+            a[k] = out[k];
+        }
+    } else {
+        // A matrix that is none of masses: each node by its own.
+        for k in (0..out.len()).filter(|k| !held[*k]) {
+            a[k] = force[k] * system.inverse_mass.at(k / D);
+        }
+    }
+}
