@@ -219,11 +219,12 @@ pub(crate) struct Run {
     /// start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
-    /// Pictures of the animation for each second of simulated time
+    /// Pictures of the animation for each second of simulated time [default: 20]
     ///
-    /// Above 0 up to 240; never more than the scene has frames.
-    #[arg(long, allow_negative_numbers = true, default_value_t = 20.0)]
-    pub(crate) fps: f64,
+    /// Above 0 up to 240; never more than the scene has frames. Between two pictures lies a whole number of frames: with frames of
+    /// 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) fps: Option<f64>,
     /// The folder for the output [default: out/SCENE]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
@@ -374,7 +375,8 @@ pub(crate) struct Replay {
     pub(crate) to: Option<f64>,
     /// Pictures, and exported frames, for each second of simulated time [default: 20]
     ///
-    /// Above 0 up to 240; never more than the recording has frames.
+    /// Above 0 up to 240; never more than the recording has frames. Between two pictures lies a whole number of frames: with frames
+    /// of 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
     /// The folder for the output [default: out/SCENE-replay]
@@ -434,15 +436,30 @@ impl Replay {
 
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        let fps = self.fps.unwrap_or(20.0);
-        Wanted { fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
+        let notes = !self.json;
+        Wanted {
+            fps: self.fps,
+            pictures: !self.no_pictures,
+            arrows: self.arrows,
+            springs: self.springs,
+            gif: self.gif,
+            notes,
+        }
     }
 }
 
 impl Run {
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted { fps: self.fps, pictures: !self.no_pictures, arrows: self.arrows, springs: self.springs, gif: self.gif }
+        let notes = !self.json && !self.no_pictures;
+        Wanted {
+            fps: self.fps,
+            pictures: !self.no_pictures,
+            arrows: self.arrows,
+            springs: self.springs,
+            gif: self.gif,
+            notes,
+        }
     }
 
     /// What `opruga` without a command does.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use opruga::blueprint::{BodyBlueprint, Recorded};
 use opruga::io::tables::NumberTable;
+use opruga::math::words::{counted, rounded};
 use opruga::pictures::{Moment, Scenery};
 use opruga::{World, draw};
 use std::borrow::Cow;
@@ -23,14 +24,19 @@ const MOST_ROWS: u64 = 60_000;
 /// What shall be seen of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
-    /// Pictures for each second of simulated time.
-    pub(crate) fps: f64,
+    /// Pictures for each second of simulated time, where the call says how many.
+    pub(crate) fps: Option<f64>,
     /// Whether there are strip, video and plots.
     pub(crate) pictures: bool,
     pub(crate) arrows: bool,
     pub(crate) springs: bool,
     pub(crate) gif: bool,
+    /// Whether notes are told to people.
+    pub(crate) notes: bool,
 }
+
+/// Pictures for each second of simulated time where the call does not say how many.
+const USUAL_RATE: f64 = 20.0;
 
 /// What is kept of every frame.
 pub(crate) struct Recorder {
@@ -71,7 +77,8 @@ pub(crate) struct Columns {
 impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
     pub(crate) fn new<const D: usize>(world: &mut World<D>, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
-        let Wanted { fps, pictures: drawn, arrows, springs, gif } = wanted;
+        let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes } = wanted;
+        let fps = asked.unwrap_or(USUAL_RATE);
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
@@ -121,6 +128,11 @@ impl Recorder {
                 message: format!("no film can have {rate:e} pictures per second: --fps {fps}, frames of {frame} s"),
                 hint: Some("0.0001 to 10000 are possible; --no-pictures does without a film".into()),
             });
+        }
+        if every == wanted
+            && let Some(said) = asked.and_then(|asked| other_rate(asked, every, frame)).filter(|_| notes)
+        {
+            eprintln!("{said}");
         }
         let mut scenery = drawn.then(|| Scenery::new(world));
         if springs {
@@ -176,6 +188,19 @@ pub(crate) fn film_rate(every: u64, frame: f64) -> f64 {
     1.0 / (every as f64 * frame)
 }
 
+/// What is said where pictures come at another rate than asked for.
+fn other_rate(asked: f64, every: u64, frame: f64) -> Option<String> {
+    let (rate, asked) = (rounded(film_rate(every, frame), 4), rounded(asked, 4));
+    let frames = counted(every, "frame", "frames");
+    (rate != asked).then(|| {
+        format!(
+            "note: {rate} pictures per second, not {asked} (--fps): from one to the next is a whole number of frames of the scene, here \
+             {frames} of {} s each",
+            rounded(frame, 4)
+        )
+    })
+}
+
 /// Substeps between two looks within a frame, so that small runs show every swing; 0: none.
 fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
     let steps = frames * u64::from(substeps);
@@ -225,7 +250,28 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 
 #[cfg(test)]
 mod tests {
-    use super::look_every;
+    use super::{look_every, other_rate};
+
+    /// Frames of 1/60 s show 12 pictures a second where 11.3 are asked for, and never more than 60.
+    #[test]
+    fn a_rate_that_frames_do_not_have_is_told() {
+        let frame = 1.0 / 60.0;
+        for (asked, every) in [(20.0, 3), (60.0, 1), (12.0, 5), (15.0, 4), (30.0, 2)] {
+            assert_eq!(other_rate(asked, every, frame), None, "{asked}");
+        }
+        assert_eq!(
+            other_rate(11.3, 5, frame).as_deref(),
+            Some(
+                "note: 12 pictures per second, not 11.3 (--fps): from one to the next is a whole number of frames of the scene, here \
+                 5 frames of 0.01667 s each"
+            )
+        );
+        let most = other_rate(240.0, 1, frame).expect("it is told");
+        assert!(
+            most.starts_with("note: 60 pictures per second, not 240") && most.contains("here 1 frame of"),
+            "{most}"
+        );
+    }
 
     #[test]
     fn small_runs_are_seen_at_every_substep_and_large_ones_only_between_frames() {

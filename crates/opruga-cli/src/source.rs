@@ -5,7 +5,7 @@ use crate::run::simd_from_environment;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::all_near;
 use opruga::io::problem::visible;
-use opruga::io::refusals::in_scene;
+use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
 use opruga::{Options, World, WorldError};
@@ -144,17 +144,31 @@ impl Source {
         Ok(built)
     }
 
-    /// An error that ends a run at a time, such as that of a command; it is not the fault of a line.
+    /// An error that ends a run at a time; it is not the fault of a line.
     pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
-        let said = SceneError::from(error);
-        // Some say themselves when it was.
-        let message = match error {
-            WorldError::Snapshot(_) => said.message.clone(),
-            _ if said.message.contains("t = ") => said.message.clone(),
-            _ => format!("at t = {} s: {}", number(time), said.message),
-        };
-        Failure::Run(Box::new(SceneError { file: self.file.clone(), message, ..said }))
+        let said = SceneError { file: self.file.clone(), ..SceneError::from(error) };
+        Failure::Run(Box::new(timed(said, error, time)))
     }
+
+    /// An error that ends a run with a frame: that of a command has its line.
+    pub(crate) fn frame_error<const D: usize>(
+        &self,
+        error: &WorldError,
+        world: &World<D>,
+        overrides: &[(String, String)],
+    ) -> Failure {
+        let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
+        let said = of_command(error, command, world.blueprint(), (self.text(), self.file.as_str()), overrides);
+        Failure::Run(Box::new(timed(said, error, world.time())))
+    }
+}
+
+/// An error with the time at which it came about; some say themselves when it was.
+fn timed(said: SceneError, error: &WorldError, time: f64) -> SceneError {
+    if matches!(error, WorldError::Snapshot(_)) || said.message.contains("t = ") {
+        return said;
+    }
+    SceneError { message: format!("at t = {} s: {}", number(time), said.message), ..said }
 }
 
 /// Neither a file nor a scene of the program: what else could be meant.

@@ -2,9 +2,12 @@
 
 use crate::arguments::Run;
 use crate::failure::Failure;
+use crate::interrupt;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, ExitStatus};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// The exit code of a studio that found no screen.
 const NO_WINDOW: i32 = 5;
@@ -81,10 +84,27 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     command.args(scene);
     let failed =
         |e: std::io::Error| Failure::Call { message: format!("the studio cannot be started: {e}"), hint: None };
-    let status = command.status().map_err(failed)?;
+    // Before it is started: a signal that comes at once is not lost.
+    let stop = interrupt::asked_to_stop();
+    let status = command.spawn().and_then(|child| wait(child, stop)).map_err(failed)?;
     match status.code() {
         Some(code) => Ok(u8::try_from(code).unwrap_or(1)),
         None => Err(Failure::Interrupted),
+    }
+}
+
+/// Waits for the end of a program, which is ended too where this one is asked to end. The window of the studio ends by itself with
+/// the program that watches over it.
+fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
+        }
+        if stop.load(Ordering::SeqCst) {
+            child.kill()?;
+            return child.wait();
+        }
+        std::thread::sleep(Duration::from_millis(30));
     }
 }
 
@@ -112,6 +132,24 @@ mod tests {
             assert!(has_screen(with("DISPLAY", ":0")) && has_screen(with("WAYLAND_DISPLAY", "wayland-0")));
             assert!(!has_screen(with("DISPLAY", "")) && !has_screen(with("HOME", "/")));
         }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn the_studio_ends_with_the_program_that_has_started_it() {
+        let begun = |seconds: &str| Command::new("sleep").arg(seconds).spawn().expect("a program");
+        let status = wait(begun("0"), &AtomicBool::new(false)).expect("its end");
+        assert!(status.success());
+        let (child, stop) = (begun("600"), AtomicBool::new(false));
+        let asked = std::time::Instant::now();
+        std::thread::scope(|scope| {
+            let ended = scope.spawn(|| wait(child, &stop));
+            std::thread::sleep(Duration::from_millis(100));
+            stop.store(true, Ordering::SeqCst);
+            let status = ended.join().expect("no panic").expect("its end");
+            assert_eq!(status.code(), None, "a signal has ended it");
+        });
+        assert!(asked.elapsed() < Duration::from_secs(300));
     }
 
     #[test]

@@ -123,6 +123,23 @@ fn a_rotation_that_is_none_is_explained() {
     assert!(said(&output).contains("the angle in radians, counter-clockwise"), "{}", said(&output));
 }
 
+/// What is offered instead of an unknown word exists in the dimension of the scene, each word once.
+#[test]
+fn words_of_the_other_dimension_are_not_offered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cube = "shape = { kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }\nmodels = []";
+    for (dimension, body, allowed) in [
+        (2, RING, "half_space, box, ball, capsule, convex, polyline"),
+        (3, cube, "half_space, box, ball, capsule, convex, triangle_mesh"),
+    ] {
+        write(folder.path(), &scene(dimension, body, "[[collider]]\nkind = \"sphere\"\nradius = 1\n"));
+        let output = opruga(folder.path(), &["check", "s.toml"]);
+        assert_eq!(code(&output), 2);
+        let line = said(&output).lines().find(|line| line.contains("allowed")).map(String::from);
+        assert_eq!(line, Some(format!("  = allowed: {allowed}")), "{}", said(&output));
+    }
+}
+
 /// A name that is near to several scenes brings the nearest of them, not the first.
 #[test]
 fn all_near_names_are_offered() {

@@ -6,6 +6,7 @@ use crate::problem::SceneError;
 use crate::source::Source;
 use opruga_core::error::what_was_left;
 use opruga_math::words::number;
+use opruga_world::blueprint::{Action, Blueprint, CommandBlueprint};
 use opruga_world::schema::MOST_SUBSTEPS;
 use opruga_world::{Warning, WorldError};
 
@@ -133,6 +134,76 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
         },
         None => error,
     }
+}
+
+/// What a command of a scene was refused for while it ran, with the place of the command and what would help there.
+#[must_use]
+pub fn of_command<const D: usize>(
+    error: &WorldError,
+    command: &CommandBlueprint<D>,
+    scene: &Blueprint<D>,
+    (text, file): (&str, &str),
+    overrides: &[(String, String)],
+) -> SceneError {
+    let mut said = SceneError::from(error);
+    said.message = format!("the command `{}`: {}", command.action.word(), said.message);
+    (said.file, said.path) = (file.to_string(), "command".into());
+    let sets = matches!(command.action, Action::Set { .. });
+    if let WorldError::UnstableStep { substeps, .. } = error
+        && *substeps > MOST_SUBSTEPS
+        && sets
+    {
+        said.hint = Some(format!("another `value`: a frame has at most {MOST_SUBSTEPS} substeps"));
+    } else if let WorldError::UnstableStep { substeps, .. } = error
+        && *substeps <= MOST_SUBSTEPS
+    {
+        let of_substeps = |action: &Action<D>| matches!(action, Action::Set { path, .. } if path == "time.substeps");
+        // What an override sets lasts until a command sets it.
+        let how = match scene.commands.iter().any(|before| of_substeps(&before.action) && before.at <= command.at) {
+            true => ", which a command before it sets".to_string(),
+            false => format!(", such as --set time.substeps={substeps}"),
+        };
+        said.hint = Some(match &command.action {
+            action if of_substeps(action) => format!("a `value` of {substeps} or more, or another integrator"),
+            Action::Set { .. } => format!("another `value`, or substeps >= {substeps} when the command begins{how}"),
+            _ => format!("a softer or heavier body, or substeps >= {substeps} when the command begins{how}"),
+        });
+    }
+    let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
+    let Some(mut root) = document::parse(&source).0 else { return said };
+    let _ = overrides::apply_all(&mut root, overrides);
+    let Some((number, node)) = written(&root, command) else { return said };
+    let key = if sets { "value" } else { "do" };
+    said.path = format!("command.{number}.{key}");
+    match node.get(key).map_or(node.place, |value| value.place) {
+        Place::Bytes(start, end) => source.mark(said, start, end),
+        Place::Override(number) => match overrides.get(number) {
+            Some((path, value)) => SceneError { file: overrides::named(path, value), ..said },
+            None => said,
+        },
+    }
+}
+
+/// The table of a command in a scene, and its number; none for one that a program has given.
+fn written<'n, const D: usize>(root: &'n Node, command: &CommandBlueprint<D>) -> Option<(usize, &'n Node)> {
+    let Data::Array(tables) = &root.get("command")?.data else { return None };
+    let begins = |node: &Node| match node.data {
+        Data::Number(at, _) => at == command.at,
+        Data::Integer(Some(at), _) => at as f64 == command.at,
+        _ => false,
+    };
+    tables.iter().enumerate().find(|(_, table)| {
+        let text = |key: &str| table.get(key).and_then(Node::text);
+        let alike = match &command.action {
+            Action::Set { path, .. } => text("path") == Some(path.as_str()),
+            Action::Remove { name } => text("body") == Some(name.as_str()),
+            Action::Add(body) => {
+                table.get("body").and_then(|added| added.get("name")).and_then(Node::text) == Some(body.name.as_str())
+            }
+            _ => true,
+        };
+        alike && text("do") == Some(command.action.word()) && table.get("at").is_some_and(begins)
+    })
 }
 
 /// The place of the last part of a path that is written, or of a field in it; none where nothing of it is.

@@ -52,6 +52,43 @@ fn cases() -> Vec<(String, &'static str)> {
   = allowed: 2 or 3"#,
         ),
         (
+            model("stiffness = -5").replace("dimension = 2", "dimensions = 2"),
+            r#"scene.toml:2:1: error[scene.missing]: `dimension` is missing
+ 2 | dimensions = 2
+   | ^^^^^^^^^^
+  = allowed: 2 or 3
+  = hint: `dimensions` is misspelt
+scene.toml:11:47: error[scene.range]: `stiffness` is -5
+ 11 | models = [{ kind = "mass_spring", stiffness = -5 }]
+    |                                               ^^
+  = allowed: a number >= 0"#,
+        ),
+        (
+            (model("stiffness = -5")
+                + "velocity = [1, 2]\nangular_velocity = [0, 0, 1]\npin = [{ selct = { node = 0 } }]\n")
+                .replace("dimension = 2", "dimension = 4")
+                .replace("\"ring\"", "\"rng\""),
+            r#"scene.toml:2:13: error[scene.dimension]: `dimension` is 4
+ 2 | dimension = 4
+   |             ^
+  = allowed: 2 or 3
+scene.toml:9:18: error[scene.unknown_kind]: there is no shape `rng`
+ 9 | shape = { kind = "rng", radius = 1.0, vertices = 8 }
+   |                  ^^^^^
+scene.toml:11:47: error[scene.range]: `stiffness` is -5
+ 11 | models = [{ kind = "mass_spring", stiffness = -5 }]
+    |                                               ^^
+  = allowed: a number >= 0
+scene.toml:14:8: error[scene.missing]: `select` is missing in `pin`
+ 14 | pin = [{ selct = { node = 0 } }]
+    |        ^^^^^^^^^^^^^^^^^^^^^^^^
+scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
+ 14 | pin = [{ selct = { node = 0 } }]
+    |          ^^^^^
+  = allowed: axes, motion, select
+  = hint: did you mean `select`?"#,
+        ),
+        (
             model("stifness = 10"),
             r#"scene.toml:11:35: error[scene.unknown_field]: there is no field `stifness` in `mass_spring`
  11 | models = [{ kind = "mass_spring", stifness = 10 }]
@@ -154,6 +191,13 @@ fn cases() -> Vec<(String, &'static str)> {
   = hint: at the start the body lies between [-1.0, -1.0] and [1.0, 1.0]"#,
         ),
         (
+            with("pin = [{ select = { and = [] } }]\n"),
+            r#"scene.toml:12:27: error[scene.length]: `and` is empty
+ 12 | pin = [{ select = { and = [] } }]
+    |                           ^^
+  = allowed: a list of one selector at least"#,
+        ),
+        (
             with("pin = [{ select = { node = 8 } }]\n"),
             r#"scene.toml:12:19: error[scene.range]: body `ball` has no node 8
  12 | pin = [{ select = { node = 8 } }]
@@ -169,11 +213,62 @@ fn cases() -> Vec<(String, &'static str)> {
   = hint: did you mean `ball`?"#,
         ),
         (
+            with("[[load]]\nkind = \"traction\"\nbody = \"ball\"\nvalue = [0, 1]\nselect = { node = 0 }\n"),
+            r#"scene.toml:16:10: error[scene.selects_nothing]: the nodes that the load selects on `ball` hold no whole facet of its boundary
+ 16 | select = { node = 0 }
+    |          ^^^^^^^^^^^^
+  = allowed: all nodes of one facet at least: an edge of the outline, or a triangle of the surface
+  = hint: `side`, `group` and `boundary` select whole sides; `kind = "force"` acts on nodes"#,
+        ),
+        (
+            with(&format!(
+                "{LATE}[[load]]\nkind = \"pressure\"\nbody = \"late\"\nvalue = 1\nselect = {{ nodes = [0, 2] }}\n"
+            )),
+            r#"scene.toml:20:10: error[scene.selects_nothing]: the nodes that the load selects on `late` hold no whole facet of its boundary
+ 20 | select = { nodes = [0, 2] }
+    |          ^^^^^^^^^^^^^^^^^^
+  = allowed: all nodes of one facet at least: an edge of the outline, or a triangle of the surface
+  = hint: `side`, `group` and `boundary` select whole sides; `kind = "force"` acts on nodes"#,
+        ),
+        (
+            with("[[load]]\nkind = \"pressure\"\nbody = \"ball\"\nvalue = 1\n").replace(
+                "kind = \"ring\", radius = 1.0, vertices = 8",
+                "kind = \"line\", from = [0, 0], to = [1, 0], segments = 2",
+            ),
+            r#"scene.toml:12:1: error[scene.selects_nothing]: the nodes that the load selects on `ball` hold no whole facet of its boundary
+ 12 | [[load]]
+    | ^^^^^^^^
+  = allowed: bodies that have a boundary
+  = hint: a chain has none; `kind = "force"` acts on nodes"#,
+        ),
+        (
+            with(&format!("{BALL}[[command]]\ndo = \"remove\"\nat = 0.1\nbody = \"bell\"\n")),
+            r#"scene.toml:13:8: error[scene.duplicate_name]: two bodies are called `ball`, first in line 8
+ 13 | name = "ball"
+    |        ^^^^^^
+  = hint: every body needs a name of its own; many alike are `copies`
+scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
+ 20 | body = "bell"
+    |        ^^^^^^
+  = allowed: ball
+  = hint: did you mean `ball`?"#,
+        ),
+        (
             with(
                 "copies = { count = [2], spacing = [3, 0] }\n[[probe]]\nname = \"p\"\nbody = \"ball\"\nrecord = [\"position\"]\n",
             ),
             r#"scene.toml:15:8: error[scene.unknown_name]: there is no body `ball`
  15 | body = "ball"
+    |        ^^^^^^
+  = allowed: ball[0], ball[1]
+  = hint: `ball` has 2 copies: `ball[0]` … `ball[1]`"#,
+        ),
+        (
+            with(
+                "copies = { count = [2], spacing = [3, 0] }\n[[command]]\ndo = \"remove\"\nat = 0.1\nbody = \"ball\"\n",
+            ),
+            r#"scene.toml:16:8: error[scene.unknown_name]: there is no body `ball`
+ 16 | body = "ball"
     |        ^^^^^^
   = allowed: ball[0], ball[1]
   = hint: `ball` has 2 copies: `ball[0]` … `ball[1]`"#,
@@ -206,6 +301,28 @@ fn cases() -> Vec<(String, &'static str)> {
    |        ^^^^^^^^^^^^^^^^^
   = allowed: symplectic_euler, newton
   = hint: did you mean `symplectic_euler`?"#,
+        ),
+        (
+            format!("{HEAD}{}", BALL.replace("\"ring\"", "\"plygon\"")),
+            r#"scene.toml:9:18: error[scene.unknown_kind]: there is no shape `plygon`
+ 9 | shape = { kind = "plygon", radius = 1.0, vertices = 8 }
+   |                  ^^^^^^^^
+  = allowed: ring, rings, regular_polygon, polygon, line, polyline, grid, quadrilateral, svg, map, text, bitmap, mesh
+  = hint: did you mean `polygon`?"#,
+        ),
+        (
+            format!(
+                "{HEAD}{}",
+                BALL.replace(
+                    "kind = \"ring\", radius = 1.0, vertices = 8",
+                    "kind = \"rings\", centers = [[0, 0], [9, 0], [0.5, 0]], radii = [1, 1, 1], vertices = 40",
+                )
+            ),
+            r#"scene.toml:9:9: error[scene.shape]: the rings 0 and 2 cross or touch
+ 9 | shape = { kind = "rings", centers = [[0, 0], [9, 0], [0.5, 0]], radii = [1, 1, 1], vertices = 40 }
+   |         ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  = allowed: rings apart from each other, or one inside the other
+  = hint: they are counted from 0; `centers` moves them"#,
         ),
         (
             format!("{HEAD}{}", BALL.replace("\"ring\"", "\"torus\"")),

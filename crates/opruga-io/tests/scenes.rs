@@ -305,3 +305,86 @@ fn loads_and_commands_on_all_copies() {
     assert_eq!((one.loads.len(), one.commands.len(), one.loads[0].body), (1, 2, 0));
     assert_eq!(one.loads[0], all.loads[0]);
 }
+
+/// Commands begin and end with frames, here of 1/60 s: what never acts by that is told of, with its line.
+#[test]
+fn commands_that_never_act_are_told() {
+    let lasting = |what: &str, at: f64, until: f64| {
+        format!("[[command]]\ndo = \"{what}\"\nat = {at}\nuntil = {until}\nbody = \"ball\"\n")
+    };
+    let push = |at: f64, until: f64| lasting("push", at, until) + "force = [1, 0]\n";
+    let set = |at: f64| format!("[[command]]\ndo = \"set\"\nat = {at}\npath = \"world.gravity\"\nvalue = [{at}, 0]\n");
+    let remove = |at: f64| format!("[[command]]\ndo = \"remove\"\nat = {at}\nbody = \"ball\"\n");
+    let drag = "[[command]]\ndo = \"drag\"\nat = 0.005\nbody = \"ball\"\npath = [[0.005, 0, 0], [0.012, 1, 0]]\n";
+    let between = "the command begins at 0.005 s and ends at 0.012 s, before a frame begins";
+    let last = "and no frame of the run begins then or later";
+    let cases = [
+        (push(0.005, 0.012), Some((between.to_string(), 15))),
+        (lasting("pin", 0.005, 0.012), Some((between.to_string(), 15))),
+        (drag.to_string(), Some((between.to_string(), 16))),
+        (push(0.0, 0.01), None),
+        (push(0.016, 0.017), None),
+        (
+            set(0.005) + &set(0.012),
+            Some(("`world.gravity` is set at 0.005 s and again at 0.012 s, before a frame begins".into(), 14)),
+        ),
+        (set(0.012) + &set(0.02), None),
+        (remove(0.983_333), None),
+        (remove(0.99), Some((format!("the command begins at 0.99 s, {last}"), 14))),
+        (remove(1.0), Some((format!("the command begins at 1 s, {last}"), 14))),
+        (push(0.99, 2.0), Some((format!("the command begins at 0.99 s, {last}"), 14))),
+        (remove(1.5), Some(("the command begins at 1.5 s, after the end at 1 s".into(), 14))),
+    ];
+    for (commands, expected) in cases {
+        let text = format!("{HEAD}{BALL}{commands}");
+        let (_, notices) = read_text(&text).unwrap_or_else(|errors| panic!("{text}: {errors:?}"));
+        let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.message.as_str(), n.about.line)).collect();
+        let expected: Vec<_> =
+            expected.iter().map(|(message, line)| ("command.never", message.as_str(), Some(*line))).collect();
+        assert_eq!(told, expected, "{text}");
+        let strict = read_with(&text, &Options { strict: true, ..Options::default() });
+        assert_eq!(strict.is_err(), !expected.is_empty(), "{text}");
+    }
+    // The same of several is counted.
+    let twice = push(0.005, 0.012).repeat(2);
+    let (_, notices) = read_text(&format!("{HEAD}{BALL}{twice}")).expect("a scene");
+    assert_eq!(notices.iter().map(|n| n.count).collect::<Vec<_>>(), [2]);
+    // An end that the call has set is not that of the scene.
+    let options = Options { overrides: vec![("time.seconds".into(), "0.5".into())], ..Options::default() };
+    assert_eq!(read_with(&format!("{HEAD}{BALL}{}", remove(0.7)), &options).expect("a scene").1, []);
+}
+
+/// Rings lie apart, or a hole in a ring, or a ring in a hole; others are refused with the numbers of the two.
+#[test]
+fn rings_lie_apart_or_inside_one_of_the_other_sign() {
+    let meet = |a: u32, b: u32| format!("the rings {a} and {b} cross or touch");
+    let alike =
+        |inner: u32, outer: u32| format!("ring {inner} lies inside ring {outer}, and their radii have the same sign");
+    let alone = |ring: u32| format!("ring {ring} is a hole, by its negative radius, and lies inside no other ring");
+    let fine = String::new;
+    for (centers, radii, vertices, expected) in [
+        ("[[0, 0], [2.5, 0], [0, 0]]", "[1, 1, -0.4]", 40, fine()),
+        ("[[0, 0], [0.1, 0], [-0.5, 0]]", "[1, -0.4, -0.15]", 40, fine()),
+        ("[[0, 0], [0, 0]]", "[-0.4, 1]", 40, fine()),
+        ("[[0, 0], [0, 0], [0, 0]]", "[1, -0.6, 0.3]", 40, fine()),
+        ("[[0, 0], [0, 0]]", "[1, 0.4]", 40, alike(1, 0)),
+        ("[[0, 0], [0, 0], [0, 0.1]]", "[1, -0.6, -0.3]", 40, alike(2, 1)),
+        ("[[0, 0], [0.5, 0]]", "[1, 1]", 40, meet(0, 1)),
+        ("[[0, 0], [2, 0]]", "[1, 1]", 40, meet(0, 1)),
+        ("[[0, 5], [0, 0], [0, 2.001]]", "[1, 1, 1]", 40, fine()),
+        ("[[0, 5], [0, 0], [0, 1.999]]", "[1, 1, 1]", 40, meet(1, 2)),
+        ("[[0, 0], [0, 0]]", "[1, -1]", 40, meet(0, 1)),
+        ("[[0, 0], [1, 0]]", "[1, -0.4]", 40, meet(0, 1)),
+        ("[[0, 0], [0.6, 0]]", "[1, -0.4]", 40, meet(0, 1)),
+        ("[[0, 0], [3, 0]]", "[1, -0.4]", 40, alone(1)),
+        // The sides of triangles cut their circles short: one in the other, and one across the side of the other.
+        ("[[0, 0], [0, 0]]", "[1, -0.9]", 3, fine()),
+        ("[[0, 0], [-0.45, 0]]", "[1, -0.2]", 3, meet(0, 1)),
+        ("[[0, 0], [-0.2, 0]]", "[1, -0.2]", 3, fine()),
+    ] {
+        let shape = format!("kind = \"rings\", centers = {centers}, radii = {radii}, vertices = {vertices}");
+        let text = format!("{HEAD}{BALL}").replace("kind = \"ring\", radius = 1.0, vertices = 8", &shape);
+        let said = read_text(&text).err().map_or(String::new(), |errors| errors[0].message.clone());
+        assert_eq!(said, expected, "{shape}");
+    }
+}

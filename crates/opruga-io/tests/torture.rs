@@ -234,10 +234,8 @@ fn one_error_each() {
         (format!("{HEAD}{BALL}pin = [{{ select = {{ side = \"front\" }} }}]\n"), "scene.unknown_word"),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = true, node = 1 }} }}]\n"), "scene.selector"),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = false }} }}]\n"), "scene.selector"),
-        (
-            format!("{HEAD}{BALL}pin = [{{ select = {{ and = [] }} }}, {{ select = {{ or = [] }} }}]\n"),
-            "scene.selects_nothing",
-        ),
+        (format!("{HEAD}{BALL}pin = [{{ select = {{ and = [] }} }}]\n"), "scene.length"),
+        (format!("{HEAD}{BALL}pin = [{{ select = {{ not = {{ or = [] }} }} }}]\n"), "scene.length"),
         (format!("{HEAD}{BALL}pin = [{{ select = {{ all = true }}, axes = \"xz\" }}]\n"), "scene.range"),
         (format!("{HEAD}{BALL}pin = {{ select = {{ all = true }} }}\n"), "scene.type"),
         (HEAD.replace("symplectic_euler", "symplectic"), "scene.unknown_kind"),

@@ -119,3 +119,46 @@ fn an_arch_snaps_onto_obstacles_and_stays_there() {
         assert!(moved < 1e-7, "{obstacle}: {moved}");
     }
 }
+
+/// Half of a shallow arch, cut at its top, whose curve of equilibria winds: at −1 % of the load it turns within less than a
+/// step. The points on the way are those of the curve, none of them twice: each step leads on from the one before, and all
+/// ways end in the same equilibrium under the whole load.
+#[test]
+fn a_winding_curve_of_equilibria_is_never_gone_back_on_however_long_the_steps() {
+    let half_arch = |length: f64| {
+        built(plane(
+            &(statics(&format!("arc_length = {length:?}\n"))
+                + "[[body]]\nname = \"half\"\ndensity = 1000.0\nshape = { kind = \"quadrilateral\", corners = [[0.0, 0.0], [1.0, 0.2], \
+                   [1.0, 0.24], [0.0, 0.04]], cells = [20, 2] }\n\
+                   models = [{ kind = \"fem\", material = \"st_venant_kirchhoff\", youngs_modulus = 1e6, poissons_ratio = 0.0 }]\n\
+                   pin = [{ select = { side = \"right\" }, axes = \"x\" }, { select = { node = 0 }, axes = \"xy\" }]\n\
+                   [[load]]\nkind = \"force\"\nbody = \"half\"\nselect = { node = 20 }\nvalue = [0.0, -400.0]\n"),
+        ))
+    };
+    let places = |world: &World<2>| -> Vec<f64> {
+        (0..world.node_count(0) as u32).flat_map(|node| world.position(0, node)).collect()
+    };
+    let mut ends = Vec::new();
+    for length in [0.02, 0.013, 0.01] {
+        let mut world = half_arch(length);
+        let mut last: Option<Vec<f64>> = None;
+        let (mut count, mut lowest) = (0, 0.0f64);
+        while load(&mut world) < 1.0 {
+            let before = places(&world);
+            frames(&mut world, 1);
+            let way: Vec<f64> = places(&world).iter().zip(&before).map(|(a, b)| a - b).collect();
+            let on: f64 = last.iter().flatten().zip(&way).map(|(a, b)| a * b).sum();
+            assert!(on >= 0.0, "{length}: step {count} leads back at a load of {}", load(&mut world));
+            lowest = lowest.min(load(&mut world));
+            last = Some(way);
+            count += 1;
+            assert!(count < 400, "{length}: {}", load(&mut world));
+        }
+        // The curve dips twice, and nowhere below two hundredths of the load.
+        assert!(lowest < -0.009 && lowest > -0.02, "{length}: {lowest}");
+        ends.push(world.position(0, 20)[1]);
+    }
+    for end in &ends {
+        assert!((end - ends[2]).abs() < 1e-6, "{ends:?}");
+    }
+}

@@ -303,6 +303,23 @@ fn a_film_that_cannot_be_is_refused_before_the_run() {
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
+/// Pictures come every so manieth frame of the scene: where that gives another rate than the call asks for, it is told.
+#[test]
+fn a_rate_of_pictures_that_frames_do_not_have_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said_of = |more: &[&str]| {
+        let all = [&["run", "pressures", "--seconds", "0.1", "--out", "o", "--force"], more].concat();
+        let output = opruga(folder.path(), &all);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        said(&output)
+    };
+    let told = said_of(&["--fps", "11.3"]);
+    assert!(told.contains("note: 12 pictures per second, not 11.3 (--fps)"), "{told}");
+    for more in [&["--fps", "12"][..], &[], &["--fps", "11.3", "--no-pictures"], &["--fps", "11.3", "--json"]] {
+        assert!(!said_of(more).contains("pictures per second"), "{more:?}");
+    }
+}
+
 /// Row 78: more threads than cores are a warning, once; so is what was odd in the scene. A run that fails says where its
 /// output lies.
 #[test]
@@ -327,8 +344,49 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     std::fs::write(folder.path().join("h.toml"), scene(harden)).expect("a file");
     let output = opruga(folder.path(), &["run", "h.toml", "--no-pictures", "--out", "h"]);
     assert_eq!(code(&output), 2);
-    assert!(said(&output).contains("h.toml: error[step.unstable]: at t = 0.05 s: the step h = "), "{}", said(&output));
+    let told = "h.toml:19:9: error[step.unstable]: at t = 0.05 s: the command `set`: the step h = ";
+    assert!(said(&output).contains(told), "{}", said(&output));
+    assert!(said(&output).contains("= hint: another `value`, or substeps >= "), "{}", said(&output));
     assert!(said(&output).contains("written to h/\n"), "{}", said(&output));
+}
+
+/// What a command makes unstable is told with its line, and what the hint says helps.
+#[test]
+fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |text: &str, more: &[&str]| {
+        std::fs::write(folder.path().join("s.toml"), scene(text)).expect("a file");
+        opruga(folder.path(), &[&["run", "s.toml", "--no-pictures", "--out", "o", "--force"], more].concat())
+    };
+    let number_after = |all: &str, before: &str| {
+        let rest = all.split(before).nth(1).unwrap_or_else(|| panic!("{before}: {all}"));
+        rest.split(|c: char| !c.is_ascii_digit()).next().unwrap_or_default().to_string()
+    };
+    let coarse = "[[command]]\ndo = \"set\"\nat = 0.05\npath = \"time.substeps\"\nvalue = 1\n";
+    let output = run(coarse, &[]);
+    assert_eq!(code(&output), 2);
+    let all = said(&output);
+    assert!(all.contains("s.toml:19:9: error[step.unstable]: at t = 0.05 s: the command `set`: the step"), "{all}");
+    let enough = number_after(&all, "= hint: a `value` of ");
+    let output = run(&coarse.replace("value = 1", &format!("value = {enough}")), &[]);
+    assert_eq!(code(&output), 0, "{enough}: {}", said(&output));
+
+    let hard = "[[command]]\nat = 0.05\ndo = \"add\"\nbody = { name = \"hard\", mass = 1, shape = { kind = \"ring\", radius = 0.5, \
+                vertices = 24 }, models = [{ kind = \"mass_spring\", stiffness = 1e6 }] }\n";
+    let output = run(hard, &[]);
+    assert_eq!(code(&output), 2);
+    let all = said(&output);
+    assert!(all.contains("s.toml:17:6: error[step.unstable]: at t = 0.05 s: the command `add`: the step"), "{all}");
+    assert!(
+        all.contains("for body `hard`") && all.contains("= hint: a softer or heavier body, or substeps >= "),
+        "{all}"
+    );
+    let set = format!("time.substeps={}", number_after(&all, "--set time.substeps="));
+    assert_eq!(code(&run(hard, &["--set", &set])), 0, "{set}");
+    // What an override sets lasts until a command sets it: it is not offered then.
+    let both = format!("{}{hard}", coarse.replace("value = 1", "value = 20"));
+    let all = said(&run(&both, &[]));
+    assert!(all.contains("when the command begins, which a command before it sets") && !all.contains("--set"), "{all}");
 }
 
 #[test]

@@ -291,7 +291,7 @@ impl Reader<'_, '_> {
             rest = behind;
         }
         if !rest.is_empty() {
-            let error = self.scanner.error(SIZE, format!("{} numbers follow the last cell", rest.len()), rest[0].1);
+            let error = self.scanner.error(SIZE, format!("numbers follow the last cell: {}", rest.len()), rest[0].1);
             return Err(error.value(size.to_string()).allowed((size - rest.len() as u64).to_string()));
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! `[[load]]`, `[[command]]` and `[[probe]]`.
 
 use super::bodies::{self, Bodies};
+use super::moments::{Frames, Set};
 use super::pins;
 use super::reader::{Reader, join, listed};
 use super::{parameters, place_of, selectors};
@@ -8,7 +9,7 @@ use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Spec, Values, nearest};
 use opruga_world::blueprint::{
-    Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded,
+    Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded, Selector,
 };
 use opruga_world::schema::{self, Section};
 use std::collections::BTreeMap;
@@ -40,6 +41,9 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
             "traction" => LoadKind::Traction(values.vector("value")),
             _ => LoadKind::Pressure(values.number("value").unwrap_or(0.0)),
         };
+        if !matches!(kind, LoadKind::Force(_)) && !hold_sides(reader, node, &path, bodies, &targets) {
+            continue;
+        }
         let curve = values.rows("curve").to_vec();
         loads.extend(targets.into_iter().map(|(body, select)| LoadBlueprint {
             body,
@@ -51,6 +55,37 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
     loads
 }
 
+/// Refuses a load on sides of the boundary whose nodes hold none of them; copies have one mesh, and the same nodes of it.
+fn hold_sides<const D: usize>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    path: &str,
+    bodies: &Bodies<D>,
+    targets: &[(usize, Selector<D>)],
+) -> bool {
+    let Some((body, select)) = targets.first().and_then(|(k, select)| Some((bodies.list.get(*k)?, select))) else {
+        return true;
+    };
+    if !body.mesh.boundary_sides(&select.resolve(&body.mesh, &body.translation)).is_empty() {
+        return true;
+    }
+    let name = visible(body.common_name());
+    let message = format!("the nodes that the load selects on `{name}` hold no whole facet of its boundary");
+    let mut error = SceneError::new("scene.selects_nothing", message).path(join(path, "select"));
+    if let Some(select) = node.get("select") {
+        error = error.value(select.shown());
+    }
+    let (allowed, hint) = match body.mesh.facets.is_empty() {
+        true => ("bodies that have a boundary", "a chain has none; `kind = \"force\"` acts on nodes"),
+        false => (
+            "all nodes of one facet at least: an edge of the outline, or a triangle of the surface",
+            "`side`, `group` and `boundary` select whole sides; `kind = \"force\"` acts on nodes",
+        ),
+    };
+    reader.report(place_of(node, "select"), error.allowed(allowed).hint(hint));
+    false
+}
+
 /// What is done to the bodies while they move, in the order of time.
 pub(crate) fn commands<const D: usize>(
     reader: &mut Reader<'_>,
@@ -58,11 +93,12 @@ pub(crate) fn commands<const D: usize>(
     bodies: &Bodies<D>,
     integrator: Option<&Values>,
     colliders: &[ColliderBlueprint],
+    frames: Option<&Frames>,
 ) -> Vec<CommandBlueprint<D>> {
     // Bodies that come later may be taken away or changed too.
     let added: Vec<&str> = list.iter().filter_map(|(node, _)| node.get("body")?.get("name")?.text()).collect();
     let known = parameters::Known { bodies, added: &added, integrator, colliders };
-    let mut commands = Vec::new();
+    let (mut commands, mut sets) = (Vec::new(), Vec::new());
     for (number, (node, path)) in list.iter().enumerate() {
         let before = reader.count();
         let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
@@ -88,6 +124,13 @@ pub(crate) fn commands<const D: usize>(
             let from = if lasts { "after" } else { "from" };
             reader.report(place_of(node, key), error.value(until.to_string()).allowed(format!("a time {from} {at}")));
         }
+        if let Some(frames) = frames
+            && reader.sound_since(before, path)
+            && frames.command(reader, node, path, at, lasts.then_some(until))
+            && let [Action::Set { path: parameter, .. }] = actions.as_slice()
+        {
+            sets.push(Set { at, parameter: parameter.clone(), place: place_of(node, "at"), path: path.clone() });
+        }
         for action in actions {
             if let Some(body) = &action.body()
                 && let Some((_, added)) = bodies.later.values().find(|(k, added)| k == body && *added > at)
@@ -99,6 +142,9 @@ pub(crate) fn commands<const D: usize>(
             }
             commands.push(CommandBlueprint { at, until, action });
         }
+    }
+    if let Some(frames) = frames {
+        frames.sets(reader, sets);
     }
     commands.sort_by(|a, b| a.at.total_cmp(&b.at));
     commands
@@ -120,7 +166,7 @@ fn actions<const D: usize>(
             let (held, facet) = held(reader, node, path)?;
             let body = body?;
             if let (Some(k), Some(blueprint)) = (held, bodies.list.get(body)) {
-                let only = opruga_world::blueprint::Selector::Nodes(vec![k]);
+                let only = Selector::Nodes(vec![k]);
                 selectors::check(reader, place_of(node, "node"), &join(path, "node"), &only, blueprint).then_some(())?;
             }
             vec![Action::Drag {
@@ -178,7 +224,8 @@ fn actions<const D: usize>(
         }
         _ => {
             let name = values.text("body")?;
-            if !bodies.knows(name) && !known.added.contains(&name) {
+            // Copies go one by one: their common name is that of no body.
+            if !bodies.names.contains_key(name) && !known.added.contains(&name) {
                 bodies.unknown(reader, place_of(node, "body"), join(path, "body"), name, known.added);
                 return None;
             }

@@ -8,6 +8,8 @@ mod actions;
 mod bodies;
 mod copies;
 mod cost;
+mod dimension;
+mod moments;
 mod parameters;
 mod pins;
 mod plain;
@@ -17,12 +19,13 @@ mod selectors;
 mod shape;
 
 use crate::catalogue::Catalogue;
-use crate::document::{self, Data, Node, Place};
+use crate::document::{self, Node, Place};
 use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
 pub(crate) use cost::Cost;
+use moments::Frames;
 use opruga_core::spec::Values;
 use opruga_math::words::number;
 use opruga_world::blueprint::{
@@ -143,11 +146,7 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
         errors.append(&mut problems);
     }
     let mut reader = Reader::new(&source, catalogue, options, errors);
-    let blueprint = match reader.format_and_dimension(&document) {
-        Some(2) => scene::<2>(&mut reader, &document).map(AnyBlueprint::Plane),
-        Some(_) => scene::<3>(&mut reader, &document).map(AnyBlueprint::Space),
-        None => None,
-    };
+    let blueprint = if reader.format(&document) { dimension::read(&mut reader, &document) } else { None };
     let (files, unread) = (std::mem::take(&mut reader.files), std::mem::take(&mut reader.unread));
     let (errors, notices) = reader.finish();
     Reading { blueprint, errors, notices, files, unread }
@@ -248,6 +247,9 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let top = reader.fields(root, "", &schema::SCENE, None);
     let before = reader.count();
     let time = time(reader, root);
+    // Without them nothing is known of what begins when.
+    let timed = reader.count() == before && root.get("time").is_some();
+    let frames = timed.then(|| Frames::of(root, &time));
     let surroundings = surroundings(reader, root);
     let picture = picture(reader, root);
     let integrator = reader.integrator(root, "");
@@ -265,8 +267,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let commands = reader.list(root, "", "command");
     bodies::later(reader, &commands, &mut bodies);
     let loads = actions::loads(reader, root, &bodies);
-    never(reader, root, &commands);
-    let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders);
+    let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders, frames.as_ref());
     let probes = actions::probes(reader, root, &bodies);
     bodies.list.truncate(bodies.initial);
     let whole = Blueprint {
@@ -312,26 +313,6 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         probes: Vec::new(),
         ..whole
     })
-}
-
-/// Notices commands that begin after the end of the run. An end that an override has set is not that of the scene.
-fn never(reader: &mut Reader<'_>, root: &Node, commands: &[(&Node, String)]) {
-    let number = |node: &Node| match node.data {
-        Data::Number(x, _) => Some(x),
-        Data::Integer(x, _) => x.map(|x| x as f64),
-        _ => None,
-    };
-    let end = root.get("time").and_then(|time| time.get("seconds")).filter(|n| matches!(n.place, Place::Bytes(..)));
-    let Some(end) = end.and_then(number) else { return };
-    for (node, path) in commands {
-        if let Some(at) = node.get("at").and_then(number).filter(|at| *at > end) {
-            let about =
-                SceneError::new("command.never", format!("the command begins at {at} s, after the end at {end} s"))
-                    .path(format!("{path}.at"))
-                    .hint("it only comes about in a run with a larger --seconds");
-            reader.notice(place_of(node, "at"), about);
-        }
-    }
 }
 
 /// The name of the file without folder and ending.

@@ -7,7 +7,7 @@ use crate::problem::{Notice, SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Default, ONE_OF, Spec, Values, nearest, one_of};
 use opruga_world::schema::{self, Child, Section};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// More errors than this are counted, not listed: finding a place takes time.
@@ -136,8 +136,8 @@ impl<'a> Reader<'a> {
         (self.errors, self.notices)
     }
 
-    /// The head of a scene: without it nothing else can be understood.
-    pub(crate) fn format_and_dimension(&mut self, root: &Node) -> Option<usize> {
+    /// Whether the format is the one that is read here: without it nothing else can be understood.
+    pub(crate) fn format(&mut self, root: &Node) -> bool {
         let readable = format!("\"{}\"", schema::FORMAT);
         match root.get("format") {
             Some(node) if node.text() == Some(schema::FORMAT) => {}
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
                     .allowed(readable)
                     .hint("this version reads opruga-1 only; another version of the program may read this scene");
                 self.report(node.place, error);
-                return None;
+                return false;
             }
             None => {
                 let near = nearest("format", root.entries().iter().map(|e| e.key.as_str()));
@@ -159,28 +159,10 @@ impl<'a> Reader<'a> {
                     None => format!("begin the file with format = \"{}\"", schema::FORMAT),
                 });
                 self.report(Place::Bytes(0, 0), error);
-                return None;
+                return false;
             }
         }
-        match root.get("dimension").map(|n| (&n.data, n)) {
-            Some((Data::Integer(Some(d @ (2 | 3)), _), _)) => {
-                self.dimension = *d as usize;
-                Some(self.dimension)
-            }
-            Some((_, node)) => {
-                let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown()))
-                    .path("dimension")
-                    .value(node.shown());
-                self.report(node.place, error.allowed("2 or 3"));
-                None
-            }
-            None => {
-                let error =
-                    SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
-                self.report(Place::Bytes(0, 0), error);
-                None
-            }
-        }
+        true
     }
 
     /// The plain fields of a table, checked; errors and missing fields are reported and leave the default. Structured
@@ -282,8 +264,12 @@ impl<'a> Reader<'a> {
 
     /// A table whose `kind` names one of several specifications.
     pub(crate) fn kind_table(&mut self, node: &Node, path: &str, what: &str, list: &[&'static Spec]) -> Option<Values> {
-        let word = self.tag(node, path, "kind", what, &list.iter().map(|s| s.kind).collect::<Vec<_>>())?;
-        let spec = find(list, &word, self.dimension)?;
+        let word = node.get("kind").and_then(Node::text);
+        let Some(spec) = word.and_then(|word| find(list, word, self.dimension)) else {
+            let here = list.iter().filter(|spec| spec.dimensions.contains(&self.dimension));
+            self.tag(node, path, "kind", what, &here.map(|spec| spec.kind).collect::<Vec<_>>());
+            return None;
+        };
         if !spec.dimensions.contains(&self.dimension) {
             let place = super::place_of(node, "kind");
             let error =
@@ -381,7 +367,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Words as a list in a sentence; a long list is cut.
+/// Words as a list in a sentence, each once.
 pub(crate) fn listed<'w>(words: impl Iterator<Item = &'w str>) -> String {
-    words.collect::<Vec<_>>().join(", ")
+    let mut seen = BTreeSet::new();
+    words.filter(|word| seen.insert(*word)).collect::<Vec<_>>().join(", ")
 }

@@ -1,7 +1,7 @@
 //! Names of bodies in other tables: which body is meant, and what is said where none is.
 
 use super::bodies::Bodies;
-use super::reader::{Reader, join};
+use super::reader::{Reader, join, listed};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::nearest;
@@ -85,9 +85,9 @@ impl<const D: usize> Bodies<D> {
 
     fn allowed(&self) -> String {
         match self.list.len() {
-            0 if !self.broken.is_empty() => self.broken.join(", "),
+            0 if !self.broken.is_empty() => listed(self.broken.iter().map(String::as_str)),
             0 => "the scene has no bodies".into(),
-            n if n <= 8 => self.list.iter().map(|b| b.name.as_str()).collect::<Vec<_>>().join(", "),
+            n if n <= 8 => listed(self.list.iter().map(|b| b.name.as_str())),
             n => format!("{n} bodies, by name or by number from 0 to {}", self.initial.saturating_sub(1)),
         }
     }

@@ -104,6 +104,11 @@ fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Opti
                 reader.wrong_type(value, &here, "a list of selectors");
                 return None;
             };
+            if items.is_empty() {
+                let error = SceneError::new("scene.length", format!("`{key}` is empty")).path(here).value("[]");
+                reader.report(value.place, error.allowed("a list of one selector at least"));
+                return None;
+            }
             let sets: Vec<Option<Selector<D>>> =
                 items.iter().enumerate().map(|(k, item)| one(reader, item, &format!("{here}.{k}"))).collect();
             let sets: Vec<Selector<D>> = sets.into_iter().collect::<Option<_>>()?;

@@ -9,7 +9,7 @@ use crate::problem::{Notice, SceneError, visible};
 use crate::shapes::{Loaded, told};
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_mesh::Mesh;
+use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes;
 
 /// Where a shape stands in the scene.
@@ -87,7 +87,21 @@ fn generated<const D: usize>(
     name: &str,
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
     let made = shapes::mesh::<D>(shape, transform);
-    let made = made.map_err(|refusal| SceneError::new("scene.shape", refusal.to_string()))?;
+    let made = made.map_err(|refusal| {
+        let error = SceneError::new("scene.shape", refusal.to_string());
+        match refusal {
+            MeshError::RingsMeet { .. } => error
+                .allowed("rings apart from each other, or one inside the other")
+                .hint("they are counted from 0; `centers` moves them"),
+            MeshError::RingsAlike { .. } => error
+                .allowed("in a ring holes, of negative radius, and in a hole rings")
+                .hint("they are counted from 0; a hole between them, or a body of its own, keeps two chambers of gas apart"),
+            MeshError::HoleInNothing { .. } => error
+                .allowed("holes inside a ring of positive radius")
+                .hint("rings are counted from 0; `centers` moves them"),
+            _ => error,
+        }
+    })?;
     let mut notices = Vec::new();
     if made.flipped {
         let notice = SceneError::new("shape.flipped", format!("the points of `{}` run clockwise", visible(name)));

@@ -86,3 +86,36 @@ fn bodies_that_come_later_are_drawn() {
     other.restore(&bytes).expect("its own snapshot");
     assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &mut other), 2);
 }
+
+/// A push moves the body unless the reader tells that it never acts: both bring times to frames in the same way.
+#[test]
+fn commands_act_unless_it_is_told_that_they_never_will() {
+    let sixtieth = 1.0 / 60.0;
+    let (mut moved, mut still) = (0, 0);
+    for (at, until) in [
+        (0.0, 0.01),
+        (0.005, 0.012),
+        (0.016, 0.017),
+        (0.017, 0.03),
+        (sixtieth, 1.5 * sixtieth),
+        (7.0 * sixtieth, 7.1 * sixtieth),
+        (7.1 * sixtieth, 8.0 * sixtieth),
+        (59.0 * sixtieth, 5.0),
+        (0.99, 5.0),
+        (1.0, 5.0),
+    ] {
+        let push = format!(
+            "[[command]]\ndo = \"push\"\nat = {at:?}\nuntil = {until:?}\nbody = \"b\"\nselect = {{ node = 0 }}\nforce = [1, 0]\n"
+        );
+        let text = ring(16, BALL, &push);
+        let options = opruga::io::scene::Options::default();
+        let (_, notices) = opruga::io::scene::read(text.as_bytes(), "test.toml", &opruga::catalogue(), &options)
+            .unwrap_or_else(|errors| panic!("{errors:?}"));
+        let mut world = built(plane(&text));
+        frames(&mut world, 60);
+        let acts = world.momentum().linear.0[0] > 1e-3;
+        assert_eq!(acts, notices.is_empty(), "{at} to {until}: {notices:?}");
+        if acts { moved += 1 } else { still += 1 }
+    }
+    assert_eq!((moved, still), (5, 5));
+}

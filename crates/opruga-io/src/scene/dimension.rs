@@ -1,0 +1,113 @@
+//! How many dimensions a scene has; and what else is wrong with one that does not say it.
+
+use super::reader::Reader;
+use super::scene;
+use crate::document::{Data, Entry, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::nearest;
+use opruga_world::blueprint::AnyBlueprint;
+use opruga_world::schema;
+
+/// What `dimension` says, once what is wrong with it is reported.
+enum Dimension {
+    /// 2 or 3.
+    Known(usize),
+    /// Neither: the key that stands for it, empty where there is none, and what is likely meant.
+    Wrong(String, Option<usize>),
+}
+
+/// Everything below the format of a scene. Where its dimension is not known, what is wrong with the rest in either.
+pub(super) fn read(reader: &mut Reader<'_>, root: &Node) -> Option<AnyBlueprint> {
+    match said(reader, root) {
+        Dimension::Known(dimension) => within(reader, root, dimension),
+        Dimension::Wrong(key, Some(likely)) => within(reader, &as_if(root, &key, likely), likely),
+        Dimension::Wrong(key, None) => {
+            wrong_in_both(reader, root, &key);
+            None
+        }
+    }
+}
+
+fn within(reader: &mut Reader<'_>, root: &Node, dimension: usize) -> Option<AnyBlueprint> {
+    reader.dimension = dimension;
+    match dimension {
+        2 => scene::<2>(reader, root).map(AnyBlueprint::Plane),
+        _ => scene::<3>(reader, root).map(AnyBlueprint::Space),
+    }
+}
+
+fn said(reader: &mut Reader<'_>, root: &Node) -> Dimension {
+    match root.get("dimension").map(|node| (&node.data, node)) {
+        Some((Data::Integer(Some(d @ (2 | 3)), _), _)) => Dimension::Known(*d as usize),
+        Some((_, node)) => {
+            let error = SceneError::new("scene.dimension", format!("`dimension` is {}", node.shown()))
+                .path("dimension")
+                .value(node.shown());
+            reader.report(node.place, error.allowed("2 or 3"));
+            Dimension::Wrong("dimension".into(), likely(node))
+        }
+        None => {
+            let error = SceneError::new("scene.missing", "`dimension` is missing").path("dimension").allowed("2 or 3");
+            let known = |key: &str| {
+                let fields = schema::SCENE.spec.fields.iter().map(|field| field.name);
+                fields.chain(schema::SCENE.children.iter().map(|child| child.name)).any(|name| name == key)
+            };
+            let keys = root.entries().iter().map(|entry| entry.key.as_str()).filter(|key| !known(key));
+            let Some(entry) = nearest("dimension", keys).and_then(|key| root.entry(&key)) else {
+                reader.report(Place::Bytes(0, 0), error);
+                return Dimension::Wrong(String::new(), None);
+            };
+            let key = visible(&entry.key);
+            reader.report(entry.place, error.value(key.clone()).hint(format!("`{key}` is misspelt")));
+            Dimension::Wrong(entry.key.clone(), likely(&entry.value))
+        }
+    }
+}
+
+/// The dimension that a value most likely means.
+fn likely(node: &Node) -> Option<usize> {
+    let number = match &node.data {
+        Data::Integer(Some(x), _) => *x as f64,
+        Data::Number(x, _) => *x,
+        Data::Text(text) => text.trim().parse().ok()?,
+        _ => return None,
+    };
+    [2, 3].into_iter().find(|dimension| *dimension as f64 == number)
+}
+
+/// The same scene with a dimension in the place of what a key says.
+fn as_if(root: &Node, key: &str, dimension: usize) -> Node {
+    let mut root = root.clone();
+    let value = Node { place: root.place, data: Data::Integer(Some(dimension as i64), dimension.to_string()) };
+    if let Data::Table(entries) = &mut root.data {
+        entries.retain(|entry| entry.key != key);
+        entries.push(Entry { key: "dimension".into(), place: root.place, value });
+    }
+    root
+}
+
+/// Reports what is wrong with a scene in the plane and in space alike: what is wrong in one of them alone may be right.
+fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
+    let [plane, space] = [2, 3].map(|dimension| {
+        let mut trial = Reader::new(reader.source, reader.catalogue, reader.options, Vec::new());
+        within(&mut trial, &as_if(root, key, dimension), dimension);
+        reader.files.append(&mut trial.files);
+        for name in trial.unread {
+            if !reader.unread.contains(&name) {
+                reader.unread.push(name);
+            }
+        }
+        trial.errors
+    });
+    let about = |error: &SceneError| (error.code, error.line, error.column, error.path.clone(), error.message.clone());
+    for error in plane {
+        let Some(other) = space.iter().find(|other| about(other) == about(&error)) else { continue };
+        // What would be right may be another thing in each.
+        let (allowed, hint) = (error.allowed == other.allowed, error.hint == other.hint);
+        let mut error = error;
+        error.allowed = error.allowed.filter(|_| allowed);
+        error.hint = error.hint.filter(|_| hint);
+        // It has its place already.
+        reader.report(Place::Bytes(0, 0), error);
+    }
+}
