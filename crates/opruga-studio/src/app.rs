@@ -173,8 +173,9 @@ impl Studio {
                 ui,
                 |ui| {
                     // On a narrow window curves keep their width and are pushed along.
-                    // Below them is room for the bar by which they are pushed.
+                    // Below them is room for the bar by which they are pushed, which is seen before it is looked for.
                     let room = ui.available_size() - egui::vec2(0.0, 10.0);
+                    ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
                         self.plots.show(ui, &shown, words, self.canvas.selected.as_deref(), room);
                     });
@@ -358,6 +359,9 @@ impl Studio {
         }
         if pressed(Modifiers::COMMAND, Key::S) {
             self.keeping.begin(crate::panels::keeping::What::Scene, &self.link, self.show);
+        }
+        if (self.help_open || self.gallery.open) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+            (self.help_open, self.gallery.open) = (false, false);
         }
         let selected = self.canvas.selected.clone();
         if let Some(name) = selected {

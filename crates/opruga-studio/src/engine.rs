@@ -31,6 +31,8 @@ pub struct Common {
 pub trait Engine: Send {
     /// Steps through one frame.
     fn frame(&mut self) -> Result<(), WorldError>;
+    /// Begins and ends commands that are due now.
+    fn begin_what_is_due(&mut self) -> Result<(), WorldError>;
     /// Frames since the start.
     fn frames(&self) -> u64;
     /// The length of a frame [s].
@@ -84,6 +86,8 @@ pub trait Engine: Send {
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]>;
     /// The positions of all nodes of the bodies that are there [m].
     fn positions(&self) -> Vec<[f64; 3]>;
+    /// The names of the bodies that are there.
+    fn names(&self) -> Vec<String>;
     /// The name of a body.
     fn name(&self, body: usize) -> Option<String>;
     /// The middle of a body's mesh as its shape was turned and scaled, and where that is moved to [m].
@@ -242,6 +246,9 @@ impl<const D: usize> Engine for Living<D> {
     fn frame(&mut self) -> Result<(), WorldError> {
         self.world.frame()
     }
+    fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
+        self.world.begin_what_is_due()
+    }
     fn frames(&self) -> u64 {
         self.world.frames()
     }
@@ -369,6 +376,10 @@ impl<const D: usize> Engine for Living<D> {
     fn positions(&self) -> Vec<[f64; 3]> {
         let nodes = |body| (0..self.world.node_count(body) as u32).map(move |node| (body, node));
         self.world.bodies().flat_map(nodes).map(|(body, node)| three(self.world.position(body, node))).collect()
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.world.bodies().map(|body| self.world.blueprint().bodies[body].name.clone()).collect()
     }
 
     fn name(&self, body: usize) -> Option<String> {

@@ -21,7 +21,9 @@ pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<War
     let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
     let together = |errors: Vec<SceneError>| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     let (blueprint, notices) = read.map_err(together)?;
-    let odd = notices.into_iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
+    // Time goes on behind the end that the scene states for a run: every command comes about here.
+    let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
+    let odd = notices.into_iter().filter(|notice| told(notice.about.code));
     let warning =
         |Notice { about, count }| Warning { code: about.code.into(), message: about.message, count: count as u64 };
     Ok((blueprint, odd.map(warning).collect()))
@@ -109,6 +111,11 @@ impl Engine for Pair {
         {
             self.stopped = Some(error.to_string());
         }
+        Ok(())
+    }
+    fn begin_what_is_due(&mut self) -> Result<(), WorldError> {
+        self.left.begin_what_is_due()?;
+        self.follow(|right| right.begin_what_is_due());
         Ok(())
     }
     fn frames(&self) -> u64 {
@@ -233,6 +240,9 @@ impl Engine for Pair {
     }
     fn positions(&self) -> Vec<[f64; 3]> {
         self.left.positions()
+    }
+    fn names(&self) -> Vec<String> {
+        self.left.names()
     }
     fn name(&self, body: usize) -> Option<String> {
         self.left.name(body)

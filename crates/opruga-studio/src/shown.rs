@@ -145,6 +145,8 @@ pub enum Severity {
 pub enum Offer {
     /// Go back a second and take half the step.
     HalveStep,
+    /// Go back a second and take an integrator that has a stable step, for the body of this number or for the scene.
+    Steady(Option<usize>),
     /// Take so many substeps and try again what was refused.
     Substeps(u32),
     /// Go on behind the end of a recording.

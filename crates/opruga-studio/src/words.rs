@@ -182,7 +182,8 @@ words! {
     steps_a_second: "steps/s", "koraka/s";
     margin: "step / stable limit", "korak / granica stabilnosti";
     halve_step: "Go back a second and halve the step", "Vrati se sekundu i prepolovi korak";
-    use_substeps: "Take that many substeps", "Uzmi toliko podkoraka";
+    take_steady: "Go back a second and take {}", "Vrati se sekundu i uzmi integrator „{}”";
+    use_substeps: "Take {} substeps, with some to spare", "Uzmi {} podkoraka, s rezervom";
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";

@@ -1,8 +1,10 @@
 //! What is refused and warned of while somebody works on a scene is said in Croatian too, to the last word.
 
-use opruga::Options;
+use opruga::core::error::BuildError;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
+use opruga::{Options, WorldError};
+use opruga_studio::said::Said;
 use opruga_studio::session::{Edit, Request, Session};
 use opruga_studio::shown::Severity;
 use opruga_studio::words::Language;
@@ -91,12 +93,47 @@ fn what_models_integrators_and_the_world_refuse_is_said_in_croatian() {
                 session.handle(Request::Step);
             }
             let said = refused(&mut session, request.clone());
-            if said.contains(ENGLISH) {
+            if said.contains(ENGLISH) || said.contains("body `") {
                 english.push(format!("{request:?}: {said}"));
             }
         }
     }
     assert!(english.is_empty(), "{english:#?}");
+}
+
+/// Numbers have the digits that a person reads, and the body stands there in Croatian.
+#[test]
+fn places_and_numbers_of_the_world_are_said_in_croatian_as_in_english() {
+    let (time, last) = (0.101_041_666_666_666_67, 0.1);
+    let diverged = WorldError::Diverged { body: "tijelo".into(), node: 3, time, last, range: Some(12_345_678.9) };
+    let unstable = WorldError::UnstableStep {
+        integrator: "verlet",
+        body: "tijelo".into(),
+        h: 1.0 / 1920.0,
+        limit: 1.0 / 12_345.0,
+        omega: 1.0,
+        damping: 0.0,
+        substeps: 220,
+    };
+    for (error, numbers) in
+        [(diverged, ["0.101042 s", "0.1 s", "1.23457e7 m"]), (unstable, ["0.000520833 s", "8.10045e-5 s", "220"])]
+    {
+        let (english, croatian) = (error.to_string(), Language::Croatian.said(&Said::World(error)));
+        for number in numbers {
+            assert!(english.contains(number) && croatian.contains(number), "{number}: {english}\n{croatian}");
+        }
+    }
+    for (place, wanted) in [
+        ("body `lopta`", "tijelo `lopta`:"),
+        ("integrator of body `lopta`", "integrator tijela `lopta`:"),
+        ("integrator", "integrator:"),
+        ("collider", "prepreka:"),
+        ("world", "svijet:"),
+    ] {
+        let source = BuildError::new("pressure", "model.no_cavity", "the body has no cavity that nobody has heard of");
+        let said = Language::Croatian.said(&Said::World(WorldError::Build { place: place.into(), source }));
+        assert!(said.starts_with(wanted), "{said}");
+    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! The last message, over the scene.
 
 use super::Studio;
-use crate::session::Request;
+use crate::session::{Request, STEADY};
 use crate::shown::{Offer, Severity, Shown};
+use crate::words::Part;
 use egui::{Align2, Color32, CornerRadius, Frame, RichText, Stroke, Ui};
 
 /// How long it stays on the screen that something was done [s].
@@ -52,7 +53,10 @@ impl Studio {
                             if let Some(offer) = &offer {
                                 let name = match offer {
                                     Offer::HalveStep => words.halve_step().to_string(),
-                                    Offer::Substeps(n) => format!("{} ({n})", words.use_substeps()),
+                                    Offer::Steady(_) => {
+                                        words.take_steady().replace("{}", &words.kind(Part::Integrator, STEADY))
+                                    }
+                                    Offer::Substeps(n) => words.use_substeps().replace("{}", &n.to_string()),
                                     Offer::GoOn => words.go_on().to_string(),
                                 };
                                 if ui.button(name).clicked() {
@@ -61,7 +65,7 @@ impl Studio {
                                 }
                             }
                             // What made it fail may have been the last change.
-                            if offer == Some(Offer::HalveStep)
+                            if matches!(offer, Some(Offer::HalveStep | Offer::Steady(_)))
                                 && let Some(step) = &shown.undo
                                 && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
                             {

@@ -4,7 +4,7 @@ use super::look::Look;
 use super::plane::{colour, on_paper};
 use crate::words::Language;
 use egui::{Align2, FontId, Mesh, Pos2, Rect, Shape, Stroke, Vec2};
-use opruga::draw::{BodyPicture, format_value, nice_ticks};
+use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
 
 /// The bar of colours, and all that the legend takes; none where nothing has colours that mean something.
 fn places(look: &Look<'_>, tools: Option<Rect>) -> Option<[Rect; 2]> {
@@ -48,7 +48,6 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
         }
     }
     painter.add(Shape::mesh(mesh));
-    let font = FontId::proportional(11.5);
     let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
     let name = format!("{}{unit}", language.quantity(&legend.label));
     let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
@@ -62,6 +61,39 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
         painter
             .line_segment([Pos2::new(bar.right(), y), Pos2::new(bar.right() + 4.0, y)], Stroke::new(1.0, paper.soft));
         let spot = Pos2::new(bar.right() + 7.0, y);
-        painter.text(spot, Align2::LEFT_CENTER, format_value(tick), font.clone(), paper.ink);
+        let (text, room) = (figure(tick), behind.right() - spot.x);
+        let laid = |size: f32| painter.layout_no_wrap(text.clone(), FontId::proportional(size), paper.ink);
+        let mut galley = laid(SIZE);
+        if galley.size().x > room {
+            galley = laid(SIZE * room / galley.size().x);
+        }
+        painter.galley(spot - Vec2::new(0.0, 0.5 * galley.size().y), galley, paper.ink);
+    }
+}
+
+/// The size of the figures, where they find room [points].
+const SIZE: f32 = 11.5;
+
+/// A figure beside the bar, where there is no room for many digits.
+fn figure(value: f64) -> String {
+    if value.is_finite() && value.abs() >= 1e5 { scientific(value) } else { format_value(value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::figure;
+
+    #[test]
+    fn figures_beside_the_bar_are_short_however_large_they_are() {
+        for (value, text) in [
+            (0.0, "0"),
+            (0.25, "0.25"),
+            (50_000.0, "50\u{a0}000"),
+            (6e6, "6×10⁶"),
+            (-250_000.0, "−2.5×10⁵"),
+            (1e5, "10⁵"),
+        ] {
+            assert_eq!(figure(value), text);
+        }
     }
 }

@@ -4,6 +4,7 @@ mod brush;
 mod camera;
 mod detail;
 mod handles;
+mod labels;
 mod legend;
 mod look;
 mod outlines;
@@ -168,6 +169,8 @@ impl Canvas {
         self.beside.receive(ui);
         // Pictures of space are a moment behind: what is pressed is what is seen.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
+        // Before the first one nothing hangs in the air over it.
+        let is_seen = shown.dimension != 3 || seen.is_some();
         let seen = seen.unwrap_or_else(|| Arc::clone(shown));
         let beside = hover.is_some_and(|(_, beside)| beside);
         let right = shown.beside.as_ref().map(|beside| &beside.right);
@@ -180,31 +183,35 @@ impl Canvas {
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, range };
-        self.paint(ui, &look, shown, false);
-        plane::credit(&look);
         // Side by side both have the same colours: the legend stands at the right.
         let taken = if other.is_none() { legend::place(&look, self.tools) } else { None };
+        self.paint(ui, &look, shown, false, taken);
+        plane::credit(&look);
         if taken.is_some() {
             legend::paint(&look, self.tools, language);
         }
-        self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), taken, language);
+        if is_seen {
+            self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), taken, language);
+        }
         let on_right = beside;
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
             let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
-            self.paint(ui, &look, &beside.right, true);
+            let taken = legend::place(&look, self.tools);
+            self.paint(ui, &look, &beside.right, true, taken);
             let seen = seen_right.as_ref().unwrap_or(&beside.right);
             legend::paint(&look, self.tools, language);
-            let taken = legend::place(&look, self.tools);
-            self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), taken, language);
+            if shown.dimension != 3 || self.beside.seen().is_some() {
+                self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), taken, language);
+            }
             overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
         }
         asks
     }
 
-    /// Draws a scene; the second one has a painter of its own, and the eye of the first.
-    fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool) {
+    /// Draws a scene; the second one has a painter of its own, and the eye of the first. Where the legend will be nothing is written.
+    fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool, legend: Option<Rect>) {
         let selected = self.selected.as_deref();
         if shown.dimension == 3 {
             let Some(scales) = &self.scales else { return };
@@ -215,7 +222,8 @@ impl Canvas {
             space.show(ui, look, shown, scales, selected);
         } else {
             let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
-            plane::paint(look, &self.flat, kept, selected);
+            let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
+            plane::paint(look, &self.flat, kept, selected, &taken);
             // Both sides are seen alike.
             if !beside {
                 plane::scale_bar(look, &self.flat);

@@ -3,7 +3,7 @@
 use super::look::Look;
 use super::pick::Under;
 use super::tool::Tool;
-use super::{Canvas, Doing, handles, plane};
+use super::{Canvas, Doing, handles, labels, plane};
 use crate::shown::{Beside, Shown};
 use crate::words::Language;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2};
@@ -31,10 +31,12 @@ impl Canvas {
         {
             painter.circle_stroke(at, 7.0, Stroke::new(1.5, paper.ink));
         }
+        let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
         if shown.dimension == 3 {
+            let mut names = taken.clone();
             for body in shown.picture.bodies.iter().filter(|body| !body.label.is_empty()) {
                 let spots: Vec<Pos2> = body.positions.iter().filter_map(|p| project(*p)).collect();
-                plane::label(painter, &body.label, &spots, paper);
+                labels::label(painter, &body.label, &spots, paper, &mut names);
             }
         }
         for (_, _, place) in &shown.pins {
@@ -42,7 +44,6 @@ impl Canvas {
                 plane::pin(painter, at, paper);
             }
         }
-        let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
         for [node, pointer, force] in &shown.pulls {
             if let (Some(from), Some(to)) = (project(*node), project(*pointer)) {
                 plane::rubber(look, from, to, force, &taken);
@@ -92,7 +93,7 @@ impl Canvas {
             // What is far out of sight cannot be dragged.
             && rect.expand(0.2 * rect.width()).contains(top)
         {
-            plane::hint(painter, top, rect, self.tools, language.drag_me());
+            labels::hint(painter, top, rect, self.tools, legend, language.drag_me());
         }
     }
 }

@@ -15,11 +15,16 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
         return Err("too_small");
     }
     let count = ((length / finest) as usize / 2).clamp(VERTICES[0], VERTICES[1]);
-    let points = smooth(&resample(line, length, count));
+    let mut points = smooth(&resample(line, length, count));
     if crosses(&points) {
         return Err("crossing");
     }
-    let area = 0.5 * sides(&points).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs();
+    let turned = 0.5 * sides(&points).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>();
+    let area = turned.abs();
+    // Outlines go counter-clockwise, whichever way the hand went.
+    if turned < 0.0 {
+        points.reverse();
+    }
     if area < 30.0 * finest * finest {
         return Err("too_small");
     }
@@ -109,11 +114,16 @@ mod tests {
 
     #[test]
     fn a_drawn_circle_becomes_a_body_and_an_eight_is_refused() {
-        let table = body(&line(|t| [t.cos(), 1.5 + t.sin()]), 0.02).expect("a body");
         let text = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.0166\nsubsteps = 32\n[integrator]\nkind = \"verlet\"\n[[body]]\n";
-        let whole = format!("{text}{}", table.into_table());
-        let read = opruga::io::scene::read(whole.as_bytes(), "drawn.toml", &opruga::catalogue(), &Default::default());
-        assert!(read.is_ok(), "{:?}", read.err());
+        // Whichever way the hand goes round, nothing has to be turned.
+        for way in [1.0, -1.0] {
+            let table = body(&line(|t| [(way * t).cos(), 1.5 + (way * t).sin()]), 0.02).expect("a body");
+            let whole = format!("{text}{}", table.into_table());
+            let read =
+                opruga::io::scene::read(whole.as_bytes(), "drawn.toml", &opruga::catalogue(), &Default::default());
+            let (_, notices) = read.expect("a scene");
+            assert!(notices.iter().all(|notice| notice.about.code != "shape.flipped"), "{notices:?}");
+        }
         assert_eq!(body(&line(|t| [t.sin(), (2.0 * t).sin()]), 0.02).err(), Some("crossing"));
         assert_eq!(body(&line(|t| [0.01 * t.cos(), 0.01 * t.sin()]), 0.02).err(), Some("too_small"));
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0]], 0.02).err(), Some("too_small"));

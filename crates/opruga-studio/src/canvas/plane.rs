@@ -3,6 +3,7 @@
 use super::brush::Brush;
 use super::camera::Flat;
 use super::detail::{Detail, apart, corners};
+use super::labels;
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, fill};
 use crate::shown::Shown;
@@ -89,8 +90,8 @@ impl Kept {
     }
 }
 
-/// Draws obstacles, bodies and arrows.
-pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Option<&str>) {
+/// Draws obstacles, bodies and arrows; names are not written where something is `taken`.
+pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Option<&str>, taken: &[Rect]) {
     let Look { painter, shown, rect, paper, .. } = *look;
     let picture = &shown.picture;
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
@@ -119,12 +120,13 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
     }
     kept.brush.end(painter);
     // What is written and marked lies over all bodies.
+    let mut taken = taken.to_vec();
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty() || !body.pinned.is_empty()) {
         body.pinned.iter().filter_map(|node| body.positions.get(*node as usize)).for_each(|p| {
             pin(painter, project(*p), paper);
         });
         let spots: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
-        label(painter, &body.label, &spots, paper);
+        labels::label(painter, &body.label, &spots, paper, &mut taken);
     }
     arrows(painter, shown, flat, &project);
 }
@@ -198,16 +200,6 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
         at.iter().zip(inks.iter()).for_each(|(pos, ink)| brush.disc(*pos, radius, ink.line));
     }
-}
-
-/// The name of a body, below it.
-pub(crate) fn label(painter: &Painter, text: &str, spots: &[Pos2], paper: &Paper) {
-    let Some(low) = spots.iter().max_by(|a, b| a.y.total_cmp(&b.y)).filter(|_| !text.is_empty()) else { return };
-    let middle = spots.iter().map(|p| p.x).sum::<f32>() / spots.len() as f32;
-    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), paper.ink);
-    let place = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, low.y + 6.0), galley.size());
-    painter.rect_filled(place.expand2(Vec2::new(4.0, 1.0)), 3.0, paper.background.gamma_multiply(0.6));
-    painter.galley(place.min, galley, paper.ink);
 }
 
 fn darker(c: Color32) -> Color32 {
@@ -426,23 +418,6 @@ pub(crate) fn ghost(
             painter.line_segment([from, to], Stroke::new(1.2, paper.soft));
         }
     }
-}
-
-/// The hint for the first pull, above a body.
-pub(crate) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>, text: &str) {
-    // Below the toolbar, and where the body is out of sight, at the border next to it.
-    let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
-    let highest = tools.map_or(rect.top(), |tools| tools.bottom()) + 54.0;
-    let tip = Pos2::new(across, top.y.clamp(highest, rect.bottom().max(highest)) - 8.0);
-    let beat = (painter.ctx().input(|i| i.time) * 3.0).sin() as f32 * 3.0;
-    let middle = tip - Vec2::new(0.0, 26.0 - beat);
-    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(15.0), Color32::WHITE);
-    let bubble = Rect::from_center_size(middle, galley.size() + Vec2::new(22.0, 12.0));
-    painter.rect_filled(bubble, 8.0, RUBBER);
-    let foot = bubble.center_bottom();
-    let arrow = vec![foot + Vec2::new(-7.0, -1.0), foot + Vec2::new(7.0, -1.0), foot + Vec2::new(0.0, 9.0)];
-    painter.add(Shape::convex_polygon(arrow, RUBBER, Stroke::NONE));
-    painter.galley(middle - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
 /// Writes at the lower right whose drawings, maps or surfaces are seen, and under which licence.

@@ -30,6 +30,25 @@ pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|i| i.events.iter().rev().find_map(press))
 }
 
+/// The way of the pointer since the last picture, from the press where it `began` in it and up to where it was let go: on a slow
+/// screen many positions come with one picture.
+fn way(events: &[egui::Event], began: bool) -> Vec<Pos2> {
+    use egui::Event::{PointerButton as Button, PointerMoved};
+    let (mut way, mut down) = (Vec::new(), !began);
+    for event in events {
+        match event {
+            Button { pos, button: PointerButton::Primary, pressed: true, .. } => (way, down) = (vec![*pos], true),
+            Button { pos, button: PointerButton::Primary, pressed: false, .. } if down => {
+                way.push(*pos);
+                break;
+            }
+            PointerMoved(pos) if down => way.push(*pos),
+            _ => {}
+        }
+    }
+    way
+}
+
 impl Canvas {
     /// Wheel, pinch, and dragging of the view.
     pub(super) fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
@@ -131,9 +150,11 @@ impl Canvas {
             Doing::Shifting(..) => {}
             Doing::Handling(held) => held.lead(at),
             Doing::Drawing(points) => {
-                let point = self.flat.to_world(rect, at, shown.picture.y_down);
-                if points.last().is_none_or(|last| *last != point) {
-                    points.push(point);
+                for at in ui.input(|i| way(&i.events, began)) {
+                    let point = self.flat.to_world(rect, at + self.offset, shown.picture.y_down);
+                    if points.last().is_none_or(|last| *last != point) {
+                        points.push(point);
+                    }
                 }
             }
         }
@@ -238,4 +259,28 @@ fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u3
         let far: f64 = under.point.iter().zip(place).map(|(a, b)| (a - b) * (a - b)).sum();
         under.body == *body && far.sqrt() <= 3.0 * under.pixel * 6.0
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{Event, Modifiers, pos2};
+
+    #[test]
+    fn every_position_of_the_pointer_while_it_is_pressed_counts() {
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let [a, b, c, d] = [pos2(0.0, 0.0), pos2(9.0, 0.0), pos2(9.0, 9.0), pos2(0.0, 9.0)];
+        let whole =
+            [Event::PointerMoved(d), button(a, true), Event::PointerMoved(b), Event::PointerMoved(c), button(d, false)];
+        assert_eq!(way(&whole, true), [a, b, c, d]);
+        // In the pictures between, and in the last one, after which the pointer goes on.
+        assert_eq!(way(&whole[2..4], false), [b, c]);
+        assert_eq!(way(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
+        assert!(way(&[], false).is_empty());
+    }
 }

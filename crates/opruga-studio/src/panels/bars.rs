@@ -219,47 +219,67 @@ pub fn status(
     making: impl Iterator<Item = (What, u32)>,
 ) {
     let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
-    let h = shown.frame / f64::from(shown.substeps.max(1));
     let cost = shown.pace.frame_cost;
     let moving = if shown.playing { shown.pace.ratio * shown.speed } else { 0.0 };
     let steps = if shown.frame > 0.0 { moving * f64::from(shown.substeps) / shown.frame } else { 0.0 };
-    let margin = if shown.stable_step.is_finite() && shown.stable_step > 0.0 {
-        format!("{:.0} %", 100.0 * h / shown.stable_step)
-    } else {
-        "–".into()
-    };
+    let margin = margin(shown).map_or("–".into(), |share| format!("{:.0} %", 100.0 * share));
     let small = |text: String| RichText::new(text).size(11.5);
+    // A number and its unit stay on one line.
+    let whole = |text: RichText| egui::Label::new(text).extend();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
-        ui.label(small(format!("{rate:.0} FPS")));
-        ui.label(small(format!("{:.2} ms", 1e3 * cost))).on_hover_text(words.step_time());
+        ui.add(whole(small(format!("{rate:.0} FPS"))));
+        ui.add(whole(small(format!("{:.2} ms", 1e3 * cost)))).on_hover_text(words.step_time());
         let pace = format!("{moving:.2} × {}", words.real_time());
         if shown.playing && shown.pace.ratio < 0.95 {
             let slower = format!("{:.1} × {}", 1.0 / shown.pace.ratio.max(1e-3), words.slower());
             let text = if narrow { pace } else { format!("{pace}: {slower}") };
-            ui.label(small(text).color(egui::Color32::from_rgb(230, 140, 20))).on_hover_text(slower);
+            let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
+            ui.add(whole(text)).on_hover_text(slower);
         } else {
-            ui.label(small(pace));
+            ui.add(whole(small(pace)));
         }
-        ui.label(small(format!("{nodes} {}", words.nodes())));
-        ui.label(small(format!("{steps:.0} {}", words.steps_a_second())));
-        ui.label(small(format!("{}: {margin}", words.margin()))).on_hover_text(words.substeps_hint());
+        ui.add(whole(small(format!("{nodes} {}", words.nodes()))));
+        ui.add(whole(small(format!("{steps:.0} {}", words.steps_a_second()))));
+        ui.add(whole(small(format!("{}: {margin}", words.margin())))).on_hover_text(words.substeps_hint());
         if let Some([by, device]) = drawn_by {
-            ui.label(small(by.clone())).on_hover_text(format!("{}: {device}", words.drawn_by()));
+            ui.add(whole(small(by.clone()))).on_hover_text(format!("{}: {device}", words.drawn_by()));
         }
         if shown.recorded > 0 {
-            ui.label(small(format!("{}: {}", words.recorded(), shown.recorded)));
+            ui.add(whole(small(format!("{}: {}", words.recorded(), shown.recorded))));
         }
         for (what, hundredths) in making {
             let text = format!("{}: {hundredths} %", file_name(words, what));
-            ui.label(small(text).strong()).on_hover_text(words.working());
+            ui.add(whole(small(text).strong())).on_hover_text(words.working());
         }
         for warning in shown.warnings.iter().take(2) {
-            let text = format!("{}: {} ({})", words.warning(), warning.code, warning.count);
+            let said = words.detail(&warning.message);
+            let text = format!("{}: {} ({})", words.warning(), beginning(&said), warning.count);
             let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
-            ui.label(text).on_hover_text(words.detail(&warning.message));
+            ui.label(text).on_hover_text(format!("{said}\n{}", warning.code));
         }
     });
+}
+
+/// The step over the largest stable one, of two scenes in that which is nearer to its limit; none where nothing limits it.
+fn margin(shown: &Shown) -> Option<f64> {
+    let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
+    let own = limited.then(|| shown.frame / f64::from(shown.substeps.max(1)) / shown.stable_step);
+    let of_right = shown.beside.as_ref().and_then(|beside| margin(&beside.right));
+    own.into_iter().chain(of_right).max_by(f64::total_cmp)
+}
+
+/// The beginning of a sentence, as far as the line has room for it: what comes before its first aside, in whole words.
+fn beginning(sentence: &str) -> String {
+    const MOST: usize = 60;
+    let whole = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
+    let aside = [" (", "; "].into_iter().filter_map(|mark| whole.find(mark)).min();
+    let first = &whole[..aside.unwrap_or(whole.len())];
+    let room = first.char_indices().nth(MOST).map_or(first.len(), |(end, _)| end);
+    // A word that is longer by itself is cut.
+    let end = if room < first.len() { first[..room].rfind(' ').unwrap_or(room) } else { room };
+    let said = first[..end].trim_end_matches([',', ':']);
+    if end < whole.len() { format!("{said} …") } else { whole }
 }
 
 /// What the colours tell, and what else is drawn.
@@ -330,5 +350,40 @@ fn quantity_name(words: Language, quantity: Quantity) -> &'static str {
         Quantity::VonMises => words.von_mises_stress(),
         Quantity::VolumeRatio => words.volume_ratio(),
         Quantity::Plain => words.plain(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{beginning, margin};
+    use crate::shown::{Beside, Shown};
+    use std::sync::Arc;
+
+    #[test]
+    fn of_two_scenes_the_one_that_is_nearer_to_its_limit_is_told() {
+        let one = |substeps, stable_step| Shown { frame: 0.016, substeps, stable_step, ..Shown::default() };
+        let both = |left: Shown, right: Shown| {
+            let (right, differences) = (Arc::new(right), Vec::new());
+            let beside =
+                Beside { right, distances: None, center: None, volume: None, energy: None, differences, stopped: None };
+            margin(&Shown { beside: Some(beside), ..left })
+        };
+        let limitless = || one(8, f64::INFINITY);
+        assert_eq!(margin(&one(8, 0.004)), Some(0.5));
+        assert_eq!(both(one(8, 0.004), one(4, 0.005)), Some(0.8));
+        assert_eq!(both(one(4, 0.005), one(8, 0.004)), Some(0.8));
+        assert_eq!(both(limitless(), one(8, 0.004)), Some(0.5));
+        assert_eq!(both(one(8, 0.004), limitless()), Some(0.5));
+        assert_eq!(both(limitless(), limitless()), None);
+    }
+
+    #[test]
+    fn the_beginning_of_a_sentence_has_whole_words_and_says_where_it_was_cut() {
+        assert_eq!(beginning("the body is stretched:\nby far"), "the body is stretched: by far");
+        let long = "`heun` has no stable step for body `ball` (ω = 160 rad/s): its fastest motion grows as exp(7 t)";
+        assert_eq!(beginning(long), "`heun` has no stable step for body `ball` …");
+        let words = "a word ".repeat(20);
+        assert_eq!(beginning(&words), "a word a word a word a word a word a word a word a word a …");
+        assert_eq!(beginning(&"č".repeat(90)).chars().filter(|letter| *letter == 'č').count(), 60);
     }
 }

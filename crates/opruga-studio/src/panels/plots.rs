@@ -6,7 +6,7 @@ use crate::words::Language;
 use egui::{Color32, RichText, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints};
 use opruga::core::potential::Reading;
-use opruga::draw::{OKABE_ITO, format_value, nice_ticks};
+use opruga::draw::{OKABE_ITO, format_tick, format_value, nice_ticks};
 
 /// The most moments that are kept.
 const MOST: usize = 3_000;
@@ -155,6 +155,11 @@ fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
+/// The figure of a mark, with as many digits as it takes to tell it from its neighbours.
+fn figure(mark: &GridMark) -> String {
+    if mark.step_size > 0.0 { format_tick(mark.value, mark.step_size) } else { format_value(mark.value) }
+}
+
 /// A curve as so many columns of a screen show it: of those points that share a column the first, the lowest, the highest and the
 /// last.
 fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
@@ -186,7 +191,8 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
     ui.vertical(|ui| {
         let top = ui.cursor().top();
         ui.set_width(size.x);
-        ui.label(RichText::new(title).size(12.0).strong());
+        // One line: a second one would push the curve down. The pointer on it shows all of it.
+        ui.add(egui::Label::new(RichText::new(title).size(12.0).strong()).truncate());
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
             for (number, (name, _)) in lines.iter().enumerate().filter(|(_, (name, _))| !name.is_empty()) {
@@ -195,7 +201,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
         });
         // Short words, which may stand close to one another.
         let seconds = AxisHints::new_x().label_spacing(24.0..=32.0);
-        let seconds = seconds.formatter(|mark, _| format!("{} s", format_value(mark.value)));
+        let seconds = seconds.formatter(|mark, _| format!("{} s", figure(&mark)));
         let plot = Plot::new(id)
             .width(size.x)
             .height((size.y - (ui.cursor().top() - top) - 12.0).max(40.0))
@@ -206,7 +212,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
             .x_grid_spacer(|input| marks(input, 3))
             .y_grid_spacer(|input| marks(input, 4))
             .custom_x_axes(vec![seconds])
-            .y_axis_formatter(|mark, _| format_value(mark.value))
+            .y_axis_formatter(|mark, _| figure(&mark))
             .y_axis_min_width(30.0);
         // What the screen cannot tell apart is not drawn: a minute has thousands of moments.
         let columns = size.x.max(1.0) as usize;
@@ -222,7 +228,17 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
 
 #[cfg(test)]
 mod tests {
-    use super::thinned;
+    use super::{figure, thinned};
+    use egui_plot::GridMark;
+
+    #[test]
+    fn neighbours_on_an_axis_have_different_figures() {
+        let of = |value, step_size| figure(&GridMark { value, step_size });
+        assert_eq!([of(110.2, 0.2), of(110.4, 0.2)], ["110.2", "110.4"]);
+        assert_eq!([of(109.75, 0.25), of(110.0, 0.25)], ["109.75", "110.00"]);
+        assert_eq!([of(0.0, 5.0), of(5.0, 5.0), of(10.0, 5.0)], ["0", "5", "10"]);
+        assert_eq!(of(0.25, 0.0), "0.25");
+    }
 
     #[test]
     fn curves_of_many_moments_keep_their_ends_and_extremes_and_lose_what_nobody_sees() {

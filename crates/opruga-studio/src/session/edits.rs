@@ -288,7 +288,12 @@ impl Session {
                 Err(errors) => Err(Said::Because(errors)),
             };
             if let Err(refusal) = added {
+                // It is said of the body that was to be another, and not of one that there never was.
+                let refusal = self.titled(refusal);
                 self.back_to(past)?;
+                if old.is_some() {
+                    self.renamed.pop();
+                }
                 return Err(refusal);
             }
             if old.is_some() {
@@ -307,7 +312,7 @@ impl Session {
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
             self.frame().map_err(Said::World)?;
         }
-        self.goal = None;
+        self.arrive();
         Ok(())
     }
 }

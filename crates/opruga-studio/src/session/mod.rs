@@ -7,13 +7,16 @@
 //! ```
 
 mod edits;
+mod offers;
 mod opening;
 mod pointer;
 mod recorded;
 mod seen;
+mod titles;
 mod travel;
 
 pub use edits::{Edit, Placed};
+pub use offers::STEADY;
 pub use pointer::Grip;
 
 use crate::differences::{Difference, add_difference};
@@ -28,7 +31,6 @@ use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
-use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Options, WorldError};
 use pointer::Held;
 use std::time::Duration;
@@ -273,8 +275,7 @@ impl Session {
                 && clock().saturating_sub(start) < SEEK_BUDGET
             {
                 if self.engine.frames() >= goal {
-                    self.goal = None;
-                    self.pacing.rest();
+                    self.arrive();
                 } else if let Err(error) = self.frame() {
                     self.goal = None;
                     self.refuse(&error, None);
@@ -320,64 +321,11 @@ impl Session {
         }
     }
 
-    fn accept(&mut self, offer: &Offer) -> Result<(), Said> {
-        self.message = None;
-        match offer {
-            Offer::HalveStep => {
-                let second = (1.0 / self.engine.frame_seconds()).round() as u64;
-                let goal = self.engine.frames().saturating_sub(second);
-                self.release();
-                self.seek(goal);
-                while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
-                    self.frame().map_err(Said::World)?;
-                }
-                self.goal = None;
-                let substeps = self.engine.shown(&self.show).substeps;
-                self.set("time.substeps", Value::Integer(i64::from(substeps) * 2))?;
-                self.playing = true;
-                Ok(())
-            }
-            Offer::Substeps(substeps) => {
-                let refused = self.refused.take();
-                // A scene that was not opened has substeps of its own.
-                if let Some(Request::Open { name, text, files }) = refused {
-                    return self.open_with(&name, &text, files, *substeps);
-                }
-                self.set("time.substeps", Value::Integer(i64::from(*substeps)))?;
-                if let Some(request) = refused {
-                    self.handle(request);
-                }
-                Ok(())
-            }
-            Offer::GoOn => {
-                self.leave_the_recording(self.latest);
-                self.playing = true;
-                self.pacing.rest();
-                Ok(())
-            }
-        }
-    }
-
     fn tell(&mut self, severity: Severity, said: Said, offer: Option<Offer>) {
         self.messages += 1;
+        let said = self.titled(said);
         let text = Language::English.said(&said);
         self.message = Some(Message { number: self.messages, severity, said, text, offer });
-    }
-
-    fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
-        let offer = match error {
-            WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. } => {
-                let more = 2 * u64::from(self.engine.shown(&self.show).substeps) <= u64::from(MOST_SUBSTEPS);
-                more.then_some(Offer::HalveStep)
-            }
-            // Where a frame cannot have as many, the message says what else helps.
-            WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
-                self.refused = request;
-                Some(Offer::Substeps(with_a_margin(*substeps)))
-            }
-            _ => None,
-        };
-        self.tell(Severity::Refused, Said::World(error.clone()), offer);
     }
 
     /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
@@ -441,9 +389,4 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }
-}
-
-/// A little more substeps than the least, so that the next change does not fail at once; never more than a frame may have.
-fn with_a_margin(substeps: u32) -> u32 {
-    substeps.saturating_add(substeps / 8 + 1).min(MOST_SUBSTEPS)
 }

@@ -1,6 +1,7 @@
 //! What opens another scene, the way back to the one before, and shapes from files, which are taken into the scene.
 
-use super::{Edit, Session, with_a_margin};
+use super::offers::with_a_margin;
+use super::{Edit, Session};
 use crate::document::Document;
 use crate::dropping::Shape;
 use crate::handing::named_files;

@@ -1,7 +1,9 @@
 //! What there is to see of a session.
 
 use super::Session;
+use super::titles::Titles;
 use crate::differences::Difference;
+use crate::said::Said;
 use crate::shown::{Pace, Shown};
 use opruga::core::spec::Values;
 use std::sync::Arc;
@@ -23,7 +25,12 @@ impl Session {
         shown.recorded_until = self.recorded_until();
         shown.kept_bytes = self.keyframes.bytes();
         let pins = self.pins_shown();
+        let titles = self.titles();
+        if let Some(stopped) = shown.beside.as_mut().and_then(|beside| beside.stopped.as_mut()) {
+            *stopped = titles.in_text(stopped);
+        }
         if let Some(right) = shown.beside.as_mut().and_then(|beside| Arc::get_mut(&mut beside.right)) {
+            give_titles(right, &titles);
             let there = |(body, node, _): &(usize, u32, [f64; 3])| {
                 Some((*body, *node, self.engine.position_beside(*body, *node)?))
             };
@@ -34,7 +41,7 @@ impl Session {
         }
         shown.pins = pins;
         shown.renamed.clone_from(&self.renamed);
-        self.give_titles(&mut shown);
+        give_titles(&mut shown, &titles);
         if shown.bodies.len() <= 64 {
             for body in &mut shown.bodies {
                 body.shape = self.document.shape(&body.name, usize::from(shown.dimension));
@@ -43,29 +50,16 @@ impl Session {
         shown
     }
 
-    /// Bodies that were set down anew keep the name of the body they were, unless there is another one of that name.
-    fn give_titles(&self, shown: &mut Shown) {
-        if self.renamed.is_empty() || shown.bodies.len() > 64 {
-            return;
-        }
-        let taken: Vec<String> = shown.bodies.iter().map(|body| body.name.clone()).collect();
-        for (place, body) in shown.bodies.iter_mut().enumerate() {
-            let mut title = &body.name;
-            // From the last that was renamed to the first: after an undo the same names may go round in a circle.
-            for (old, new) in self.renamed.iter().rev() {
-                if new == title {
-                    title = old;
-                }
-            }
-            if *title == body.name || taken.contains(title) {
-                continue;
-            }
-            body.title = title.clone();
-            let label = shown.picture.bodies.get_mut(place).map(|seen| &mut seen.label);
-            if let Some(label) = label.filter(|label| **label == body.name) {
-                label.clone_from(&body.title);
-            }
-        }
+    /// The names by which a person knows the bodies that are there.
+    fn titles(&self) -> Titles {
+        // Most sessions have renamed nothing; in a crowd bodies are not told one by one.
+        let present = if self.renamed.is_empty() { Vec::new() } else { self.engine.names() };
+        if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
+    }
+
+    /// What is said, with the names by which a person knows the bodies.
+    pub(super) fn titled(&self, said: Said) -> Said {
+        self.titles().in_said(said)
     }
 
     /// The shape of a body in the scene beside it, as far as its fields are plain values.
@@ -81,5 +75,26 @@ impl Session {
             }
         }
         Some(values)
+    }
+}
+
+/// Bodies that were set down anew keep the name of the body they were, also in what is said of them.
+fn give_titles(shown: &mut Shown, titles: &Titles) {
+    if titles.is_empty() {
+        return;
+    }
+    for (place, body) in shown.bodies.iter_mut().enumerate() {
+        let title = titles.of(&body.name);
+        if title == body.name {
+            continue;
+        }
+        body.title = title.to_string();
+        let label = shown.picture.bodies.get_mut(place).map(|seen| &mut seen.label);
+        if let Some(label) = label.filter(|label| **label == body.name) {
+            label.clone_from(&body.title);
+        }
+    }
+    for warning in &mut shown.warnings {
+        warning.message = titles.in_text(&warning.message);
     }
 }

@@ -34,8 +34,28 @@ impl Session {
             self.refuse(&error, None);
             return;
         }
+        self.head_for(frame);
+    }
+
+    /// Makes a frame the one to go on to in the coming ticks, or stays there.
+    fn head_for(&mut self, frame: u64) {
         self.goal = (frame > self.engine.frames()).then_some(frame);
+        if self.goal.is_none() {
+            self.arrive();
+        }
         self.pacing.rest();
+    }
+
+    /// Ends the way to a moment. At the end of what is known, what was done there while time stood still is seen at once;
+    /// earlier it is not, since what is done anew there takes the place of all that followed.
+    pub(super) fn arrive(&mut self) {
+        self.goal = None;
+        self.pacing.rest();
+        if self.engine.frames() >= self.latest
+            && let Err(error) = self.engine.begin_what_is_due()
+        {
+            self.refuse(&error, None);
+        }
     }
 
     /// Goes to the end of the scene, frame by frame, as if it had been there already.
@@ -79,8 +99,9 @@ impl Session {
 
     /// Remembers the moment before something was done.
     pub(super) fn remember(&mut self, past: Past) {
-        // A slider that is drawn is one edit.
-        let same = |last: &Past| last.label == past.label && last.frame == past.frame;
+        // A slider that is drawn is one edit; two bodies that are added at one moment are two.
+        let same =
+            |last: &Past| matches!(past.label, Step::Set(_)) && last.label == past.label && last.frame == past.frame;
         if !self.undo.last().is_some_and(same) {
             self.undo.push(past);
         }
@@ -154,8 +175,7 @@ impl Session {
             self.leave_the_recording(frame);
         }
         self.latest = frame;
-        self.goal = (frame > self.engine.frames()).then_some(frame);
-        self.pacing.rest();
+        self.head_for(frame);
         Ok(())
     }
 

@@ -5,6 +5,7 @@ use crate::differences::Difference;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 use opruga::core::spec::Value;
+use opruga::math::words::number;
 use opruga::world::schema::MOST_SUBSTEPS;
 
 /// A sentence of both languages, the right one of which is taken.
@@ -180,18 +181,22 @@ impl Language {
                          integrator"
                     ),
                 };
+                let (h, limit) = (number(*h), number(*limit));
                 format!(
-                    "Korak h = {h:.3e} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je \
-                     {limit:.3e} s. {way_out}",
+                    "Korak h = {h} s integratora „{}” nestabilan je za tijelo `{body}`: najveći stabilni korak je \
+                     {limit} s. {way_out}",
                     self.kind(Part::Integrator, integrator)
                 )
             }
             WorldError::Diverged { body, node, time, last, range } => format!(
-                "Tijelo `{body}` je divergiralo: čvor {node}{}, u podkoraku od t = {time} s. Svijet je na zadnjoj dobroj sličici, \
-                 t = {last} s",
+                "Tijelo `{body}` je divergiralo: čvor {node}{}, u podkoraku od t = {} s. Svijet je na zadnjoj dobroj sličici, \
+                 t = {} s",
                 range.map_or(String::new(), |range| format!(
-                    " dalje od {range:.1e} m od ishodišta, gdje položaji gube znamenke"
-                ))
+                    " dalje od {} m od ishodišta, gdje položaji gube znamenke",
+                    number(range)
+                )),
+                number(*time),
+                number(*last),
             ),
             WorldError::NotConverged { body, message, hint } => format!(
                 "Tijelo `{body}`: kraj koraka nije nađen; svijet je na zadnjoj dobroj sličici\n{}",
@@ -218,6 +223,7 @@ impl Language {
                     "static.rigid_modes" => "tijelo ništa ne drži",
                     _ => "ne može",
                 };
+                let place = croatian_place(place);
                 match details::croatian(&source.message) {
                     Some(known) => format!("{place}: {known}"),
                     None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
@@ -240,5 +246,19 @@ impl Language {
             (Language::Croatian, "volume over that at rest") => "obujam / početni",
             (Language::Croatian, label) => label,
         }
+    }
+}
+
+/// What of a world refuses: a body, its integrator, a part of the world.
+fn croatian_place(place: &str) -> String {
+    match place.strip_prefix("body ").or_else(|| place.strip_prefix("integrator of body ")) {
+        Some(name) if place.starts_with("body") => format!("tijelo {name}"),
+        Some(name) => format!("integrator tijela {name}"),
+        None => match place {
+            "collider" => "prepreka",
+            "world" => "svijet",
+            other => other,
+        }
+        .into(),
     }
 }

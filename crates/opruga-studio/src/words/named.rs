@@ -177,6 +177,9 @@ impl Language {
             Allowed::Integers => "popis cijelih brojeva od 0".into(),
             Allowed::Points => format!("popis točaka od {dimension} konačna broja"),
             Allowed::Curve => "krivulja [[t, vrijednost], …] konačnih brojeva, t raste".into(),
+            Allowed::CurveNotNegative => {
+                "krivulja [[t, vrijednost], …] konačnih brojeva, t raste, vrijednosti >= 0".into()
+            }
             Allowed::Path | Allowed::Choice(_) => "put [[t, x, y, …], …] konačnih brojeva, t raste".into(),
         }
     }

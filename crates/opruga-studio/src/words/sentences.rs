@@ -89,6 +89,26 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          osi čvorova koliko je krutih pomaka, ili mu daj na čemu će ležati",
     ),
     (
+        "the body is in {} pieces, and nothing holds that of {~} about {#} against {~}: {~}; an equilibrium needs every piece \
+         held; hint: pin as many axes of its nodes as it has rigid modes, join it to the others, or leave it out",
+        "tijelo ima ovoliko komada: {}, a ništa ne drži onaj ({~}) oko {#} protiv: {~} ({~}); ravnoteža treba da svaki komad nešto \
+         drži; savjet: pribodi toliko osi njegovih čvorova koliko ima krutih pomaka, spoji ga s ostalima ili ga izostavi",
+    ),
+    (
+        "the body is in {} pieces, and that of {~} about {#} lies on an obstacle, and neither that nor pins hold it against \
+         {~}; an equilibrium needs every piece held; hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
+        "tijelo ima ovoliko komada: {}, a onaj ({~}) oko {#} leži na prepreci, a ni ona ni pribodene točke ne drže ga protiv: {~}; \
+         ravnoteža treba da svaki komad nešto drži; savjet: za svaki pribodi os čvora, ili neka prepreka trlja (`friction`)",
+    ),
+    (
+        "the curve of equilibria turns back or sharply aside at {} of the load, however short the step, down to a thousandth of \
+         `arc_length`; a branch of another form may begin here; hint: a small force or a shape that leads onto one branch, or \
+         the whole load at once, without `arc_length`",
+        "krivulja ravnoteža kod {} tereta okreće se natrag ili oštro u stranu, koliko god korak bio kratak, do tisućinke \
+         `arc_length`; tu možda počinje grana drugog oblika; savjet: mala sila ili oblik koji vodi na jednu granu, ili sav teret \
+         odjednom, bez `arc_length`",
+    ),
+    (
         "the body lies on an obstacle, and neither that nor pins hold it against {~}; an equilibrium needs a body that is held; \
          hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
         "tijelo leži na prepreci, a ni ona ni pribodene točke ne drže ga protiv: {~}; ravnoteža treba tijelo koje nešto drži; \
@@ -183,6 +203,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("there is no such integrator", "nema takvog integratora"),
     ("there is no such body", "nema takvog tijela"),
     ("there is no such command", "nema takve naredbe"),
+    (
+        "the selected nodes hold no whole facet of the boundary; allowed: all nodes of one facet at least",
+        "izabrani čvorovi ne drže nijednu cijelu stranicu granice; dopušteno: barem svi čvorovi jedne stranice",
+    ),
     (
         "cell {} belongs to the models {} and {} of the body, whose stiffness would add up; allowed: every cell in one `fem` \
          model. Name groups without common cells by `cells`",

@@ -1,6 +1,6 @@
 //! What is refused leaves everything as it was, and what would help is offered.
 
-use super::{arrive, assert_replays, ball, model, no_refusal, open, pass, refusal};
+use super::{arrive, assert_replays, ball, integrator, model, no_refusal, open, pass, refusal};
 use opruga::Options;
 use opruga::core::spec::Value;
 use opruga::io::Files;
@@ -77,4 +77,114 @@ fn a_scene_that_was_refused_for_its_step_is_opened_with_the_substeps_that_are_of
     assert_eq!(session.name(), "coarse");
     assert_eq!(offer, Offer::Substeps(session.shown().substeps));
     assert_eq!(open("ball").shown().substeps, own);
+}
+
+/// In the studio time goes on behind the end that a scene states for a run, and what is done there comes about.
+#[test]
+fn commands_behind_the_stated_end_of_a_scene_are_not_warned_of() {
+    let text = opruga::scenes::find("ball").expect("it").replace("seconds = 8.0", "seconds = 0.1");
+    let mut session = Session::open("short", &text, Files::default(), Options::default()).expect("it opens");
+    let never = |session: &mut Session| {
+        arrive(session);
+        no_refusal(session);
+        let shown = session.shown();
+        let right = shown.beside.map_or(Vec::new(), |beside| beside.right.warnings.clone());
+        let told: Vec<_> = shown.warnings.into_iter().chain(right).map(|warning| warning.code).collect();
+        assert!(!told.contains(&"command.never".to_string()), "{told:?}");
+    };
+    never(&mut session);
+    pass(&mut session, 12);
+    for request in [
+        Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, -5.0])),
+        Request::Edit(Edit::Add(ball("small", 1.4))),
+        Request::Edit(Edit::Shape("ball".into(), "vertices", Value::Integer(48))),
+        Request::Compare(true),
+        Request::Undo,
+    ] {
+        session.handle(request);
+        never(&mut session);
+    }
+    pass(&mut session, 3);
+    assert_replays(&session);
+}
+
+/// The window calls a body that was set down anew by its old name, and so does what is said of it.
+#[test]
+fn messages_and_warnings_call_a_body_that_was_set_down_anew_by_the_name_that_the_window_shows() {
+    let mut session = open("ball");
+    pass(&mut session, 5);
+    let finer =
+        |name: &str, vertices: i64| Request::Edit(Edit::Shape(name.into(), "vertices", Value::Integer(vertices)));
+    // Refused for the first time already, it is still the same body.
+    for name in ["ball", "ball-2"] {
+        session.handle(finer(name, 4000));
+        let said = refusal(&mut session);
+        assert!(said.contains("unstable") && said.contains("`ball`") && !said.contains("ball-"), "{said}");
+        if name == "ball" {
+            session.handle(finer(name, 48));
+            no_refusal(&mut session);
+        }
+    }
+    let shown = session.shown();
+    assert_eq!((shown.bodies[0].name.as_str(), shown.bodies[0].title.as_str()), ("ball-2", "ball"));
+    let number = shown.bodies[0].number;
+    for request in [
+        Request::Set("body.ball-2.models.mass_spring.stiffness".into(), Value::Number(1e7)),
+        Request::Set("body.ball-2.models.mass_spring.stiffness".into(), Value::Number(-1.0)),
+        Request::Models(number, vec![model("mass_spring", &[("stiffness", 1e9)])]),
+    ] {
+        session.handle(request);
+        let said = refusal(&mut session);
+        assert!(said.contains("ball") && !said.contains("ball-2"), "{said}");
+    }
+    let undamped = model("mass_spring", &[("stiffness", 800.0), ("damping", 0.0)]);
+    for request in [Request::Models(number, vec![undamped]), Request::Integrator(Some(number), integrator("heun"))] {
+        session.handle(request);
+        no_refusal(&mut session);
+        let message = session.shown().message.expect("it goes on");
+        assert!(message.text.starts_with("`ball` "), "{}", message.text);
+    }
+    session.handle(Request::Compare(true));
+    arrive(&mut session);
+    let shown = session.shown();
+    let right = shown.beside.expect("two scenes").right;
+    assert_eq!(right.bodies[0].title, "ball");
+    for warnings in [&shown.warnings, &right.warnings] {
+        let growing = warnings.iter().find(|warning| warning.code == "step.no_stable_step").expect("a warning");
+        assert!(growing.message.contains("body `ball`"), "{}", growing.message);
+    }
+    pass(&mut session, 2);
+    assert_replays(&session);
+}
+
+/// Where no step is stable, half of it is not either: an integrator that has one is offered, to whom it belongs.
+#[test]
+fn where_no_step_is_stable_another_integrator_is_offered_and_not_half_the_step() {
+    let ball = opruga::scenes::find("ball").expect("it").replace("damping = 1.0", "damping = 0.0");
+    let text = ball.replace("[[collider]]", "[[load]]\nkind = \"force\"\nbody = \"ball\"\nvalue = [1e300, 0.0]\ncurve = [[0.0, 0.0], [0.2, 0.0], [0.3, 1.0]]\n\n[[collider]]");
+    let of_the_scene = text.replace("kind = \"verlet\"", "kind = \"explicit_euler\"");
+    let of_the_body = text.replace("mass = 1.0", "mass = 1.0\nintegrator = { kind = \"explicit_euler\" }");
+    for (text, own) in [(of_the_scene, None), (of_the_body, Some(0))] {
+        let mut session = Session::open("growing", &text, Files::default(), Options::default()).expect("it opens");
+        session.handle(Request::Play(true));
+        for _ in 0..60 {
+            session.tick(Duration::from_millis(17), Duration::from_millis(12), &|| Duration::ZERO);
+        }
+        refusal(&mut session);
+        assert_eq!(session.shown().message.and_then(|message| message.offer), Some(Offer::Steady(own)));
+        let substeps = session.shown().substeps;
+        session.handle(Request::Accept(Offer::Steady(own)));
+        no_refusal(&mut session);
+        let shown = session.shown();
+        let kind =
+            |values: &Option<opruga::core::spec::Values>| values.as_ref().map(|values| values.kind().to_string());
+        let (scene, body) = (kind(&shown.integrator), kind(&shown.bodies[0].integrator));
+        let steady = Some("symplectic_euler".to_string());
+        match own {
+            None => assert_eq!(scene, steady),
+            Some(_) => assert_eq!((scene, body), (Some("verlet".into()), steady)),
+        }
+        assert!(shown.playing && shown.substeps == substeps);
+        assert!(shown.warnings.iter().all(|warning| warning.code != "step.no_stable_step"));
+    }
 }

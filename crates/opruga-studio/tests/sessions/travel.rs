@@ -3,7 +3,7 @@
 use super::{arrive, assert_replays, ball, no_refusal, open, pass, pull};
 use opruga::core::spec::Value;
 use opruga::io::Files;
-use opruga_studio::session::{Edit, Grip, Request};
+use opruga_studio::session::{Edit, Grip, Placed, Request, Session};
 
 #[test]
 fn rewinding_comes_to_the_same_bits_and_what_is_done_then_replaces_the_future() {
@@ -92,6 +92,113 @@ fn undo_goes_back_to_the_moment_before_an_edit_and_redo_does_it_again() {
     session.handle(Request::Redo);
     assert!(session.shown().redo.is_none());
     assert_replays(&session);
+}
+
+#[test]
+fn bodies_added_while_time_stands_still_are_seen_at_once_after_undo_and_redo_and_when_one_comes_back_to_their_moment() {
+    let mut session = open("ball");
+    pass(&mut session, 25);
+    let bodies = |session: &mut Session| {
+        arrive(session);
+        no_refusal(session);
+        (session.frames(), session.shown().bodies.len())
+    };
+    session.handle(Request::Edit(Edit::Add(ball("first", 1.4))));
+    session.handle(Request::Edit(Edit::Add(ball("second", -1.4))));
+    let added = (bodies(&mut session), session.hash());
+    assert_eq!(added.0, (25, 3));
+    session.handle(Request::Undo);
+    assert_eq!(bodies(&mut session), (25, 2), "what was done before it is still there");
+    session.handle(Request::Undo);
+    assert_eq!(bodies(&mut session), (25, 1));
+    session.handle(Request::Redo);
+    assert_eq!(bodies(&mut session), (25, 2));
+    session.handle(Request::Redo);
+    assert_eq!((bodies(&mut session), session.hash()), added);
+    session.handle(Request::Seek(10));
+    assert_eq!(bodies(&mut session), (10, 1));
+    session.handle(Request::Seek(25));
+    assert_eq!((bodies(&mut session), session.hash()), added);
+    pass(&mut session, 5);
+    assert_replays(&session);
+}
+
+/// What one undo takes back is what was done at once, however often the same was done at one moment.
+#[test]
+fn edits_of_one_kind_while_time_stands_still_are_undone_and_redone_one_by_one() {
+    let mut session = open("ball");
+    pass(&mut session, 25);
+    let state = |session: &mut Session| {
+        arrive(session);
+        no_refusal(session);
+        let bodies = session.shown().bodies;
+        (bodies.into_iter().map(|body| (body.name, body.nodes)).collect::<Vec<_>>(), session.text())
+    };
+    let last = |session: &mut Session| session.shown().bodies.last().expect("a body").name.clone();
+    let mut states = vec![state(&mut session)];
+    let edits: [fn(String) -> Edit; 8] = [
+        |_| Edit::Add(ball("small", 1.4)),
+        |_| Edit::Add(ball("small", -1.4)),
+        Edit::Duplicate,
+        Edit::Duplicate,
+        |name| Edit::Shape(name, "vertices", Value::Integer(30)),
+        |name| Edit::Shape(name, "vertices", Value::Integer(48)),
+        Edit::Delete,
+        Edit::Delete,
+    ];
+    for edit in edits {
+        let name = last(&mut session);
+        session.handle(Request::Edit(edit(name)));
+        let now = state(&mut session);
+        assert_ne!(Some(&now), states.last());
+        states.push(now);
+    }
+    for _ in 0..2 {
+        for before in states.iter().rev().skip(1) {
+            session.handle(Request::Undo);
+            assert_eq!(&state(&mut session), before);
+        }
+        assert_eq!(session.shown().undo, None);
+        for after in &states[1..] {
+            session.handle(Request::Redo);
+            assert_eq!(&state(&mut session), after);
+        }
+        assert_eq!(session.shown().redo, None);
+    }
+    assert_eq!(session.frames(), 25);
+    pass(&mut session, 5);
+    assert_replays(&session);
+}
+
+#[test]
+fn a_slider_that_is_drawn_while_time_stands_still_is_one_edit_and_two_moves_are_two() {
+    let mut session = open("ball");
+    pass(&mut session, 25);
+    let stiffness = "body.ball.models.mass_spring.stiffness";
+    for value in [700.0, 800.0, 900.0] {
+        session.handle(Request::Set(stiffness.into(), Value::Number(value)));
+    }
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert_eq!(session.shown().undo, None);
+    let middle = |session: &mut Session| {
+        arrive(session);
+        no_refusal(session);
+        let positions = session.shown().picture.bodies[0].positions.clone();
+        positions.iter().map(|p| p[0]).sum::<f64>() / positions.len() as f64
+    };
+    let start = middle(&mut session);
+    for _ in 0..2 {
+        let name = session.shown().bodies[0].name.clone();
+        let placed = Placed { moved: [0.3, 0.0, 0.0], turned: 0.0, scaled: 1.0 };
+        session.handle(Request::Edit(Edit::Place(name, placed)));
+    }
+    // Pictures have the digits of single precision.
+    for moved in [0.6, 0.3, 0.0] {
+        let x = middle(&mut session);
+        assert!((x - start - moved).abs() < 1e-5, "{x} {start} {moved}");
+        session.handle(Request::Undo);
+    }
 }
 
 #[test]

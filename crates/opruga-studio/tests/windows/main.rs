@@ -46,6 +46,25 @@ fn every_tool_and_menu_can_be_pressed_by_its_name() {
 }
 
 #[test]
+fn escape_closes_the_help_and_the_gallery() {
+    let mut window = Window::open("ball", SIZE);
+    window.click("?");
+    assert!(window.harness.query_by_label_contains("play or pause").is_some());
+    window.key(Modifiers::NONE, Key::Escape);
+    window.frames(30);
+    assert!(window.harness.query_by_label_contains("play or pause").is_none());
+    let card =
+        |window: &Window| window.harness.query_by_role_and_label(egui::Role::Button, "ball-as-published").is_some();
+    window.click("Scenes");
+    window.frames(5);
+    assert!(card(&window));
+    window.key(Modifiers::NONE, Key::Escape);
+    window.frames(30);
+    assert!(!card(&window));
+    assert_eq!(window.shown().name, "ball");
+}
+
+#[test]
 fn parameters_models_and_integrators_change_on_the_running_body() {
     let mut window = Window::open("ball", SIZE);
     window.studio().ask(Request::Step);
@@ -192,6 +211,38 @@ fn the_gallery_shows_a_picture_of_every_scene_and_opens_one() {
     window.frames(5);
     window.harness.get_by_role_and_label(egui::Role::Button, "ball-as-published").click();
     window.until("another scene", |shown| shown.name == "ball-as-published");
+}
+
+#[test]
+fn numbers_and_their_units_stay_on_one_line_however_narrow_the_window_is() {
+    for wide in [360.0, 390.0, 420.0, 450.0] {
+        let mut window = Window::open("ball", [wide, 844.0]);
+        window.click("Hrvatski");
+        for unit in ["FPS", " ms", "stvarno vrijeme", "čvorova", "koraka/s", "granica stabilnosti"] {
+            let told = |said: &str| said.ends_with(unit) || said.starts_with(&format!("korak / {unit}:"));
+            let mut texts = window.harness.query_all_by_role(egui::Role::Label);
+            let place = texts.find(|node| {
+                let node = node.accesskit_node();
+                node.label().or_else(|| node.value()).is_some_and(|said| told(&said))
+            });
+            let place = place.map(|node| node.rect());
+            let place = place.unwrap_or_else(|| panic!("{unit} is shown"));
+            assert!(place.height() < 22.0 && place.right() <= wide, "{wide}: {unit} at {place:?}");
+        }
+    }
+}
+
+/// A second line would take the room of the curve.
+#[test]
+fn names_of_curves_stay_on_one_line_where_many_of_them_stand_side_by_side() {
+    let mut window = Window::open("ball", SIZE);
+    window.studio().ask(Request::Step);
+    window.click("Side by side");
+    window.until("two scenes", |shown| shown.beside.is_some() && shown.frames == 1);
+    window.click("Plots");
+    window.frames(3);
+    let place = window.harness.get_by_label_contains("Volume and pressure: ball").rect();
+    assert!(place.height() < 22.0, "{place:?}");
 }
 
 #[test]

@@ -67,6 +67,39 @@ fn outlines_become_bodies_and_those_that_cross_themselves_are_refused_with_a_rea
     assert_eq!(window.shown().bodies.len(), 2);
 }
 
+/// A slow screen takes in the whole way of the pointer with one picture; it may go round either way.
+#[test]
+fn an_outline_that_comes_with_one_picture_keeps_its_corners() {
+    for clockwise in [false, true] {
+        let mut window = Window::open("ball", SIZE);
+        window.key(Modifiers::NONE, Key::Num5);
+        let middle = window.canvas().center() + Vec2::new(180.0, 60.0);
+        let mut corners = [(-70.0, -70.0), (70.0, -70.0), (70.0, 70.0), (-70.0, 70.0)].map(|(x, y)| Vec2::new(x, y));
+        // On the screen y points downwards: these go clockwise as they are seen.
+        if !clockwise {
+            corners.reverse();
+        }
+        let corners = corners.map(|corner| middle + corner);
+        window.pointer(corners[0]);
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+        let mut events = vec![press(corners[0], true)];
+        events.extend(corners[1..].iter().map(|corner| Event::PointerMoved(*corner)));
+        events.push(press(corners[3], false));
+        window.harness.input_mut().events.extend(events);
+        window.frames(2);
+        window.until("a drawn body", |shown| shown.bodies.len() == 2);
+        let shown = window.shown();
+        let outline: Vec<Pos2> =
+            shown.picture.bodies[1].positions.iter().filter_map(|p| window.studio().on_screen(*p)).collect();
+        for corner in corners {
+            let far = outline.iter().map(|at| at.distance(corner)).fold(f32::MAX, f32::min);
+            assert!(far < 12.0, "{corner}: {far}");
+        }
+        assert!(shown.warnings.iter().all(|warning| warning.code != "shape.flipped"), "{:?}", shown.warnings);
+    }
+}
+
 #[test]
 fn pins_pushes_and_moves_are_done_by_the_pointer_and_written_down() {
     let mut window = Window::open("ball", SIZE);

@@ -186,7 +186,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("`{}` is no type of numbers", "`{}` nije vrsta brojeva"),
     ("a cell reaches from {} to {}", "ćelija seže od {} do {}"),
     ("a cell has {} nodes, but {} follow", "ćelija ima čvorova: {}, a slijedi ih {}"),
-    ("{} numbers follow the last cell", "iza zadnje ćelije slijedi brojeva: {}"),
+    ("numbers follow the last cell: {}", "iza zadnje ćelije slijedi brojeva: {}"),
     ("there are types for {} cells", "vrste su zadane za ćelija: {}"),
     ("the values `{}` are left out", "vrijednosti `{}` su izostavljene"),
     ("the colours `{}` are left out", "boje `{}` su izostavljene"),

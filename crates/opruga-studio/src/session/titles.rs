@@ -1,0 +1,127 @@
+//! The names by which a person knows bodies: one that was set down anew has another in the scene.
+
+use crate::said::Said;
+use opruga::WorldError;
+
+/// How bodies were renamed, and which there are.
+#[derive(Debug, Default)]
+pub(super) struct Titles {
+    /// Old and new names, in the order in which they were given.
+    renamed: Vec<(String, String)>,
+    /// The names of those that are there.
+    present: Vec<String>,
+}
+
+impl Titles {
+    pub(super) fn new(renamed: Vec<(String, String)>, present: Vec<String>) -> Titles {
+        Titles { renamed, present }
+    }
+
+    /// Whether every body is known by its name.
+    pub(super) fn is_empty(&self) -> bool {
+        self.renamed.is_empty()
+    }
+
+    /// The name of the body that this one was, unless there is another one of that name.
+    pub(super) fn of<'a>(&'a self, name: &'a str) -> &'a str {
+        let mut title = name;
+        // From the last that was renamed to the first: after an undo the same names may go round in a circle.
+        for (old, new) in self.renamed.iter().rev() {
+            if new == title {
+                title = old;
+            }
+        }
+        if self.present.iter().any(|other| other == title) { name } else { title }
+    }
+
+    /// The same for what stands in quotes in a text: a name, or a path that begins with one.
+    pub(super) fn in_text(&self, text: &str) -> String {
+        if self.is_empty() {
+            return text.into();
+        }
+        let quoted = |(place, words): (usize, &str)| if place % 2 == 1 { self.in_path(words) } else { words.into() };
+        text.split('`').enumerate().map(quoted).collect::<Vec<_>>().join("`")
+    }
+
+    /// A name, or a path such as `body.ball-2.models.0.damping`.
+    fn in_path(&self, path: &str) -> String {
+        let Some(below) = path.strip_prefix("body.") else { return self.of(path).into() };
+        let named = |(_, new): &&(String, String)| {
+            below.strip_prefix(new.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        match self.renamed.iter().find(named) {
+            Some((_, new)) => format!("body.{}{}", self.of(new), &below[new.len()..]),
+            None => path.into(),
+        }
+    }
+
+    /// The same for a message.
+    pub(super) fn in_said(&self, said: Said) -> Said {
+        let of = |name: &String| self.of(name).to_string();
+        match said {
+            Said::World(error) => Said::World(self.in_error(error)),
+            Said::Because(text) => Said::Because(self.in_text(&text)),
+            Said::GoesOn(name) => Said::GoesOn(of(&name)),
+            Said::NoBody(name) => Said::NoBody(of(&name)),
+            Said::NoShape(name) => Said::NoShape(of(&name)),
+            Said::Copy(name) => Said::Copy(of(&name)),
+            Said::NoDifference(about) => Said::NoDifference(self.in_path(&about)),
+            said => said,
+        }
+    }
+
+    fn in_error(&self, mut error: WorldError) -> WorldError {
+        match &mut error {
+            WorldError::UnstableStep { body, .. } | WorldError::Diverged { body, .. } => {
+                *body = self.of(body).to_string()
+            }
+            WorldError::NotConverged { body, message, .. } | WorldError::Step { body, message } => {
+                (*body, *message) = (self.of(body).to_string(), self.in_text(message));
+            }
+            WorldError::Build { place, source } => {
+                (*place, source.message) = (self.in_text(place), self.in_text(&source.message));
+            }
+            WorldError::Path { path, message } => {
+                (*path, *message) = (self.in_path(path), self.in_text(message));
+            }
+            WorldError::Snapshot(_) => {}
+        }
+        error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(list: &[&str]) -> Vec<String> {
+        list.iter().map(|name| name.to_string()).collect()
+    }
+
+    fn titles(renamed: &[(&str, &str)], present: &[&str]) -> Titles {
+        Titles::new(renamed.iter().map(|(old, new)| (old.to_string(), new.to_string())).collect(), names(present))
+    }
+
+    #[test]
+    fn names_and_paths_in_quotes_are_those_that_a_person_knows_and_nothing_else_is_touched() {
+        let known = titles(&[("ball", "ball-2"), ("ball-2", "ball-3")], &["ball-3", "box"]);
+        assert_eq!((known.of("ball-3"), known.of("ball-2"), known.of("box")), ("ball", "ball", "box"));
+        let text = "body `ball-3`: `body.ball-3.models.0.damping` and ball-3, `ball-33`, `box`";
+        assert_eq!(known.in_text(text), "body `ball`: `body.ball.models.0.damping` and ball-3, `ball-33`, `box`");
+        assert_eq!(known.in_path("body.ball-33.models"), "body.ball-33.models");
+        let error = WorldError::Step { body: "ball-3".into(), message: "`ball-3` is flat".into() };
+        let told = WorldError::Step { body: "ball".into(), message: "`ball` is flat".into() };
+        assert_eq!(known.in_said(Said::World(error)), Said::World(told));
+        assert_eq!(known.in_said(Said::SetDown), Said::SetDown);
+    }
+
+    #[test]
+    fn a_name_that_another_body_has_is_not_given_twice_and_names_in_a_circle_come_to_an_end() {
+        let known = titles(&[("ball", "ball-2")], &["ball", "ball-2"]);
+        assert_eq!(known.of("ball-2"), "ball-2");
+        assert_eq!(known.in_text("body `ball-2`"), "body `ball-2`");
+        let circle = titles(&[("a", "b"), ("b", "a"), ("a", "b")], &["b"]);
+        assert_eq!(circle.of("b"), "a");
+        assert_eq!(Titles::default().in_text("body `a`"), "body `a`");
+    }
+}
