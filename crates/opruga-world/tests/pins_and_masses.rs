@@ -164,13 +164,13 @@ fn every_rule_gives_a_bar_whose_base_sets_off_at_once_the_same_motion() {
 fn every_rule_lets_a_bar_hang_back_behind_its_accelerated_base_by_its_mass_and_tells_the_force_on_the_base() {
     let explicit = [("symplectic_euler", None), ("verlet", None)];
     for rule in RULES.into_iter().chain(explicit) {
-        for mass in ["lumped", "consistent"] {
-            let consistent = mass == "consistent";
-            if consistent && explicit.contains(&rule) {
+        // What is allowed falls with the step: an error that stayed would be found by the shorter one.
+        for (mass, h) in [("lumped", 0.02), ("lumped", 0.005), ("consistent", 0.02), ("consistent", 0.005)] {
+            if mass == "consistent" && explicit.contains(&rule) {
                 continue;
             }
-            let (a, damping, h, until) = (0.1, 1.0, 0.02, 40.0);
-            let rows = (0..2002).map(|k| {
+            let (a, damping, until) = (0.1, 1.0, 40.0);
+            let rows = (0..(until / h) as u32 + 2).map(|k| {
                 let t = f64::from(k) * h;
                 vec![t, 0.5 * a * t * t, 0.0]
             });
