@@ -36,46 +36,63 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     let mut touched = false;
     for k in 0..used {
         let place = moved.range.start + k;
-        let (x, v) = (moved.x.at(place), moved.v.at(place));
         let start: [f64; D] = lanes!(f64, d => moved.before[d][k]);
         let before: [f64; D] = carry.along(&start);
-        let (from, to) = (surface.pose.unplace(&before), surface.pose.unplace(&x));
-        let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
-        if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
-            continue;
-        }
-        let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
-        if gap == f64::INFINITY {
-            continue;
-        }
-        let mass = moved.mass.at(place);
-        let obstacle = surface.pose.velocity_at(&x);
-        let bit = 1u8 << (k % WIDTH);
-        let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+        let from = surface.pose.unplace(&before);
         let force = lanes!(f64, d => moved.force[d][k]);
-        let was_held = f64::from(u8::from(was_held));
-        let meeting =
-            Meeting { x, v, before, from: start, force, mass, gap, normal, obstacle, held: was_held, h: moved.h };
-        if !meets(law, &meeting) {
-            continue;
+        let mass = moved.mass.at(place);
+        let (lane, bit) = (place % WIDTH, 1u8 << (k % WIDTH));
+        // What one facet of a thin surface pushes out may be pushed through another one, which pushes then.
+        let mut through = false;
+        for _ in 0..if surface.facets.solid { 1 } else { PUSHES } {
+            let (x, v) = (moved.x.at(place), moved.v.at(place));
+            let to = surface.pose.unplace(&x);
+            let finite = dot(&from, &from).is_finite() && dot(&to, &to).is_finite() && dot(&v, &v).is_finite();
+            if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
+                break;
+            }
+            let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
+            if gap == f64::INFINITY {
+                break;
+            }
+            let obstacle = surface.pose.velocity_at(&x);
+            let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
+            let was_held = f64::from(u8::from(was_held));
+            let meeting =
+                Meeting { x, v, before, from: start, force, mass, gap, normal, obstacle, held: was_held, h: moved.h };
+            if !meets(law, &meeting) {
+                break;
+            }
+            touched = true;
+            if let Some(bits) = held.0.get_mut(k / WIDTH) {
+                *bits |= bit;
+            }
+            let parting = respond(surface, law, true, &meeting);
+            moved.x.set(place, parting.x);
+            moved.v.set(place, parting.v);
+            moved.loss_contact[lane] += parting.loss_contact;
+            moved.loss_friction[lane] += parting.loss_friction;
+            moved.work_colliders[lane] += parting.work;
+            moved.work_correction[lane] += parting.correction;
+            through =
+                !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some();
+            if !through {
+                break;
+            }
         }
-        touched = true;
-        if let Some(bits) = held.0.get_mut(k / WIDTH) {
-            *bits |= bit;
+        // Where facets leave no way out, the node stays where it was, and goes with the obstacle.
+        if through {
+            let (x, v, obstacle) = (moved.x.at(place), moved.v.at(place), surface.pose.velocity_at(&before));
+            let stopped = subtract(&v, &obstacle);
+            moved.x.set(place, before);
+            moved.v.set(place, obstacle);
+            moved.loss_contact[lane] += 0.5 * mass * dot(&stopped, &stopped);
+            moved.work_colliders[lane] -= mass * dot(&stopped, &obstacle);
+            moved.work_correction[lane] += dot(&force, &subtract(&x, &before));
         }
-        let mut parting = respond(surface, law, true, &meeting);
-        // Pushed out of one facet and through another: the motion of this step is undone.
-        if !surface.facets.solid && surface.facets.crossed(&from, &surface.pose.unplace(&parting.x)).is_some() {
-            parting.correction += dot(&force, &subtract(&parting.x, &before));
-            parting.x = before;
-        }
-        moved.x.set(place, parting.x);
-        moved.v.set(place, parting.v);
-        let lane = place % WIDTH;
-        moved.loss_contact[lane] += parting.loss_contact;
-        moved.loss_friction[lane] += parting.loss_friction;
-        moved.work_colliders[lane] += parting.work;
-        moved.work_correction[lane] += parting.correction;
     }
     touched
 }
+
+/// How often facets of one surface push a node within a pass.
+const PUSHES: usize = 8;

@@ -87,6 +87,8 @@ pub(crate) struct Facets<const D: usize> {
     /// The greatest coordinates.
     pub(crate) high: [f64; D],
     half_width: f64,
+    /// A distance from the surface whose direction is nothing but rounding [m]: nearer nodes are on it.
+    grain: f64,
 }
 
 /// What a node finds: nothing within reach, or a gap and a normal.
@@ -137,15 +139,21 @@ impl<const D: usize> Facets<D> {
         }
         let tree: Arc<dyn Tree<D>> =
             if D == 2 { Arc::new(PlaneTree::new(corners)) } else { Arc::new(SpaceTree::new(corners)) };
-        Ok(Facets { tree, facets, solid, low, high, half_width: f64::INFINITY })
+        let mut out = Facets { tree, facets, solid, low, high, half_width: f64::INFINITY, grain: 0.0 };
+        out.grain = 0.01 * out.resolved();
+        Ok(out)
     }
-    /// The least distance that nodes keep, so that rounding never puts them on the other side [m].
-    pub(crate) fn skin(&self) -> f64 {
+    /// A distance whose direction is no rounding [m].
+    fn resolved(&self) -> f64 {
         let mut far = 0.0;
         for d in 0..D {
             far = self.low[d].abs().larger(self.high[d].abs()).larger(far);
         }
-        if self.solid { 0.0 } else { 1e-8 * length(&subtract(&self.high, &self.low)) + 1e-12 * far }
+        1e-8 * length(&subtract(&self.high, &self.low)) + 1e-12 * far
+    }
+    /// The least distance that nodes keep, so that rounding never puts them on the other side [m].
+    pub(crate) fn skin(&self) -> f64 {
+        if self.solid { 0.0 } else { self.resolved() }
     }
     /// Whether a segment passes the bounds, widened by a margin. The coordinates must be finite.
     pub(crate) fn near(&self, a: &[f64; D], b: &[f64; D], margin: f64) -> bool {
@@ -175,7 +183,8 @@ impl<const D: usize> Facets<D> {
             return found;
         }
         let (gap, normal) = self.gap_and_normal(x);
-        if gap <= 0.0 || gap >= margin + reach {
+        // From a node on the surface no direction leads to it.
+        if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
         }
         self.approach(x, before, margin, reach)
@@ -194,10 +203,10 @@ impl<const D: usize> Facets<D> {
         let away = subtract(x, &point);
         let distance = length(&away);
         // On the surface itself its normal counts, towards where the node was.
-        if distance < 1e-12 * margin + 1e-150 {
+        if distance <= self.grain {
             let facet = &self.facets[facet];
             let side = dot(&subtract(before, &facet.corner), &facet.normal);
-            let normal = if side < 0.0 && !self.solid { scaled(&facet.normal, -1.0) } else { facet.normal };
+            let normal = if side < -self.grain { scaled(&facet.normal, -1.0) } else { facet.normal };
             return (distance - margin, normal);
         }
         (distance - margin, scaled(&away, 1.0 / distance))
@@ -209,7 +218,7 @@ impl<const D: usize> Facets<D> {
         let mut first: Option<(f64, usize, f64)> = None;
         self.tree.visit(&low, &high, &mut |number| {
             let facet = &self.facets[number];
-            if let Some((s, depth)) = facet.crossed(a, b)
+            if let Some((s, depth)) = facet.crossed(a, b, self.grain)
                 && first.is_none_or(|(t, other, _)| s < t || (s == t && number < other))
             {
                 first = Some((s, number, depth));
@@ -274,11 +283,13 @@ impl<const D: usize> Facet<D> {
         Some(Facet { corner: corners[0], normal: scaled(&normal, 1.0 / size), weights })
     }
     /// Where along a segment (0 … 1) it crosses the facet, and how far its end lies behind: above zero if it came from
-    /// the side of the normal, else below.
-    fn crossed(&self, a: &[f64; D], b: &[f64; D]) -> Option<(f64, f64)> {
+    /// the side of the normal, else below. What begins nearer than `grain` to the facet begins on it, and comes from the
+    /// side of the normal.
+    fn crossed(&self, a: &[f64; D], b: &[f64; D], grain: f64) -> Option<(f64, f64)> {
         let from = dot(&subtract(a, &self.corner), &self.normal);
+        let from = if from.abs() <= grain { 0.0 } else { from };
         let to = dot(&subtract(b, &self.corner), &self.normal);
-        let through = if from > 0.0 { to <= 0.0 } else { from < 0.0 && to >= 0.0 };
+        let through = if from > 0.0 { to <= 0.0 } else { from == 0.0 && to < 0.0 || from < 0.0 && to >= 0.0 };
         if !through {
             return None;
         }
@@ -293,7 +304,7 @@ impl<const D: usize> Facet<D> {
         }
         // A depth of exactly zero keeps the side in its sign.
         let least = f64::MIN_POSITIVE;
-        let depth = if from > 0.0 { (-to).larger(least) } else { (-to).smaller(-least) };
+        let depth = if from >= 0.0 { (-to).larger(least) } else { (-to).smaller(-least) };
         (inside && sum <= 1.0 + 1e-9).then_some((s, depth))
     }
 }

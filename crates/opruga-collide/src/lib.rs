@@ -7,7 +7,7 @@
 //! ```text
 //! contact          g(x) < thickness
 //! relative speed   u = v − v_c,  u_n = u·n
-//! impact, u_n < 0  u_n' = −e u_n   if it is one, else 0          (restitution)
+//! impact, u_n < 0  u_n' = e s       if it is one, else 0          (restitution)
 //! friction         |Δu_t| = min(µ (u_n' − u_n), |u_t|), against u_t  (Coulomb: what sticks stops fully)
 //! position         onto the surface
 //! ```
@@ -16,6 +16,11 @@
 //! would otherwise have been given to it within the step, by weight or by the body behind it) and comes faster than
 //! `rest_speed`. All other contacts do not bounce. With `rest_speed = 0` every crossing is an impact, also that of a
 //! node that lies on the floor: this is the rule v = −e v of the thesis.
+//!
+//! **Speed of an impact.** The force goes on for the whole step, but the surface is met within it: s² = u² + 2 a g with the
+//! approach u and the gap g at the start of the step and the acceleration a towards the surface, and s lies between the
+//! approaches at both ends of the step. So an impact gives back e² of what came in, and no force makes energy there. With
+//! `rest_speed = 0`, the rule of the thesis, s is the approach at the end of the step.
 //!
 //! **Position.** Without friction the node is moved along the normal onto the surface and its tangential motion is left
 //! alone, to the bit. With friction a node that does not bounce goes from where it was (carried along by the collider)

@@ -106,24 +106,32 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
 
     // A fraction e of the speed returns at an impact. A node that began the step on the surface, or comes slower than
     // the speed of rest, is no impact: what it has was given to it within the step, by weight or by the body behind it.
-    let mut e = zero;
     let small = rounding(law, &node.before);
+    // Where another contact has acted before in this step, that has counted what the force has given.
+    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
+    let (mut e, mut met) = (zero, speed);
     if law.restitution > 0.0 {
         let mut bounces = S::splat(law.rest_speed).less(speed);
         if law.rest_speed > 0.0 {
-            let (gap, _) = surface.find(&node.before, &node.before, small);
+            // The force has gone on for the whole step, but the surface is met within it: an obstacle gives back no more
+            // than came in, u² + 2 a g with the speed u and the gap g before the step.
+            let pull = S::select(weighs, -dot(&node.force, &node.normal) / node.mass, zero);
+            let came = speed - pull * node.h;
+            let reach = node.h * came.larger(speed).larger(zero) + (small + small);
+            let (gap, _) = surface.find(&node.before, &node.before, reach);
             bounces = S::both(bounces, small.less(gap));
+            let square = came * came + S::splat(2.0) * pull * gap.smaller(reach);
+            met = square.larger(zero).sqrt().smaller(came.larger(speed)).larger(came.smaller(speed));
         }
         e = S::select(bounces, S::splat(law.restitution), zero);
     }
-    let back = e * speed;
+    let back = e * met;
     let change = back + speed;
 
     // Out along the normal; without friction the motion along the surface is left as it is, to the bit.
     let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
     let mut v = add(&node.v, &scaled(&node.normal, change));
-    // Half of the velocity that the force has given. Where another contact has acted before in this step, that has counted it.
-    let weighs = S::both(zero.less(node.mass), node.held.less_or_equal(zero));
+    // Half of the velocity that the force has given.
     let given = scaled(&node.force, S::select(weighs, half * node.h / node.mass, zero));
     let mut loss_friction = zero;
     if law.friction > 0.0 {

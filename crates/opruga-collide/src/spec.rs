@@ -18,7 +18,7 @@ macro_rules! collider {
             dimensions: &[$dimension],
             fields: &[
                 $($own,)+
-                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before is that at the end of the step in which a node meets the collider, with all that forces gave it in the step: with 1 a node that is pushed on gains a little in every impact, the less the shorter the steps, and `loss_contact` is negative then."),
+                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before is that with which a node meets the surface within the step, √(u² + 2 a g) with its speed and gap at the start of the step and what forces give it, at most the one at the end of the step: an impact makes no energy. With `rest_speed = 0` it is always the speed at the end of the step, as in the thesis, and a node that is pushed on gains a little."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
                 Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
                 Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),

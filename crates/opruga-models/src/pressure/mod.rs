@@ -27,7 +27,7 @@ use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, P
 use opruga_core::spec::{Spec, Values};
 use opruga_core::state::{Layout, View};
 use opruga_core::tile::Tile;
-use opruga_math::{Pack, Simd, WIDTH, Work};
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 use opruga_mesh::{Mesh, MeshError};
 
 /// The kind `pressure`.
@@ -239,10 +239,11 @@ impl<const D: usize> Potential<D> for Pressure {
             let known = chamber.known(scratch);
             for body in 0..self.bodies() {
                 let (gas, memory) = (chamber.gas(body), &mut memory[number * MEMORY..]);
-                memory[body] = lost(gas, memory, body);
+                if memory[3 * WIDTH + body] != gas.amount {
+                    (memory[body], memory[3 * WIDTH + body]) = (0.0, gas.amount);
+                }
                 memory[WIDTH + body] += known.limited[body];
                 memory[2 * WIDTH + body] += f64::from(known.volume[body] <= 0.0);
-                memory[3 * WIDTH + body] = gas.amount;
             }
         }
         if !self.changes {
@@ -298,18 +299,19 @@ impl<const D: usize> Potential<D> for Pressure {
     fn readings(&self, _view: &View<D>, scratch: &[f64], _memory: &[f64], body: usize) -> Vec<Reading> {
         let mut volume = 0.0;
         let mut amount = 0.0;
-        let mut pressure = 0.0;
+        let (mut pressure, mut weight) = (0.0, 0.0);
         let mut single = Vec::new();
         for (number, chamber) in self.chambers.iter().enumerate() {
             let (v, p, nrt) = self.chamber_state(chamber, scratch, body);
             volume += v;
             amount += nrt;
-            // Chambers count by their volume.
-            pressure += p * v;
+            // Chambers count by their size; the least number makes one of chambers that are empty.
+            let size = v.abs().larger(f64::MIN_POSITIVE);
+            (pressure, weight) = (pressure + p * size, weight + size);
             let name = |what: &str| format!("chamber{}.{what}", number + 1).into();
             single.extend([(name("volume"), v), (name("pressure"), p), (name("nRT"), nrt)]);
         }
-        let mean = if volume == 0.0 { 0.0 } else { pressure / volume };
+        let mean = pressure / weight;
         let mut out: Vec<Reading> = vec![("volume".into(), volume), ("pressure".into(), mean), ("nRT".into(), amount)];
         if self.chambers.len() > 1 {
             out.extend(single);
