@@ -51,8 +51,12 @@ pub enum StepError {
         "`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction \
          was {} m; allowed: {} m",
         counted(u64::from(*iterations), "iteration", "iterations"), number(*time),
-        beyond.as_ref().map_or_else(String::new, |part| format!(", beyond {part}")), number(*residual), number(*correction),
-        number(*tolerance)
+        match (beyond, flat_cells) {
+            (Some(part), _) => format!(", beyond {part}"),
+            (None, Some([flat, all])) => format!(", from a state with {flat} of {all} cells flat or inside out"),
+            (None, None) => String::new(),
+        },
+        number(*residual), number(*correction), number(*tolerance)
     )]
     NotConverged {
         /// The rule.
@@ -69,6 +73,8 @@ pub enum StepError {
         time: f64,
         /// Up to where it was found, such as `0.25 of the load`, where that was looked for in parts.
         beyond: Option<String>,
+        /// How many cells are flat or inside out where the step begins, and how many there are; none if none is.
+        flat_cells: Option<[usize; 2]>,
         /// What helps under the settings of the rule.
         hint: &'static str,
     },

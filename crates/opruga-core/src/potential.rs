@@ -145,6 +145,10 @@ pub trait Potential<const D: usize>: Send + Sync + Debug {
     fn account(&self) -> Account {
         Account::Elastic
     }
+    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the least of its bodies.
+    fn uniform_damping(&self) -> f64 {
+        0.0
+    }
     /// Calls back with the lowest and highest node of every stencil whose nodes read one another's state.
     fn spans(&self, visit: &mut dyn FnMut(u32, u32));
     /// Pairs of nodes that a spring ties to each other, for pictures.

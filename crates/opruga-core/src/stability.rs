@@ -46,6 +46,9 @@ const SAFETY: f64 = 0.98;
 /// Displacements for the differences of forces, in extents of the system.
 const DISPLACEMENT: f64 = 1e-7;
 
+/// Damping that departs from one in proportion to stiffness by less than this part of the strongest is in proportion.
+const PROPORTIONAL: f64 = 1e-7;
+
 /// A rule that is stable up to this angle ωh of a step has no limit: the implicit ones.
 const LARGEST_PHASE: f64 = 1e6;
 
@@ -65,7 +68,8 @@ pub struct Spectrum {
 /// What the spectra of a system say about the step of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// The spectra, each with its residual on the safe side; a least damping below 1 % of the strongest counts as zero.
+    /// The spectra, each with its residual on the safe side; a least damping below 1 % of the strongest counts as that of the
+    /// drag on every node, which is known.
     pub spectrum: Spectrum,
     /// The largest step for which no mode grows, lowered by 2 % [s]; infinite for a free body and for integrators
     /// without a limit, `None` where every step lets one grow.
@@ -105,7 +109,10 @@ impl Spectrum {
         probe.start_damping()?;
         let [weakest, strongest] = extremes(&weights, true, 0.0, |d, out| probe.add_damping(d, out))?;
         let damping = strongest.larger(0.0);
-        let least_damping = if weakest > 0.01 * damping { weakest } else { 0.0 };
+        // A weak drag beside strong springs is lost in what the recurrence leaves; what every node feels is known.
+        let uniform: f64 = system.members.iter().map(|m| m.potential.uniform_damping()).sum();
+        let found = if weakest > 0.01 * damping { weakest } else { 0.0 };
+        let least_damping = found.larger(uniform).smaller(damping);
         if omega == 0.0 || damping == 0.0 {
             return Ok(Spectrum { least_damping, ..Spectrum::uniform(omega, damping) });
         }
@@ -114,6 +121,8 @@ impl Spectrum {
             probe.add_damping(d, out)?;
             probe.add_stiffness(-gamma, d, out)
         })?;
+        // Damping in proportion to stiffness leaves the rounding of differences here.
+        let offset = offset.map(|end| if end.abs() <= PROPORTIONAL * damping { 0.0 } else { end });
         Ok(Spectrum { omega, damping, least_damping, offset })
     }
 
@@ -157,7 +166,7 @@ impl Spectrum {
             }
         }
         // Growth too slow for the tolerance at the limit is growth nevertheless: half the step must show none.
-        (worst(integrator, &modes, 0.5 * low) <= 1.0 + ROUNDING).then_some(low)
+        (worst(integrator, &modes, 0.5 * low) <= 1.0 + SLOWEST).then_some(low)
     }
 
     /// How fast the amplitude of the worst mode grows in steps of h [1/s]: ln ρ / h; zero where h is stable.
@@ -189,6 +198,10 @@ impl Spectrum {
         out
     }
 }
+
+/// What is left at half a step of growth that is within the tolerance of 1e-9 at the step: even with the sixth power of the step
+/// it is more than this, and rounding of the matrices of rules with much to carry is less.
+const SLOWEST: f64 = 1e-12;
 
 /// How far rounding lifts the spectral radius of a stable step above 1.
 const ROUNDING: f64 = 4e-15;

@@ -310,22 +310,21 @@ impl<const D: usize> Builder<'_, D> {
         if !integrator.takes_mass_matrix() {
             let message = format!(
                 "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by \
-                 its own mass; allowed with it: `mass = \"lumped\"`. Consistent masses go with backward_euler, bdf2, \
-                 implicit_midpoint and newmark",
+                 its own mass; allowed: \"lumped\"; hint: consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark",
                 integrator.name()
             );
             return refuse("integrator.mass_matrix", message);
         }
         // In statics masses are weights alone.
         if !self.blueprint.colliders.is_empty() && !integrator.is_static() {
-            let message = "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed \
-                           with obstacles: `mass = \"lumped\"`, and both in `equilibrium`, which knows no impacts";
+            let message = "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed: \
+                           \"lumped\"; hint: consistent masses go with obstacles in `equilibrium`, which knows no impacts";
             return refuse("model.mass", message.into());
         }
         if let Mass::Node(mass) = body.mass {
             let message = format!(
-                "`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells; allowed \
-                 with consistent masses: `mass` or `density` of the body"
+                "`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells; allowed: \
+                 \"lumped\"; hint: `mass` or `density` of the body goes with consistent masses"
             );
             return refuse("model.mass", message);
         }

@@ -10,6 +10,7 @@ use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::{Pin, System};
 use opruga_math::words;
+use opruga_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -86,6 +87,14 @@ impl<const D: usize> World<D> {
     /// The command that the last call of [`World::frame`] has refused: the cause of its error.
     pub fn refused_command(&self) -> Option<&CommandBlueprint<D>> {
         self.refused.as_deref()
+    }
+
+    /// The stiffness [N/m] and the largest force [N] with which a pull acts on a body where its command names neither; none where there
+    /// is no such body.
+    pub fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
+        self.handle(body)?;
+        let (island, lane) = self.place[body];
+        Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
     pub(crate) fn command_here(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
@@ -353,10 +362,24 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The pull of a drag that acts on the body in a lane of a system.
+/// The stiffness [N/m] and the largest force [N] of a pull of which the scene says neither.
 ///
-/// Left to itself, its spring would swing the whole body twice a second. Where the scene is silent it pulls at most as it does
-/// stretched by [`FARTHEST_PULL`] sizes of the body at rest, wherever the pointer gets to.
+/// Left to itself, its spring would swing the whole body twice a second. It pulls at most as it does stretched by [`FARTHEST_PULL`]
+/// sizes of the body at rest, wherever the pointer gets to.
+fn usual_pull<const D: usize>(system: &System<D>, lane: usize, body: &BodyBlueprint<D>) -> [f64; 2] {
+    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.place(n, lane))).sum();
+    let stiffness = whole * 157.913_670_417_429_74;
+    [stiffness, farthest_pull(&body.mesh, stiffness)]
+}
+
+/// The force of a pull of a stiffness beyond which it does not grow where the scene is silent [N].
+fn farthest_pull<const D: usize>(mesh: &Mesh<D>, stiffness: f64) -> f64 {
+    let size = longest_side(mesh);
+    // A point has no size to measure the pull by.
+    if size > 0.0 { FARTHEST_PULL * size * stiffness } else { f64::INFINITY }
+}
+
+/// The pull of a drag that acts on the body in a lane of a system.
 fn pull_of<const D: usize>(
     running: &Running<D>,
     system: &System<D>,
@@ -373,11 +396,8 @@ fn pull_of<const D: usize>(
     let layout = system.layout;
     let held: Vec<(usize, f64)> = held.iter().map(|(n, s)| (layout.place(*n as usize, lane), *s)).collect();
     let mass: f64 = held.iter().map(|(p, s)| s * system.mass.at(*p)).sum();
-    let whole: f64 = (0..system.nodes).map(|n| system.mass.at(layout.place(n, lane))).sum();
-    let stiffness = stiffness.unwrap_or(whole * 157.913_670_417_429_74);
-    let size = longest_side(&body.mesh);
-    // A point has no size to measure the pull by.
-    let farthest = if size > 0.0 { FARTHEST_PULL * size * stiffness } else { f64::INFINITY };
+    let stiffness = stiffness.unwrap_or_else(|| usual_pull(system, lane, body)[0]);
+    let farthest = farthest_pull(&body.mesh, stiffness);
     Pull {
         held,
         path: Arc::clone(&running.path),

@@ -19,8 +19,7 @@ impl<const D: usize> World<D> {
         }
         let (body, cell, ratio) = first?;
         let message = format!(
-            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, or a material \
-             that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
+            "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}",
             number(self.time()),
             match count {
                 1 => "1 cell is".into(),
@@ -28,7 +27,21 @@ impl<const D: usize> World<D> {
             },
             self.blueprint.bodies[body].name,
             number(ratio),
+            self.what_rights_cells(body),
         );
         Some(Warning { code: INVERTED.into(), message, count })
+    }
+
+    /// What else than more substeps turns cells of a body right side out: no law that it already has.
+    fn what_rights_cells(&self, body: usize) -> &'static str {
+        let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.kind() == "fem");
+        let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();
+        match laws.as_slice() {
+            laws if laws.iter().all(|law| *law == "fixed_corotated") => "smaller cells, or less that crushes them",
+            laws if laws.iter().all(|law| ["fixed_corotated", "stable_neo_hookean"].contains(law)) => {
+                "smaller cells, or a material that pushes such cells back from farther (`fixed_corotated`)"
+            }
+            _ => "or a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
+        }
     }
 }

@@ -69,6 +69,11 @@ impl<const D: usize> World<D> {
         let mut mass: Vec<f64> = (0..system.nodes).flat_map(|node| [system.mass.at(node); D]).collect();
         let mut held = vec![false; mass.len()];
         system.held_axes(&mut |place, d| held[place * D + d] = true);
+        if held.iter().all(|held| *held) {
+            let message = "all nodes of the body are held along every axis, and nothing of it can swing; allowed: a node that is free \
+                           along an axis; hint: another body, or fewer pins";
+            return Err(refuse("modes.all_held", message.into()));
+        }
         if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
             let message = format!("node {} has no mass; allowed: masses above 0 where a node can move", light / D);
             return Err(refuse("modes.no_mass", message));

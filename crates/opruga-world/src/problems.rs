@@ -21,6 +21,7 @@ impl<const D: usize> World<D> {
             return vec![error];
         }
         let mut problems = Vec::new();
+        let mut obstacles = Vec::new();
         for (number, collider) in blueprint.colliders.iter().enumerate() {
             if let Some(mut error) = refused(part(Vec::new(), vec![collider.clone()], Vec::new())) {
                 // Built alone it was number 0.
@@ -28,8 +29,11 @@ impl<const D: usize> World<D> {
                     source.kind = format!("collider {number} ({})", collider.values.kind());
                 }
                 problems.push(error);
+            } else {
+                obstacles.push(collider.clone());
             }
         }
+        let all_obstacles = obstacles.len() == blueprint.colliders.len();
         let mut last: Option<(&str, usize, &[Values], Option<&Values>)> = None;
         for (number, body) in blueprint.bodies.iter().enumerate() {
             let kind = (
@@ -44,7 +48,12 @@ impl<const D: usize> World<D> {
             }
             let loads = blueprint.loads.iter().filter(|l| l.body == number);
             let loads = loads.map(|l| LoadBlueprint { body: 0, ..l.clone() }).collect();
-            let Some(first) = refused(part(vec![body.clone()], Vec::new(), loads)) else { continue };
+            // With the obstacles, which may hold it.
+            let Some(first) = refused(part(vec![body.clone()], obstacles.clone(), loads)) else { continue };
+            if !all_obstacles && first.code().starts_with("static.") {
+                // What one of those that are refused would hold is not known.
+                continue;
+            }
             // Building stops at the first model that refuses; each of the others is asked by itself.
             let place = problems.len();
             for model in &body.models {

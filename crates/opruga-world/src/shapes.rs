@@ -8,8 +8,8 @@ pub use filling::{Filling, LOST_AND_TOLD, Loss, filling};
 pub use from_files::is_from_file;
 use from_files::{FILLING_OF_SURFACES, SPACING_OF_FILLINGS};
 
-use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
-use opruga_mesh::{MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
+use opruga_core::spec::{Allowed, Bound, Default, Field, Spec, Values};
+use opruga_mesh::{LARGEST_ANGLE, MAXIMUM_NODES, MAXIMUM_SUBDIVISIONS, Mesh, MeshError};
 use std::any::Any;
 
 const fn count(least: i64) -> Allowed {
@@ -20,7 +20,7 @@ const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin
 const CORNER: Field = Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
 const START_ANGLE: Field = Field::new(
     "start_angle",
-    Allowed::ANY,
+    Allowed::Number { least: Bound::Closed(-LARGEST_ANGLE), greatest: Bound::Closed(LARGEST_ANGLE) },
     "rad",
     Default::Number(0.0),
     "The direction of node 0 from the centre, counter-clockwise from the x axis.",

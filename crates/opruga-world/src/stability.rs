@@ -82,7 +82,7 @@ impl<const D: usize> World<D> {
                 None => {
                     let growth = stability.spectrum.growth_per_second(integrator, h);
                     let message = format!(
-                        "`{}` has no stable step for body `{name}` (ω = {} rad/s): its fastest motion grows as exp({} t)",
+                        "`{}` has no stable step for body `{name}` (ω = {} rad/s): a motion grows as exp({} t)",
                         integrator.name(),
                         words::number(stability.spectrum.omega),
                         words::number(growth),

@@ -1,5 +1,8 @@
 //! What a world refuses, part by part, and what it warns of.
 
+mod common;
+
+use common::{solid, text};
 use opruga_core::spec::{Spec, Value, Values};
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
@@ -148,4 +151,22 @@ fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
     assert_eq!(counts(&world), [("units.sag".to_string(), 1)]);
     world.set("body.b.models.mass_spring.stiffness", Value::Number(1e3)).expect("a parameter");
     assert_eq!(counts(&world), []);
+}
+
+/// A law that pushes cells back is no advice for a body that has it; one that pushes them back from farther is.
+#[test]
+fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
+    for (law, hint) in [
+        ("linear", "a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)"),
+        ("stable_neo_hookean", "back from farther (`fixed_corotated`)"),
+        ("fixed_corotated", "smaller cells, or less that crushes them"),
+    ] {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");
+        let fields = [("material", text(law)), ("youngs_modulus", Value::Number(1e3))];
+        let mut world = World::new(solid(mesh, "backward_euler", &[], &fields), Options::default()).expect("a world");
+        assert_eq!(world.inverted_cells(), None);
+        world.place_node(0, 0, [2.0, 2.0], [0.0; 2]).expect("a node");
+        let said = world.inverted_cells().expect("a cell inside out").message;
+        assert!(said.ends_with(hint), "{law}: {said}");
+    }
 }

@@ -60,6 +60,14 @@ pub(super) fn follow<const D: usize>(
             system.history.numbers[COMPLETE] = 1.0;
             return Ok(1.0);
         }
+        if tried.unloaded {
+            let message = format!(
+                "no load acts on what is free at t = {} s, and `arc_length` goes by the part of the load that is on; allowed: weight \
+                 or loads; hint: without `arc_length` every step ends where pins and gases balance",
+                number(system.time + h)
+            );
+            return Err(StepError::Model { model: SPEC.kind, message });
+        }
         way *= 0.5;
     }
     if tried.turned {
@@ -81,6 +89,8 @@ struct Tried {
     solved: Solved,
     /// Whether it found a point of the curve, but one that lies back or far aside.
     turned: bool,
+    /// Whether there was no load that could move anything.
+    unloaded: bool,
 }
 
 /// Whether two vectors point the same way within the angle by which the curve may turn; a vector of no length has any way.
@@ -99,8 +109,8 @@ fn one_step<const D: usize>(
     h: f64,
     tried: &mut Tried,
 ) -> Result<Option<f64>, StepError> {
-    let Tried { solved, turned } = tried;
-    *turned = false;
+    let Tried { solved, turned, unloaded } = tried;
+    (*turned, *unloaded) = (false, false);
     let start = room.u.clone();
     // Of what is free: what pins move does not tell how the curve goes on.
     let free = |k: usize| if room.held[k].is_nan() { 1.0 } else { 0.0 };
@@ -126,6 +136,7 @@ fn one_step<const D: usize>(
             // On from where the last step has led; the first step puts load on.
             let size = dot(&tangent, &tangent).sqrt();
             if size.is_nan() || size == 0.0 && !leans {
+                *unloaded = size == 0.0;
                 return Ok(None);
             }
             step = if dot(&last, &tangent) < 0.0 { -way / size } else { way / size };

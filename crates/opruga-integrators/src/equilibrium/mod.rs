@@ -155,7 +155,15 @@ impl Equilibrium {
     ) -> Result<(), StepError> {
         room.u1.copy_from_slice(&room.u);
         let outcome = self.balance(system, room, to, h);
-        let Err(StepError::NotConverged { .. }) = &outcome else { return outcome };
+        let too_far = match &outcome {
+            Err(StepError::NotConverged { .. }) => true,
+            // Nearer a model may have a meaning; what nothing holds stays so.
+            Err(StepError::Model { model, .. }) => *model != SPEC.kind,
+            _ => false,
+        };
+        if !too_far {
+            return outcome;
+        }
         if self.settings.otherwise == Otherwise::Halve && halvings < MOST_HALVINGS {
             system.work.solver.halved += 1;
             room.hold(system, from.held, h);
@@ -171,19 +179,31 @@ impl Equilibrium {
 
     /// An error with how far the load was on, and what helps in statics.
     fn told<const D: usize>(&self, error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
+        let hint = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
         match error {
-            StepError::NotConverged { integrator, iterations, residual, correction, tolerance, time, .. } => {
-                StepError::NotConverged {
-                    integrator,
-                    iterations,
-                    residual,
-                    correction,
-                    tolerance,
-                    time,
-                    beyond: from.map(|from| format!("{} of the load", number(from.load))),
-                    hint: self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none()),
-                }
+            StepError::Model { model, message } if model != SPEC.kind && !message.contains("; hint: ") => {
+                StepError::Model { model, message: format!("{message}; hint: {hint}") }
             }
+            StepError::NotConverged {
+                integrator,
+                iterations,
+                residual,
+                correction,
+                tolerance,
+                time,
+                flat_cells,
+                ..
+            } => StepError::NotConverged {
+                integrator,
+                iterations,
+                residual,
+                correction,
+                tolerance,
+                time,
+                beyond: from.map(|from| format!("{} of the load", number(from.load))),
+                flat_cells,
+                hint,
+            },
             other => other,
         }
     }

@@ -150,11 +150,12 @@ pub(crate) fn solve<const D: usize>(
 
         let plain = longest(&room.step, D);
         solved.correction = plain;
+        let mut gone = plain;
         if balance.sigma == 0.0 {
             // Without inertia a soft direction leads far.
             let part = part_without_inertia(system, room, balance, plain);
             room.step.iter_mut().for_each(|s| *s *= part);
-            solved.correction *= part;
+            gone *= part;
             slope *= part;
         }
         // What the matrix leaves out shows where corrections fall slowly.
@@ -172,7 +173,7 @@ pub(crate) fn solve<const D: usize>(
             let rough = keep != Keep::Exact && plain > ROUGH * room.extent && !falls;
             let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
             length = line_search(system, room, balance, slope, stretches)?;
-            solved.correction *= length;
+            gone *= length;
             if length != 1.0 {
                 room.mixing.forget();
                 before = f64::INFINITY;
@@ -190,7 +191,7 @@ pub(crate) fn solve<const D: usize>(
                 Some(next) => first = next,
                 None => break,
             }
-        } else if keep != Keep::Exact && solved.correction <= 1e-2 * room.extent {
+        } else if keep != Keep::Exact && gone <= 1e-2 * room.extent {
             // Derivatives that were not positive may be so near the solution.
             first = Keep::Exact;
         }

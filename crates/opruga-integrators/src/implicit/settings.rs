@@ -5,6 +5,7 @@ use super::slenderness::is_slender;
 use opruga_core::error::BuildError;
 use opruga_core::spec::{Allowed, Bound, Default, Field, Values};
 use opruga_core::system::System;
+use opruga_math::words::number;
 
 /// How the equations of a step are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,8 +145,8 @@ would make energy, as when a soft body strikes the floor, the step is solved exa
 against exact steps of the same length, of clamped cubes and beams that swing under their weight: amplitude within 3 %, period \
 within 1 %, at rest within 1 % of the statics. Steps that end with more left are counted in a warning (`step.cut_off`) with the \
 size of what is left. Not for results that are compared with others, for bodies that are slender and of many thousand nodes, \
-or where a motion is decided by little, as in buckling. Rules that damp nothing (`implicit_midpoint`, `newmark`) would add up \
-what is left, and refuse the setting.",
+or where a motion is decided by little, as in buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers \
+it in its acceleration, would add up what is left, and refuse the setting.",
 );
 
 /// Rules that keep what a step leaves out of balance.
@@ -162,10 +163,19 @@ impl Settings {
     pub(crate) fn of_rule(kind: &'static str, values: &Values) -> Result<Settings, BuildError> {
         let settings = Settings::new(values);
         if settings.real_time && UNDAMPED.contains(&kind) {
-            let message = format!(
-                "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` damps nothing, and would add it up \
-                 without end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting"
-            );
+            let message = match values.number("spectral_radius") {
+                // Its acceleration is that of the displacement, balanced or not, and the next step begins with it.
+                Some(radius) if radius < 1.0 => format!(
+                    "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` with `spectral_radius` = {} damps \
+                     slow motions hardly, and hands that part on with the acceleration that it remembers; allowed: \"exact\"; hint: \
+                     `backward_euler` and `bdf2` have a real-time setting",
+                    number(radius)
+                ),
+                _ => format!(
+                    "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{kind}` damps nothing, and would add it up \
+                     without end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting"
+                ),
+            };
             return Err(BuildError::new(kind, "integrator.real_time", message));
         }
         if settings.real_time && settings.solver == Solver::MatrixFree {

@@ -12,6 +12,9 @@
 //! may, is on its way. The time to leave is a multiple of L √(M/U), where L is its size and M its mass; a body at rest would lose
 //! little of U in that time.
 //!
+//! A body all of whose cells are flat has a motion along its plane or line that may go on for ever, and leads nowhere: it is
+//! displaced once it had time to leave, whatever it does there.
+//!
 //! Bodies of models without cells, such as springs, are left alone.
 
 use super::room::{Room, write};
@@ -27,8 +30,12 @@ use opruga_solve::dense::symmetric_eigen;
 const PERIOD: f64 = 24.0;
 const LEISURE: f64 = 72.0;
 
-/// Kinetic energy, and forces out of balance times the size, that count as rest, as parts of the stored energy.
+/// Kinetic energy, and what is given to damping in the time to leave, that count as rest, as parts of the stored energy.
 const REST: f64 = 1e-3;
+
+/// Forces out of balance times the size that count as rest, as a part of the stored energy: a tremble with 10⁻⁷ of it has a
+/// thousandth.
+const BALANCED: f64 = 1e-2;
 
 /// How long a disturbed body has to leave, in units of L √(M/U).
 const PATIENCE: f64 = 12.0;
@@ -46,8 +53,8 @@ const FLAT: f64 = 1e-3;
 const STRAINED: f64 = 1e-3;
 
 /// What the state remembers: steps since the last look, how often the body was disturbed since it was seen in a shape of its
-/// own, one more where that was in vain, and when it was disturbed last [s].
-pub(crate) const NUMBERS: usize = 3;
+/// own, one more where that was in vain, when it was disturbed last [s], and at how many looks all of it was flat.
+pub(crate) const NUMBERS: usize = 4;
 
 /// Looks at a body at the end of a step of h [s], now and then; `first` is the place of what is remembered.
 pub(crate) fn look<const D: usize>(
@@ -56,16 +63,18 @@ pub(crate) fn look<const D: usize>(
     first: usize,
     h: f64,
 ) -> Result<(), StepError> {
-    let [steps, times, last] = core::array::from_fn(|k| system.history.numbers[first + k]);
+    let [steps, times, last, flat] = core::array::from_fn(|k| system.history.numbers[first + k]);
     system.history.numbers[first] = steps + 1.0;
     if steps + 1.0 < PERIOD {
         return Ok(());
     }
     system.history.numbers[first] = 0.0;
     let Some(size) = odd_size(system, Stage::Current) else {
-        (system.history.numbers[first], system.history.numbers[first + 1]) = (-LEISURE, 0.0);
+        system.history.numbers[first..first + NUMBERS].copy_from_slice(&[-LEISURE, 0.0, last, 0.0]);
         return Ok(());
     };
+    let flat = if is_flat(system) { flat + 1.0 } else { 0.0 };
+    system.history.numbers[first + 3] = flat;
     if times > SIZES.len() as f64 {
         return Ok(());
     }
@@ -75,9 +84,11 @@ pub(crate) fn look<const D: usize>(
     let had_time = system.time - last > patience;
     let waits = times > 0.0 && !had_time;
     let rests = |part: f64| part <= REST * energy;
-    if waits || !(rests(kinetic) && rests(push * size) && rests(fading * patience)) {
+    let stays = flat * PERIOD * h > patience;
+    if waits || !(stays || rests(kinetic) && push * size <= BALANCED * energy && rests(fading * patience)) {
         return Ok(());
     }
+    system.history.numbers[first + 3] = 0.0;
     system.history.numbers[first + 1] = times + 1.0;
     system.history.numbers[first + 2] = system.time;
     match SIZES.get(times as usize) {
@@ -126,7 +137,8 @@ fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) ->
     let (system, room) = (&*system, &*room);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
-    for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
+    let old: Vec<[f64; D]> = nodes::<D>(&room.v0).to_vec();
+    for (node, old) in old.iter().enumerate() {
         let (x, v, m) = (system.state.x.at(node), system.state.v.at(node), system.mass.at(node));
         mass += m;
         for d in 0..D {
@@ -143,17 +155,27 @@ fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) ->
         let x = system.state.x.at(node);
         core::array::from_fn(|d| x[d] - center[d] / mass)
     };
-    let spin = if free { spin(system, &speed.map(|p| p / mass), &arm) } else { [0.0; 3] };
+    let velocity = |node: usize| -> [f64; D] {
+        let v = system.state.v.at(node);
+        core::array::from_fn(|d| v[d] - speed[d] / mass)
+    };
+    let spin = if free { rotation(system, &velocity, &arm) } else { [0.0; 3] };
+    // What a body that tumbles has of accelerations: those that keep it together and turn its axis.
+    let acceleration = |node: usize| -> [f64; D] {
+        let (v, inward) = (system.state.v.at(node), turned(&spin, &turned(&spin, &arm(node))));
+        core::array::from_fn(|d| (v[d] - old[node][d] - change[d] / mass) / h - inward[d])
+    };
+    let tumble = if free { rotation(system, &acceleration, &arm) } else { [0.0; 3] };
     let (mut kinetic, mut push, mut fading) = (0.0, 0.0, 0.0);
-    for (node, old) in nodes::<D>(&room.v0).iter().enumerate() {
-        let (v, m) = (system.state.v.at(node), system.mass.at(node));
-        let turning = turned(&spin, &arm(node));
-        let inward = turned(&spin, &turning);
+    for node in 0..system.nodes {
+        let m = system.mass.at(node);
+        let (own, left) = (velocity(node), acceleration(node));
+        let (turning, turned_more) = (turned(&spin, &arm(node)), turned(&tumble, &arm(node)));
         let (all, rest) = (room.force.at(node), room.outer.at(node));
         for d in 0..D {
-            let own = v[d] - speed[d] / mass - turning[d];
+            let own = own[d] - turning[d];
             kinetic += 0.5 * m * own * own;
-            push += m * ((v[d] - old[d] - change[d] / mass) / h - inward[d]).abs();
+            push += m * (left[d] - turned_more[d]).abs();
             // Held nodes are led by others.
             if damped && room.held[node * D + d].is_nan() {
                 fading -= (all[d] - rest[d]) * own;
@@ -171,17 +193,22 @@ fn undamped<const D: usize>(system: &mut System<D>, out: &mut Columns<D>) -> Res
     system.evaluate(Room::<D>::STAGE, 0.0, 0.0, out)
 }
 
-/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean.
-fn spin<const D: usize>(system: &System<D>, speed: &[f64; D], arm: &dyn Fn(usize) -> [f64; D]) -> [f64; 3] {
+/// The angular velocity [rad/s] of the rotation about the centre that is nearest to the velocities of a body beyond their mean; of
+/// accelerations the angular acceleration [rad/s²].
+fn rotation<const D: usize>(
+    system: &System<D>,
+    field: &dyn Fn(usize) -> [f64; D],
+    arm: &dyn Fn(usize) -> [f64; D],
+) -> [f64; 3] {
     let turns: Vec<[f64; 3]> = if D == 2 { vec![[0.0, 0.0, 1.0]] } else { UNITS.to_vec() };
     let n = turns.len();
     let (mut inertia, mut momentum) = (vec![0.0; n * n], vec![0.0; n]);
     for node in 0..system.nodes {
-        let (v, m, arm) = (system.state.v.at(node), system.mass.at(node), arm(node));
+        let (v, m, arm) = (field(node), system.mass.at(node), arm(node));
         let ways: Vec<[f64; D]> = turns.iter().map(|turn| turned(turn, &arm)).collect();
         for p in 0..n {
             for d in 0..D {
-                momentum[p] += m * ways[p][d] * (v[d] - speed[d]);
+                momentum[p] += m * ways[p][d] * v[d];
                 for q in 0..n {
                     inertia[p * n + q] += m * ways[p][d] * ways[q][d];
                 }
@@ -223,6 +250,25 @@ fn odd_size<const D: usize>(system: &System<D>, stage: Stage) -> Option<f64> {
         volume += cells.iter().map(|cell| cell.measure).sum::<f64>();
     }
     odd.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
+}
+
+/// How many cells of the state are flat or inside out, and how many there are; none where none is.
+pub(crate) fn flat_cells<const D: usize>(system: &System<D>) -> Option<[usize; 2]> {
+    let view = system.view(Stage::Current, system.time);
+    let (mut flat, mut all) = (0, 0);
+    for member in &system.members {
+        let cells = member.potential.cell_states(&view, 0);
+        flat += cells.iter().filter(|cell| is_odd(cell, false)).count();
+        all += cells.len();
+    }
+    (flat > 0).then_some([flat, all])
+}
+
+/// Whether every cell of a body is flat.
+fn is_flat<const D: usize>(system: &System<D>) -> bool {
+    let view = system.view(Stage::Current, system.time);
+    let mut cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0)).peekable();
+    cells.peek().is_some() && cells.all(|cell| cell.volume_ratio.abs() <= FLAT)
 }
 
 /// Whether a cell of a body that stands still has no shape of its own; `alone` says that nothing acts on the body.

@@ -210,7 +210,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     };
     let own = room.own.numbers + if settings.real_time { real_time::NUMBERS } else { 0 };
     let time = system.time;
-    growth::check(system, room, own, &solved, |hint| refusal(R::NAME, settings, room, &solved, time, hint))?;
+    growth::check(system, room, own, &solved, |hint| refusal(R::NAME, settings, room, &solved, (time, None), hint))?;
     finish(system, room);
     if R::TRAPEZOID && !rule.is_trapezoid() {
         take_back(&mut system.work, &begun, &work_before);
@@ -382,16 +382,17 @@ fn accept_or_refuse<const D: usize>(
         system.work.solver.accepted += 1;
         return Ok(());
     }
-    Err(refusal(integrator, settings, room, solved, system.time, settings.hint()))
+    let flat_cells = standstill::flat_cells(system);
+    Err(refusal(integrator, settings, room, solved, (system.time, flat_cells), settings.hint()))
 }
 
-/// The error of a step that did not converge.
+/// The error of a step that did not converge, with its time [s] and the cells that it found flat or inside out.
 fn refusal<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
     room: &Room<D>,
     solved: &Solved,
-    time: f64,
+    (time, flat_cells): (f64, Option<[usize; 2]>),
     hint: &'static str,
 ) -> StepError {
     StepError::NotConverged {
@@ -402,6 +403,7 @@ fn refusal<const D: usize>(
         tolerance: settings.tolerance * room.extent,
         time,
         beyond: None,
+        flat_cells,
         hint,
     }
 }

@@ -144,7 +144,17 @@ pub(crate) fn check_free_fall(integrator: &dyn Integrator<3>, factor: fn(f64) ->
 
 /// Stable for every step, however large, with and without damping.
 pub(crate) fn check_no_limit(integrator: &dyn Integrator<2>) {
-    for (omega, damping) in [(5.0, 0.0), (5.0, 3.0), (1e4, 1e2), (0.0, 4.0)] {
+    for (omega, damping) in [
+        (5.0, 0.0),
+        (5.0, 3.0),
+        (1e4, 1e2),
+        (0.0, 4.0),
+        (137.0, 0.05),
+        (3.7e3, 8.1),
+        (20.3, 0.02),
+        (71.0, 0.0),
+        (94.817, 8.99026),
+    ] {
         assert_eq!(Spectrum::uniform(omega, damping).largest_stable_step(integrator), Some(f64::INFINITY));
     }
     for z in [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6] {

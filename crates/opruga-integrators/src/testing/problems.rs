@@ -32,6 +32,10 @@ impl<const D: usize> Potential<D> for Anchors {
     fn damping_matrix(&self, view: &View<D>, _scratch: &[f64], sink: &mut dyn Sink<D>) {
         (0..view.nodes).for_each(|p| sink.block(p, p, diagonal(self.damping)));
     }
+    /// On nodes of 1 kg.
+    fn uniform_damping(&self) -> f64 {
+        self.damping
+    }
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, _simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {
         for p in tile.range.clone() {

@@ -141,6 +141,35 @@ fn rules_that_need_damping_of_every_mode() {
     }
 }
 
+/// A drag that is weak beside the damping of springs gives every mode a stable step all the same.
+#[test]
+fn a_weak_drag_beside_damped_springs_gives_a_stable_step() {
+    let rules: [&dyn Integrator<2>; 2] = [&ExplicitEuler, &Heun];
+    for rule in rules {
+        for drag in [0.5, 1.5, 5.0] {
+            // Springs under tension: motions across them are not damped by them.
+            let make = || {
+                let mut system = ring(36, 100.0, 0.9, 1600.0, 40.0, 0.0);
+                system.add(Box::new(Anchors { stiffness: 0.0, damping: drag }));
+                system
+            };
+            let limit = estimated(&make(), rule).largest_stable_step;
+            assert!(limit.is_some_and(|h| h > 1e-4), "{}, {drag} 1/s: {limit:?}", rule.name());
+        }
+    }
+}
+
+/// Springs damped in proportion, c = γ k: explicit Euler is stable up to γ, where |1 + hμ|² = 1 − hc + h²ω² comes to 1 in every
+/// mode, and up to 2/|μ| of the strongest damped one. Rounding must not hide that.
+#[test]
+fn damping_in_proportion_to_stiffness_gives_explicit_euler_a_stable_step() {
+    for (nodes, damping) in [(6, 1.0), (36, 1.0), (36, 8.0), (300, 4.0)] {
+        let limit = estimated(&ring(nodes, 1.0, 1.0, 1600.0, damping, 0.0), &ExplicitEuler).largest_stable_step;
+        let gamma = damping / 1600.0;
+        assert!(limit.is_some_and(|h| h <= gamma && h > 0.95 * gamma), "{nodes}, {damping}: {limit:?}");
+    }
+}
+
 /// Growth per second of the whole system is what the estimate says (within its safety).
 #[test]
 fn growth_is_as_fast_as_announced() {

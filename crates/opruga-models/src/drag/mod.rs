@@ -17,7 +17,7 @@ use opruga_core::potential::{Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::Spec;
 use opruga_core::state::{Parameter, View};
 use opruga_core::tile::Tile;
-use opruga_math::{Pack, Simd, WIDTH, Work};
+use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 
 /// The kind `drag`.
 #[derive(Debug)]
@@ -50,6 +50,9 @@ impl<const D: usize> Potential<D> for Drag {
     }
     fn views(&self) -> Views {
         Views { energy: false, hessian: true, damping: true }
+    }
+    fn uniform_damping(&self) -> f64 {
+        (0..WIDTH).map(|body| self.rate.at(body)).fold(f64::INFINITY, Lane::smaller)
     }
     fn spans(&self, _visit: &mut dyn FnMut(u32, u32)) {}
     fn add_force(&self, simd: Simd, view: &View<D>, _scratch: &[f64], tile: &mut Tile<D>) {

@@ -176,10 +176,11 @@ impl<'a, const D: usize> Builder<'a, D> {
     pub(super) fn finish(self, built: Built<D>) -> Result<Box<Solid<D>>, BuildError> {
         if self.locking() == "nodal_volume" && (self.stress || built.volumes.is_none()) {
             let message = if self.stress {
-                "`locking` is `nodal_volume`; allowed in plane stress: `refuse` or `accept`, since nothing locks where the thickness is free"
+                "`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks; allowed: \"refuse\" or \
+                 \"accept\"; hint: leave `locking` out"
             } else {
-                "`locking` is `nodal_volume`, but the cells are no linear triangles or tetrahedra; allowed for others: `refuse` or \
-                 `accept`, since they do not lock"
+                "`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock; allowed: \
+                 \"refuse\" or \"accept\"; hint: leave `locking` out"
             };
             return Err(refuse("model.locking", message));
         }

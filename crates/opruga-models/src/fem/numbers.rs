@@ -55,13 +55,7 @@ impl<'a> Numbers<'a> {
                 let share = values.number("mooney_share").unwrap_or(0.0);
                 let most = |ratio: f64| ratio / (1.0 - 2.0 * ratio);
                 if let Some(ratio) = cells().map(|cell| numbers.ratio(cell, body)).find(|ratio| share > most(*ratio)) {
-                    let most = most(ratio);
-                    return Err(refuse(
-                        "model.not_convex",
-                        format!(
-                            "`mooney_share` is {share}; allowed with `poissons_ratio` = {ratio}: at most {most} = ν/(1 − 2ν)"
-                        ),
-                    ));
+                    return Err(refuse("model.not_convex", not_convex(share, ratio, most(ratio))));
                 }
             }
         }
@@ -90,8 +84,8 @@ impl<'a> Numbers<'a> {
         Err(refuse(
             "model.locking",
             format!(
-                "`poissons_ratio` is {ratio}; allowed for linear {kind}: at most {LOCKS_ABOVE}, since they lock near \
-                 incompressibility. Give the body `order = 2`, or say `locking = \"nodal_volume\"`"
+                "`poissons_ratio` is {ratio} for linear {kind}, which lock near incompressibility; allowed: at most {LOCKS_ABOVE}; \
+                 hint: `order = 2` for the body, or `locking = \"nodal_volume\"`"
             ),
         ))
     }
@@ -108,6 +102,22 @@ impl<'a> Numbers<'a> {
     }
 }
 
+/// Why a share of the second constant of Mooney and Rivlin is refused with a Poisson's ratio that allows at most `most`.
+fn not_convex(share: f64, ratio: f64, most: f64) -> String {
+    if most < 0.0 {
+        // No share is allowed at all: λ < 0.
+        let least = share / (1.0 + 2.0 * share);
+        return format!(
+            "`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`; allowed: at least \
+             {least}, so that {share} <= ν/(1 − 2ν); hint: a smaller `mooney_share` allows a smaller one, down to 0"
+        );
+    }
+    format!(
+        "`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex; allowed: at most {most} = ν/(1 − 2ν); hint: a \
+         larger `poissons_ratio` allows a larger one"
+    )
+}
+
 /// The numbers of the mesh that a field names, which for the chosen cells must lie in the range of the field they stand for.
 fn of_cells<'a, const D: usize>(
     ingredients: &'a Ingredients<'a, D>,
@@ -118,15 +128,21 @@ fn of_cells<'a, const D: usize>(
     let all = &ingredients.mesh.cell_values;
     let Some(numbers) = all.get(name) else {
         let names: Vec<_> = all.keys().map(|n| format!("`{n}`")).collect();
-        let names = if names.is_empty() { "there are none".into() } else { names.join(", ") };
-        let message = format!("`{of_cells}`: the cells of the mesh have no numbers `{name}`; known: {names}");
+        let names = if names.is_empty() { "none, the mesh has no numbers of cells".into() } else { names.join(", ") };
+        let message = format!(
+            "`{of_cells}` is \"{name}\", and the cells of the mesh have no such numbers; allowed: {names}; hint: `{field}` gives one \
+             number for all cells"
+        );
         return Err(refuse("model.no_values", message));
     };
     let range = super::SPEC.fields.iter().find(|known: &&Field| known.name == field).map(|known| known.range);
     for (cell, number) in numbers.iter().enumerate().filter(|(cell, _)| chosen[*cell]) {
         let value = opruga_core::spec::Value::Number(*number);
         if let Some(Err((value, allowed))) = range.map(|range| range.accept(value, D)) {
-            let message = format!("`{of_cells}` of cell {cell} is {value}; allowed: {allowed}");
+            let message = format!(
+                "`{of_cells}` of cell {cell} is {value}; allowed: {allowed}; hint: the numbers are in the file of the mesh; `{field}` \
+                 gives one for all cells"
+            );
             return Err(refuse("model.cell_value", message));
         }
     }
