@@ -207,6 +207,48 @@ pub(crate) struct Sweep {
     pub(crate) lenient: bool,
 }
 
+/// What is drawn of a run or of a recording.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Pictures {
+    /// Pictures, and frames that are exported, for each second of simulated time [default: 20]
+    ///
+    /// Above 0 up to 240; never more than there are frames. Between two pictures lies a whole number of frames: with frames of
+    /// 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) fps: Option<f64>,
+    /// No strip, video and plots
+    #[arg(long)]
+    no_pictures: bool,
+    /// Write the animation as video.gif instead of video.mp4
+    #[arg(long, conflicts_with = "no_pictures")]
+    gif: bool,
+    /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
+    #[arg(long, conflicts_with = "no_pictures")]
+    arrows: bool,
+    /// Draw every spring and node, also on surfaces, in crowds and under skins
+    #[arg(long, conflicts_with = "no_pictures")]
+    springs: bool,
+}
+
+impl Pictures {
+    /// Whether the call says anything of them.
+    fn said(&self) -> bool {
+        self.fps.is_some() || self.no_pictures || self.gif || self.arrows || self.springs
+    }
+
+    /// What shall be seen; `notes`: and said, where frames do not have the rate that was asked for.
+    fn wanted(&self, notes: bool) -> Wanted {
+        Wanted {
+            fps: self.fps,
+            pictures: !self.no_pictures,
+            arrows: self.arrows,
+            springs: self.springs,
+            gif: self.gif,
+            notes,
+        }
+    }
+}
+
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Run {
     /// A scene file, or the name of a scene that comes with the program [default: ball]
@@ -219,12 +261,8 @@ pub(crate) struct Run {
     /// start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
-    /// Pictures of the animation for each second of simulated time [default: 20]
-    ///
-    /// Above 0 up to 240; never more than the scene has frames. Between two pictures lies a whole number of frames: with frames of
-    /// 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
-    #[arg(long, allow_negative_numbers = true)]
-    pub(crate) fps: Option<f64>,
+    #[command(flatten)]
+    pub(crate) pictures: Pictures,
     /// The folder for the output [default: out/SCENE]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
@@ -243,12 +281,6 @@ pub(crate) struct Run {
     /// Print the summary, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// No strip, video and plots
-    #[arg(long)]
-    pub(crate) no_pictures: bool,
-    /// Write the animation as video.gif instead of video.mp4
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) gif: bool,
     /// Go on from the checkpoint of an earlier run, to the same bits
     ///
     /// The checkpoint holds its scene, what --set and --seconds have changed in it, --lenient and --allow-unstable. Other
@@ -285,12 +317,6 @@ pub(crate) struct Run {
     /// Shapes may be read from files outside of the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
-    /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) arrows: bool,
-    /// Draw every spring and node, also on surfaces, in crowds and under skins
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) springs: bool,
     /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
@@ -373,30 +399,14 @@ pub(crate) struct Replay {
     /// The simulated time to end at [s] [default: the last frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
-    /// Pictures, and exported frames, for each second of simulated time [default: 20]
-    ///
-    /// Above 0 up to 240; never more than the recording has frames. Between two pictures lies a whole number of frames: with frames
-    /// of 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
-    #[arg(long, allow_negative_numbers = true)]
-    pub(crate) fps: Option<f64>,
+    #[command(flatten)]
+    pub(crate) pictures: Pictures,
     /// The folder for the output [default: out/SCENE-replay]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
     /// Replace the output that is there
     #[arg(long)]
     pub(crate) force: bool,
-    /// Write the animation as video.gif instead of video.mp4
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) gif: bool,
-    /// Draw arrows, as `opruga run --arrows` does
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) arrows: bool,
-    /// Draw every spring and node, as `opruga run --springs` does
-    #[arg(long, conflicts_with = "no_pictures")]
-    pub(crate) springs: bool,
-    /// No strip, video and plots
-    #[arg(long)]
-    pub(crate) no_pictures: bool,
     /// Write every picture's frame as VTK too (frame-000012.vtk …; ParaView opens frames.vtk.series)
     #[arg(long)]
     pub(crate) vtk: bool,
@@ -429,37 +439,20 @@ pub(crate) struct Replay {
 impl Replay {
     /// Whether the call says what is to be written.
     pub(crate) fn writes(&self) -> bool {
-        let given = self.out.is_some() || self.fps.is_some();
-        let drawn = self.gif || self.arrows || self.springs || self.no_pictures;
-        given || drawn || self.vtk || self.vtu || self.obj || self.ply || self.gltf || self.pc2 || self.mdd
+        let formats = [self.vtk, self.vtu, self.obj, self.ply, self.gltf, self.pc2, self.mdd];
+        self.out.is_some() || self.pictures.said() || formats.contains(&true)
     }
 
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        let notes = !self.json;
-        Wanted {
-            fps: self.fps,
-            pictures: !self.no_pictures,
-            arrows: self.arrows,
-            springs: self.springs,
-            gif: self.gif,
-            notes,
-        }
+        self.pictures.wanted(!self.json)
     }
 }
 
 impl Run {
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        let notes = !self.json && !self.no_pictures;
-        Wanted {
-            fps: self.fps,
-            pictures: !self.no_pictures,
-            arrows: self.arrows,
-            springs: self.springs,
-            gif: self.gif,
-            notes,
-        }
+        self.pictures.wanted(!self.json && !self.pictures.no_pictures)
     }
 
     /// What `opruga` without a command does.

@@ -98,7 +98,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
             };
             let bytes = read(name).map_err(|e| Failure::Scene(vec![e]))?;
             let found = meshes::read(name, &bytes, &mut |other| read(other))
-                .map_err(|e| Failure::Scene(vec![SceneError { file: path.display().to_string(), ..e }]))?;
+                .map_err(|e| Failure::Scene(vec![SceneError { file: placed(call, name, &e.file), ..e }]))?;
             if found.dimension() == 2 && !found.is_plane() {
                 return surface(false);
             }
@@ -140,7 +140,9 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
         "size" => value("--scale-to", call.scale_to),
         field => call.set.iter().rfind(|set| set.split('=').next() == Some(field)).map(|set| format!("--set {set}")),
     };
-    let error = in_words_of_the_call(call, name, problem.about);
+    // What a reader says of a file quotes the file, and no option.
+    let quotes = problem.field == "file" && !is_of_shapes(&problem.about);
+    let error = in_words_of_the_call(call, name, problem.about, quotes);
     Failure::Scene(vec![match option.filter(|_| error.line.is_none()) {
         Some(file) => SceneError { file, ..error },
         None => error,
@@ -149,7 +151,26 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
 
 /// What is odd about the file.
 fn told(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
-    notices.into_iter().map(|about| Notice { about: in_words_of_the_call(call, name, about), count: 1 }).collect()
+    let said = |about: SceneError| {
+        let quotes = !is_of_shapes(&about);
+        Notice { about: in_words_of_the_call(call, name, about, quotes), count: 1 }
+    };
+    notices.into_iter().map(said).collect()
+}
+
+/// Whether an error is about the shape that the call asks for, and not about the text of its file.
+fn is_of_shapes(error: &SceneError) -> bool {
+    error.code.starts_with("shape.") || error.code.starts_with("limit.")
+}
+
+/// The file that an error names, as the call names it: TetGen's second file lies beside the first.
+fn placed(call: &Call, name: &str, file: &str) -> String {
+    let stem = |name: &str| name.rsplit_once('.').map(|(stem, _)| stem.to_string());
+    match file {
+        "" => call.input.display().to_string(),
+        file if file == name || stem(file) == stem(name) => call.input.with_file_name(file).display().to_string(),
+        file => file.to_string(),
+    }
 }
 
 /// Words of scenes and the options that stand for them here.
@@ -185,8 +206,10 @@ fn options(text: &str) -> String {
     out
 }
 
-fn in_words_of_the_call(call: &Call, name: &str, error: SceneError) -> SceneError {
-    let said = |text: String| options(&WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call)));
+/// An error as the call has it; of one that quotes the file only the hint names options.
+fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool) -> SceneError {
+    let replaced = |text: String| WORDS.iter().fold(text, |text, (scene, call)| text.replace(scene, call));
+    let said = |text: String| options(&replaced(text));
     // What only scenes have is said of them.
     let hint = error.hint.filter(|_| !error.code.starts_with("read.")).map(said).map(|hint| {
         let (here, in_scenes): (Vec<&str>, Vec<&str>) = hint.split("; ").partition(|part| !part.contains('`'));
@@ -196,8 +219,11 @@ fn in_words_of_the_call(call: &Call, name: &str, error: SceneError) -> SceneErro
             false => format!("{}; in a scene also {}", here.join("; "), in_scenes.join("; ").trim_start_matches("or ")),
         }
     });
-    let file = if error.file.is_empty() || error.file == name { call.input.display().to_string() } else { error.file };
-    let (message, allowed) = (said(error.message), error.allowed.map(said));
+    let file = placed(call, name, &error.file);
+    let (message, allowed) = match quotes {
+        true => (replaced(error.message), error.allowed.map(replaced)),
+        false => (said(error.message), error.allowed.map(said)),
+    };
     SceneError { file, message, allowed, hint, path: String::new(), ..error }
 }
 

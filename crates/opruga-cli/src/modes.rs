@@ -8,6 +8,7 @@ use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::Values;
 use opruga::draw;
 use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::io::scene;
 use opruga::math::words::{number, rounded};
 use opruga::pictures::{Scenery, rest_of};
 use opruga::world::modes::Mode;
@@ -30,11 +31,11 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
     match blueprint {
         AnyBlueprint::Plane(mut blueprint) => {
             look_for_equilibrium(call, &mut blueprint);
-            of_world(call, &source, source.build(blueprint, &reading, &options)?)
+            of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
         }
         AnyBlueprint::Space(mut blueprint) => {
             look_for_equilibrium(call, &mut blueprint);
-            of_world(call, &source, source.build(blueprint, &reading, &options)?)
+            of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
         }
     }
 }
@@ -57,7 +58,12 @@ fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<
     }
 }
 
-fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) -> Result<u8, Failure> {
+fn of_world<const D: usize>(
+    call: &Modes,
+    source: &Source,
+    reading: &scene::Options,
+    mut world: World<D>,
+) -> Result<u8, Failure> {
     let body = match &call.body {
         None => world.bodies().next().ok_or_else(|| Failure::call("the scene has no body"))?,
         Some(name) => world.body(name).ok_or_else(|| {
@@ -68,7 +74,7 @@ fn of_world<const D: usize>(call: &Modes, source: &Source, mut world: World<D>) 
     // To the state about which the body swings.
     let frames = (call.after / world.blueprint().time.frame - 1e-9).ceil() as u64;
     for _ in 0..frames.max(u64::from(call.equilibrium)) {
-        world.frame().map_err(|error| source.run_error(&error, world.time()))?;
+        world.frame().map_err(|error| source.frame_error(&error, &world, reading))?;
     }
     let modes = world.modes(body, call.count).map_err(|error| source.run_error(&error, world.time()))?;
     let name = world.blueprint().bodies[body].name.clone();

@@ -183,7 +183,7 @@ impl Recorder {
     }
 }
 
-/// Pictures per second of simulated time, if every so manieth frame is kept.
+/// Pictures per second of simulated time, where one in so many frames is kept.
 pub(crate) fn film_rate(every: u64, frame: f64) -> f64 {
     1.0 / (every as f64 * frame)
 }

@@ -30,7 +30,7 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
             return Err(Failure::range(option, time, "0 to 1e9"));
         }
     }
-    if let Some(fps) = call.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
+    if let Some(fps) = call.pictures.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
         return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
     }
     let simd = simd_from_environment()?;
@@ -206,7 +206,7 @@ impl Job<'_> {
                 return Err(Failure::Interrupted);
             }
             if frame > first {
-                playback.step(world, frame).map_err(|error| self.source.run_error(&error, world.time()))?;
+                playback.step(world, frame).map_err(|error| self.source.frame_error(&error, world, &self.reading))?;
             }
             compared += 1;
             let damaged = |error: RecordingError| self.failure(&TapeError::Read(error), frame);

@@ -27,7 +27,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
         return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
     }
-    if let Some(fps) = call.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
+    if let Some(fps) = call.pictures.fps.filter(|fps| !(*fps > 0.0 && *fps <= 240.0)) {
         return Err(Failure::range("--fps", fps, "numbers above 0 up to 240"));
     }
     if !(0.0..=1e9).contains(&call.checkpoint_every) {
@@ -179,7 +179,7 @@ impl Job<'_> {
                 break;
             }
             if let Err(error) = world.frame() {
-                failure = Some(source.frame_error(&error, &world, &self.reading.overrides));
+                failure = Some(source.frame_error(&error, &world, &self.reading));
                 break;
             }
             looked_at = looked_at || world.look_at_steps_again();

@@ -110,8 +110,12 @@ impl Source {
             Some(AnyBlueprint::Space(rest)) => World::problems(rest, world),
             None => Vec::new(),
         };
+        // Statics refuses bodies that nothing holds: where that may be missing by another error, it would be a false one.
+        let known = reading.knows_what_holds();
+        let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
+        let placed: Vec<SceneError> = refusals.map(|refusal| self.place(refusal, options)).collect();
         let mut errors = reading.errors;
-        errors.extend(refusals.iter().map(|e| self.place(e, options)));
+        errors.extend(placed);
         // What is counted only comes last.
         errors.sort_by_key(|e| (e.code == "scene.more", e.line.unwrap_or(0), e.column.unwrap_or(0)));
         Failure::Scene(errors)
@@ -155,10 +159,10 @@ impl Source {
         &self,
         error: &WorldError,
         world: &World<D>,
-        overrides: &[(String, String)],
+        options: &scene::Options,
     ) -> Failure {
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
-        let said = of_command(error, command, world.blueprint(), (self.text(), self.file.as_str()), overrides);
+        let said = of_command(error, command, world.blueprint(), (self.text(), self.file.as_str()), &options.overrides);
         Failure::Run(Box::new(timed(said, error, world.time())))
     }
 }

@@ -133,8 +133,18 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
     let folder = folder();
     std::fs::write(folder.path().join("cut.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n").expect("a file");
     std::fs::write(folder.path().join("box.mesh"), "MFEM mesh v1.0\ndimension\n3\n").expect("a file");
+    // Words of a file are quoted as they are, though fields of shapes have the same names.
+    let facet = "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nv";
+    std::fs::write(folder.path().join("k.stl"), facet).expect("a file");
+    let empty = "MFEM mesh v1.0\ndimension\n3\nboundary\n1\n3 2 0 2 1\nvertices\n3\n3\n0 0 0\n1 0 0\n0 1 0\n";
+    std::fs::write(folder.path().join("empty.mesh"), empty).expect("a file");
+    std::fs::write(folder.path().join("t.node"), "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n").expect("a file");
+    std::fs::write(folder.path().join("t.ele"), "2 4 0\n1 1 2 3 4\n1 1 2 3 4\n").expect("a file");
     for (arguments, exit, said) in [
-        (&["mesh", "spot.obj"][..], 2, "--size"),
+        (&["mesh", "k.stl", "--size", "0.1"][..], 2, "`v` does not belong here"),
+        (&["mesh", "empty.mesh"], 2, "the file ends where `elements` should follow"),
+        (&["mesh", "t.node"], 2, "t.ele:3:1"),
+        (&["mesh", "spot.obj"], 2, "--size"),
         (&["mesh", "heart.svg", "--size", "0.1"], 2, "--scale-to"),
         (&["mesh", "spot.obj", "--size", "-1"], 2, "numbers above 0"),
         (&["mesh", "spot.obj", "--size", "9"], 2, "no tetrahedron fits"),

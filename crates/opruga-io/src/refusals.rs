@@ -50,8 +50,20 @@ impl From<&WorldError> for SceneError {
                 let message = format!("{}; the world is at its last good frame", said.message);
                 SceneError { message, hint: Some((*hint).into()), ..said }
             }
+            WorldError::Step { body, message } => {
+                let said = split(say(format!("body `{body}`: {message}")));
+                SceneError { message: format!("{}; the world is at its last good frame", said.message), ..said }
+            }
             // The obstacle says itself which one it is.
             WorldError::Build { place, source } if place == "collider" => split(say(source.to_string())),
+            WorldError::Build { source, .. } => {
+                let mut said = split(say(error.to_string()));
+                if let Some((field, value)) = named_value(&source.message) {
+                    said.path = format!("{}.{field}", said.path);
+                    said.value = Some(value.into());
+                }
+                said
+            }
             other => split(say(other.to_string())),
         }
     }
@@ -63,12 +75,29 @@ fn split(error: SceneError) -> SceneError {
     if let Some((message, hint)) = error.message.split_once("; hint: ").map(|(m, h)| (m.to_string(), h.to_string())) {
         (error.message, error.hint) = (message, Some(hint));
     }
-    if let Some((message, allowed)) =
-        error.message.split_once("; allowed: ").map(|(m, a)| (m.to_string(), a.to_string()))
-    {
-        (error.message, error.allowed) = (message, Some(allowed));
+    for allowed in ["; allowed: ", "; allowed with it: "] {
+        if let Some((message, allowed)) = error.message.split_once(allowed).map(|(m, a)| (m.to_string(), a.to_string()))
+        {
+            (error.message, error.allowed) = (message, Some(allowed));
+        }
     }
     error
+}
+
+/// The field that a message begins with and its value: ``` `field` is 0.5 …```, or ``` `field` of cell 7 is 0.5 …```.
+fn named_value(message: &str) -> Option<(&str, &str)> {
+    let (field, rest) = message.strip_prefix('`')?.split_once('`')?;
+    let rest = match rest.strip_prefix(" of cell ") {
+        Some(cell) => cell.trim_start_matches(|c: char| c.is_ascii_digit()),
+        None => rest,
+    };
+    let rest = rest.strip_prefix(" is ")?;
+    let end = match rest.strip_prefix('"') {
+        Some(text) => text.find('"')? + 2,
+        None => rest.find([' ', ';', ',']).unwrap_or(rest.len()),
+    };
+    let value = &rest[..end];
+    (value.starts_with('"') || value.parse::<f64>().is_ok()).then_some((field, value))
 }
 
 /// The path of the part of the scene that an error is about.
@@ -79,8 +108,10 @@ fn path_of(error: &WorldError) -> String {
     };
     match error {
         WorldError::Build { place, source } => match body(place) {
-            // Where a body lies and how it is stepped is no matter of one model.
-            Some(body) if ["position", "stability"].contains(&source.kind.as_str()) => body,
+            Some(body) if place.starts_with("integrator of ") => format!("{body}.integrator"),
+            // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
+            Some(body) if ["position", "stability", "modes"].contains(&source.kind.as_str()) => body,
+            Some(body) if source.code.starts_with("static.") => body,
             Some(body) => format!("{body}.models.{}", source.kind),
             None if place == "collider" => {
                 let number = source.kind.split(' ').nth(1).unwrap_or("0");
@@ -124,6 +155,12 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     let of_time = |(path, _): &(String, String)| error.code == "step.unstable" && path.starts_with("time.");
     if let Some((path, value)) = overrides.iter().rfind(|set| of_time(set)) {
         return SceneError { file: overrides::named(path, value), ..error };
+    }
+    if error.code == "model.cell_value"
+        && let Some(mesh) = mesh_file(&root, &error.path)
+    {
+        // The field of the scene is right: it is a number of the mesh that is not.
+        return SceneError { file: mesh.into(), ..error };
     }
     let fields: Vec<&str> = error.message.split('`').skip(1).step_by(2).collect();
     match place(&root, &error.path, &fields) {
@@ -204,6 +241,14 @@ fn written<'n, const D: usize>(root: &'n Node, command: &CommandBlueprint<D>) ->
         };
         alike && text("do") == Some(command.action.word()) && table.get("at").is_some_and(begins)
     })
+}
+
+/// The file of the mesh of the body that a path leads to.
+fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
+    let name = path.split('.').nth(1)?;
+    let Data::Array(bodies) = &root.get("body")?.data else { return None };
+    let body = bodies.iter().find(|body| body.get("name").and_then(Node::text) == Some(name))?;
+    body.get("shape")?.get("file")?.text()
 }
 
 /// The place of the last part of a path that is written, or of a field in it; none where nothing of it is.

@@ -299,6 +299,26 @@ fn what_no_body_can_be_made_of_is_refused_with_its_line() {
         assert_eq!((error.code, error.line, error.value.as_deref()), (code, Some(line), Some(value)), "{error}");
         assert!(error.allowed.is_some() || error.hint.is_some(), "{error}");
     }
+    // Two elements of one number, and numbers beyond the promised ones.
+    let modern = |nodes: &str, elements: &str| {
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 {nodes}\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
+             $Elements\n1 2 {elements}\n2 1 2 2\n7 1 2 3\n8 1 3 4\n$EndElements\n"
+        )
+    };
+    let good = modern("1 4", "7 8");
+    assert_eq!(body::<2>("a.msh", good.as_bytes(), Mending::default()).expect("a plate").0.cells.len(), 2);
+    for (file, code, line, value) in [
+        (plate("", &TWO).replace("\n2 2 0 1 3 4", "\n1 2 0 1 3 4"), "mesh.duplicate_element", 14, "1"),
+        (good.replace("\n8 1 3 4", "\n7 1 3 4"), "mesh.duplicate_element", 20, "7"),
+        (modern("1 3", "7 8"), "msh.size", 5, "1, 3"),
+        (modern("2 4", "7 8"), "msh.size", 5, "2, 4"),
+        (modern("1 4", "1 2"), "msh.size", 17, "1, 2"),
+    ] {
+        let error = body::<2>("a.msh", file.as_bytes(), Mending::default()).map(|_| file.clone()).unwrap_err();
+        println!("{error}");
+        assert_eq!((error.code, error.line, error.value.as_deref()), (code, Some(line), Some(value)), "{error}");
+    }
     let error = body::<2>("cube.msh", &bytes("mujoco/cube_22_ascii_vol_gmshApp.msh"), Mending::default()).unwrap_err();
     assert_eq!((error.code, error.line), ("mesh.dimension", Some(23)), "{error}");
     // Three tetrahedra at one face.

@@ -172,6 +172,7 @@ fn bad_obj_files_are_refused_with_their_line() {
         (first, "face 1 2 3", "obj.syntax", Some(11)),
         ("v -1 -1\t-1", "v -1,0 -1 -1", "shape.number", Some(3)),
         ("v -1 -1\t-1", "v -1 -1", "obj.syntax", Some(3)),
+        ("v -1 -1\t-1", "v -1 -1 -1 0.5 0.5", "obj.syntax", Some(3)),
         ("v -1 -1\t-1", "v nan 0 0", "scene.not_finite", Some(3)),
         ("v -1 -1\t-1", "v 1e999 0 0", "scene.not_finite", Some(3)),
         ("v -1 -1\t-1", "v one 0 0", "shape.number", Some(3)),

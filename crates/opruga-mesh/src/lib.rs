@@ -67,6 +67,7 @@ pub use face::{CutFace, FaceError, cut_face};
 pub use geometry::signed_volume;
 pub use measure::{Measure, Share};
 pub use mesh::{Cells, MAXIMUM_NODES, Mesh};
+pub use plane::LARGEST_ANGLE;
 pub use polygon::Polygon;
 pub use quadratic::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES, triangle_parts};
 pub use quality::{CellMeasure, CellQuality};

@@ -12,6 +12,18 @@ pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
     Mesh { positions, facets, ..Mesh::default() }
 }
 
+/// The largest start angle [rad]: farther round, the angles of neighbouring vertices differ by rounding, and from 1e17 on not at all.
+pub const LARGEST_ANGLE: f64 = 1e6;
+
+/// Refuses an angle so far round that rounding would move nodes [rad].
+fn angle(what: &'static str, value: f64) -> Result<(), MeshError> {
+    if (-LARGEST_ANGLE..=LARGEST_ANGLE).contains(&value) {
+        Ok(())
+    } else {
+        Err(MeshError::Size { what, value, must: "from -1e6 to 1e6 rad" })
+    }
+}
+
 /// Points on a circle, counter-clockwise from the start angle.
 fn circle(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Vec<[f64; 2]> {
     let at = |i: u32| {
@@ -28,13 +40,13 @@ impl Mesh<2> {
     /// Its area is ½ n r² sin(2π/n), its length 2 n r sin(π/n).
     ///
     /// # Errors
-    /// [`MeshError::Count`] for fewer than 3 vertices or too many; [`MeshError::Size`] for a radius that is not positive and finite, or a centre or
-    /// angle that is not finite.
+    /// [`MeshError::Count`] for fewer than 3 vertices or too many; [`MeshError::Size`] for a radius that is not positive and finite, a centre that is
+    /// not finite, or an angle beyond ±[`LARGEST_ANGLE`].
     pub fn ring(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Result<Mesh<2>, MeshError> {
         count("number of vertices", vertices, 3, MAXIMUM_NODES)?;
         positive("radius", radius)?;
         finite("centre", &center)?;
-        finite("start angle", &[start_angle])?;
+        angle("start angle", start_angle)?;
         Ok(outline(circle(radius, vertices, center, start_angle)))
     }
 
@@ -55,7 +67,7 @@ impl Mesh<2> {
         limit_nodes(u64::from(sides) * u64::from(vertices_per_side))?;
         positive("radius", radius)?;
         finite("centre", &center)?;
-        finite("start angle", &[start_angle])?;
+        angle("start angle", start_angle)?;
         let corners = circle(radius, sides, center, start_angle);
         let mut positions = Vec::with_capacity(sides as usize * vertices_per_side as usize);
         for (side, a) in corners.iter().enumerate() {

@@ -296,6 +296,12 @@ fn impossible_numbers_are_refused() {
         assert!(Mesh::grid([0.0; 2], [radius, 1.0], [1, 1]).is_err());
     }
     assert!(Mesh::ring(1.0, 8, [0.0, f64::NAN], 0.0).is_err());
+    // So far round that all nodes would lie at one point.
+    for angle in [1e20, -1e20, f64::NAN] {
+        assert!(matches!(Mesh::ring(1.0, 8, [0.0; 2], angle), Err(MeshError::Size { what: "start angle", .. })));
+        assert!(Mesh::regular_polygon(5, 1.0, 2, [0.0; 2], angle).is_err());
+    }
+    assert!(Mesh::ring(1.0, 8, [0.0; 2], -1e6).is_ok());
     assert!(matches!(Mesh::grid([0.0; 3], [1.0; 3], [1 << 20; 3]), Err(MeshError::TooManyNodes { .. })));
     assert!(matches!(Mesh::grid([0.0; 2], [1.0; 2], [0, 1]), Err(MeshError::Count { .. })));
     assert!(Mesh::box_surface([0.0; 3], [1.0; 3], [1 << 25; 3]).is_err());

@@ -6,10 +6,10 @@ use crate::checkpoints::Calling;
 use crate::failure::{Failure, print_data};
 use crate::recordings;
 use crate::source::{Opened, open};
-use opruga::WorldError;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::math::words::counted;
 use opruga::recordings::TapeError;
+use opruga::{World, WorldError};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -47,12 +47,12 @@ fn of_scene<const D: usize>(
     let (mut without, mut with, mut around, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for round in 0..2 * call.rounds {
         let mut world = new()?;
-        let failed = |error: WorldError, time: f64| source.run_error(&error, time);
+        let failed = |error: WorldError, world: &World<D>| source.frame_error(&error, world, reading);
         let start = now();
         // One of a pair comes first as often as the other.
         if round % 4 == 0 || round % 4 == 3 {
             for _ in 0..frames {
-                world.frame().map_err(|error| failed(error, world.time()))?;
+                world.frame().map_err(|error| failed(error, &world))?;
             }
             without.push(since(start));
             continue;
@@ -62,7 +62,7 @@ fn of_scene<const D: usize>(
         let beginning = since(start);
         for _ in 0..frames {
             tape.step(&mut world).map_err(|error| match error {
-                TapeError::World(error) => failed(error, world.time()),
+                TapeError::World(error) => failed(error, &world),
                 error => error.into(),
             })?;
         }

@@ -42,7 +42,7 @@ fn of_scene<const D: usize>(
     let nodes: usize = world.bodies().map(|body| world.node_count(body)).sum();
     let machine = Machine::measure(world.simd());
 
-    let frame = |world: &mut World<D>| world.frame().map_err(|error| source.run_error(&error, world.time()));
+    let frame = |world: &mut World<D>| world.frame().map_err(|error| source.frame_error(&error, world, reading));
     for _ in 0..call.after {
         frame(&mut world)?;
     }

@@ -303,7 +303,7 @@ fn a_film_that_cannot_be_is_refused_before_the_run() {
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
-/// Pictures come every so manieth frame of the scene: where that gives another rate than the call asks for, it is told.
+/// There is a picture for one in so many frames of the scene: where that gives another rate than the call asks for, it is told.
 #[test]
 fn a_rate_of_pictures_that_frames_do_not_have_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -348,6 +348,12 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     assert!(said(&output).contains(told), "{}", said(&output));
     assert!(said(&output).contains("= hint: another `value`, or substeps >= "), "{}", said(&output));
     assert!(said(&output).contains("written to h/\n"), "{}", said(&output));
+    // Whatever else steps through the scene names the command too.
+    let timed = ["bench", "scene", "h.toml", "--frames", "9"];
+    for call in [&["modes", "h.toml", "--after", "0.2", "--out", "m"][..], &timed] {
+        let output = opruga(folder.path(), call);
+        assert!(code(&output) == 2 && said(&output).contains(told), "{call:?}: {}", said(&output));
+    }
 }
 
 /// What a command makes unstable is told with its line, and what the hint says helps.

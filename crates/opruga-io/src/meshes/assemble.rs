@@ -16,17 +16,18 @@ pub struct Mending {
     pub leave_out_unreferenced: bool,
 }
 
-/// Makes a body of what a file holds; nodes keep their order. Returns what was left out or mended, counted.
+/// Makes a body of what a file, or one of nodes and one of elements, holds; nodes keep their order. Returns what was left out or mended, counted.
 ///
 /// # Errors
 /// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
 /// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
 pub(super) fn assemble<const D: usize>(
     found: Found,
-    scanner: &Scanner<'_>,
+    nodes: &Scanner<'_>,
+    items: &Scanner<'_>,
     mending: Mending,
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
-    let work = Assembly { found: &found, scanner };
+    let work = Assembly { found: &found, nodes, items };
     let dimension = work.dimension::<D>()?;
     let mut notices = found.notices.clone();
     let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, ..Mesh::default() };
@@ -37,7 +38,7 @@ pub(super) fn assemble<const D: usize>(
     work.lower(dimension, &order, mesh.nodes())?;
     let named = |error: opruga_mesh::MeshError| {
         let error = SceneError::new("mesh.topology", visible(&error.to_string()));
-        SceneError { file: scanner.file.to_string(), ..error }
+        SceneError { file: items.file.to_string(), ..error }
     };
     mesh.validate().map_err(named)?;
     if dimension > 1 {
@@ -51,16 +52,18 @@ pub(super) fn assemble<const D: usize>(
 
 struct Assembly<'a> {
     found: &'a Found,
-    scanner: &'a Scanner<'a>,
+    /// Where nodes stand, and where elements do.
+    nodes: &'a Scanner<'a>,
+    items: &'a Scanner<'a>,
 }
 
 impl Assembly<'_> {
     fn at(&self, item: &Item, code: &'static str, message: String) -> SceneError {
-        self.scanner.error(code, message, item.place)
+        self.items.error(code, message, item.place)
     }
 
     fn file(&self, error: SceneError) -> SceneError {
-        SceneError { file: self.scanner.file.to_string(), ..error }
+        SceneError { file: self.items.file.to_string(), ..error }
     }
 
     /// The dimension of the elements that make up the body.
@@ -104,7 +107,7 @@ impl Assembly<'_> {
                 let number = self.found.node_numbers.get(node).copied().unwrap_or(node as u64);
                 let message = format!("node {number} lies outside of the plane of the first node");
                 let error = match self.found.node_places.get(node) {
-                    Some(place) => self.scanner.error("mesh.dimension", message, *place),
+                    Some(place) => self.nodes.error("mesh.dimension", message, *place),
                     None => self.file(SceneError::new("mesh.dimension", message)),
                 };
                 let error = error.value(points[node][2].to_string()).allowed(format!("z = {}", first[2]));
@@ -355,7 +358,7 @@ impl Assembly<'_> {
             _ => format!("{count} nodes belong to no cell, the first is node {}", self.number(first)),
         };
         let error = match self.found.node_places.get(first as usize) {
-            Some(place) => self.scanner.error("mesh.unreferenced", message, *place),
+            Some(place) => self.nodes.error("mesh.unreferenced", message, *place),
             None => self.file(SceneError::new("mesh.unreferenced", message)),
         };
         let error = error.value(self.number(first).to_string()).allowed("nodes of cells");

@@ -128,6 +128,19 @@ impl Found {
         }
     }
 
+    /// Refuses elements with a number that another one has.
+    ///
+    /// # Errors
+    /// `mesh.duplicate_element` with the place of the second one.
+    pub(super) fn distinct_elements(&self, scanner: &Scanner<'_>) -> Result<(), SceneError> {
+        let mut order: Vec<(u64, usize)> = self.items.iter().map(|item| (item.number, item.place)).collect();
+        order.sort_unstable();
+        let pairs = order.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        let Some(&(number, place)) = pairs.map(|pair| &pair[1]).min_by_key(|second| second.1) else { return Ok(()) };
+        let error = scanner.error("mesh.duplicate_element", format!("two elements have the number {number}"), place);
+        Err(error.value(number.to_string()).allowed("a number of its own for every element"))
+    }
+
     /// Says what of the file has no place in a body at rest.
     pub(super) fn left_out(&mut self, what: String, value: String) {
         self.notices.push(SceneError::new("mesh.left_out", what).value(value));

@@ -10,7 +10,9 @@ use super::found::{Found, Kind, Numbers, SUPPORTED, one};
 use super::scanner::Scanner;
 use super::{gmsh_2, gmsh_4};
 use crate::problem::{SceneError, visible};
+use opruga_math::words::counted;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 pub(super) const SYNTAX: &str = "msh.syntax";
 pub(super) const SIZE: &str = "msh.size";
@@ -35,6 +37,11 @@ pub(super) struct Context {
     pub(super) names: Names,
     /// Physical groups of entities, by dimension and number (version 4.1).
     pub(super) entities: BTreeMap<(usize, i32), Vec<i64>>,
+    /// Whether the file has a section that lists entities, and one that lists those of parts.
+    pub(super) listed: bool,
+    pub(super) divided: bool,
+    /// How often values of a name came again, as those of later steps do.
+    later: BTreeMap<String, u64>,
 }
 
 /// Reads a file.
@@ -53,8 +60,16 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         };
         let (section, _) = (section.to_string(), scanner.line());
         match section.as_str() {
+            // What comes behind the elements would no longer be theirs.
+            "PhysicalNames" | "Entities" if elements && (modern || section == "PhysicalNames") => {
+                let error = scanner.error(SYNTAX, format!("the section ${section} comes behind the elements"), from);
+                return Err(error.value(format!("${section}")).allowed("before $Elements"));
+            }
             "PhysicalNames" => physical_names(scanner, &mut context.names)?,
-            "Entities" if modern => gmsh_4::entities(scanner, &mut context)?,
+            "Entities" if modern && !context.listed => {
+                gmsh_4::entities(scanner, &mut context)?;
+                context.listed = true;
+            }
             "Nodes" if numbers.is_none() => {
                 if modern {
                     gmsh_4::nodes(scanner, &mut context.found)?;
@@ -73,19 +88,27 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
                 } else {
                     gmsh_2::elements(scanner, &mut context, numbers)?;
                 }
+                context.found.distinct_elements(scanner)?;
                 elements = true;
             }
-            "ElementData" if elements => element_data(scanner, &mut context.found)?,
-            "Nodes" | "Elements" => {
+            "ElementData" if elements => element_data(scanner, &mut context)?,
+            "Nodes" | "Elements" | "Entities" if modern || section != "Entities" => {
                 let error = scanner.error(SYNTAX, format!("there is a second section ${section}"), from);
                 return Err(error.value(format!("${section}")).allowed("one"));
             }
-            other => skip(scanner, other, from, &mut context.found)?,
+            other => {
+                context.divided |= other == "PartitionedEntities";
+                skip(scanner, other, from, &mut context.found)?;
+            }
         }
         scanner.expect(SYNTAX, &format!("$End{section}"))?;
     }
     if !elements {
         return Err(scanner.ends(SYNTAX, if numbers.is_some() { "`$Elements`" } else { "`$Nodes`" }));
+    }
+    for (name, count) in &context.later {
+        let what = counted(*count, "later step is", "later steps are");
+        context.found.left_out(format!("{what} left out of the values `{}`", visible(name)), count.to_string());
     }
     Ok(context.found)
 }
@@ -140,14 +163,19 @@ fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), Sc
             let error = scanner.error(SYNTAX, format!("a group has {dimension} dimensions"), from);
             return Err(error.value(dimension.to_string()).allowed("0 to 3"));
         }
-        let (number, _) = scanner.whole::<i64>(SYNTAX, "the number of a group")?;
+        let (number, at) = scanner.whole::<i64>(SYNTAX, "the number of a group")?;
         let (text, from) = scanner.line();
         let Some(name) = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|name| !name.is_empty())
         else {
             let error = scanner.error(SYNTAX, "the name of a group does not stand in quotes", from);
             return Err(error.value(visible(&text)).allowed("\"name\""));
         };
-        names.0.insert((dimension, number), name.to_string());
+        if let Some(first) = names.0.insert((dimension, number), name.to_string()) {
+            let message =
+                format!("group {number} of {dimension} dimensions has the name `{}` already", visible(&first));
+            let error = scanner.error(SYNTAX, message, at).value(number.to_string());
+            return Err(error.allowed("one name for every group of a dimension"));
+        }
     }
     Ok(())
 }
@@ -168,7 +196,8 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
 }
 
 /// `$ElementData`: a number for every element, or for some.
-fn element_data(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), SceneError> {
+fn element_data(scanner: &mut Scanner<'_>, context: &mut Context) -> Result<(), SceneError> {
+    let found = &mut context.found;
     let start = scanner.at;
     let (texts, from) = scanner.whole::<u64>(SYNTAX, "the number of texts")?;
     let texts = scanner.fits(SIZE, texts, 2, "texts", from)?;
@@ -214,6 +243,9 @@ fn element_data(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), Scen
     order.sort_unstable();
     let mut values = vec![f64::NAN; found.items.len()];
     for _ in 0..scanner.fits(SIZE, count, 4, "values", from)? {
+        if !scanner.binary {
+            scanner.peek();
+        }
         let place = scanner.at;
         let (number, value) = if scanner.binary {
             let number = scanner.binary_i32(SIZE, "the number of an element")?;
@@ -226,9 +258,20 @@ fn element_data(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), Scen
                 scanner.error("mesh.index", format!("a value names element {number}, which is not there"), place);
             return Err(error.value(number.to_string()).allowed("the number of an element"));
         };
-        values[order[at].1] = value;
+        let slot = &mut values[order[at].1];
+        if !slot.is_nan() {
+            let error = scanner.error("mesh.duplicate_element", format!("a value names element {number} twice"), place);
+            return Err(error.value(number.to_string()).allowed("every element once"));
+        }
+        *slot = value;
     }
-    found.item_values.insert(name, values);
+    match found.item_values.entry(name) {
+        Entry::Vacant(first) => {
+            first.insert(values);
+        }
+        // A body at rest has one number, that of the first step.
+        Entry::Occupied(first) => *context.later.entry(first.key().clone()).or_default() += 1,
+    }
     Ok(())
 }
 

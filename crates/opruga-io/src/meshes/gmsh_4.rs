@@ -32,6 +32,18 @@ fn line_end(scanner: &mut Scanner<'_>, of: &str) -> Result<(), SceneError> {
     if scanner.binary { Ok(()) } else { scanner.line_end(SYNTAX, of) }
 }
 
+/// The dimension of an entity, with its place.
+fn dimension(scanner: &mut Scanner<'_>) -> Result<(usize, usize), SceneError> {
+    let (dimension, at) = short(scanner, "the dimension of an entity")?;
+    match usize::try_from(dimension) {
+        Ok(dimension) if dimension <= 3 => Ok((dimension, at)),
+        _ => {
+            let error = scanner.error(SYNTAX, format!("an entity has {dimension} dimensions"), at);
+            Err(error.value(dimension.to_string()).allowed("0 to 3"))
+        }
+    }
+}
+
 /// A count of things that take so many bytes in binary, and two in a text.
 fn count(scanner: &mut Scanner<'_>, bytes: u64, what: &str) -> Result<usize, SceneError> {
     let (count, from) = long(scanner, &format!("the number of {what}"))?;
@@ -46,7 +58,7 @@ pub(super) fn entities(scanner: &mut Scanner<'_>, context: &mut Context) -> Resu
     }
     for (dimension, of) in counts.into_iter().enumerate() {
         for _ in 0..of {
-            let (tag, _) = short(scanner, "the number of an entity")?;
+            let (tag, at) = short(scanner, "the number of an entity")?;
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 number(scanner, "a coordinate of an entity")?;
             }
@@ -60,10 +72,36 @@ pub(super) fn entities(scanner: &mut Scanner<'_>, context: &mut Context) -> Resu
                 }
             }
             line_end(scanner, "an entity")?;
-            context.entities.insert((dimension, tag), groups);
+            if context.entities.insert((dimension, tag), groups).is_some() {
+                let message = format!("two entities of {dimension} dimensions have the number {tag}");
+                let error = scanner.error(SYNTAX, message, at).value(tag.to_string());
+                return Err(error.allowed("a number of its own for every entity of a dimension"));
+            }
         }
     }
     Ok(())
+}
+
+/// The lowest and the highest number that the file promises, with the place of the first.
+fn bounds(scanner: &mut Scanner<'_>, of: &str) -> Result<([u64; 2], usize), SceneError> {
+    let (lowest, from) = long(scanner, &format!("the lowest number of {of}"))?;
+    let (highest, _) = long(scanner, &format!("the highest number of {of}"))?;
+    Ok(([lowest, highest], from))
+}
+
+/// Refuses numbers that are not the promised ones.
+fn within(
+    scanner: &Scanner<'_>,
+    ([lowest, highest], from): ([u64; 2], usize),
+    numbers: impl Iterator<Item = u64>,
+    what: &str,
+) -> Result<(), SceneError> {
+    let there = numbers
+        .fold(None, |bounds: Option<[u64; 2]>, n| Some(bounds.map_or([n, n], |[low, high]| [low.min(n), high.max(n)])));
+    let Some([low, high]) = there.filter(|[low, high]| *low < lowest || *high > highest) else { return Ok(()) };
+    let message =
+        format!("numbers of {what} from {lowest} to {highest} are promised, but those from {low} to {high} are there");
+    Err(scanner.error(SIZE, message, from).value(format!("{lowest}, {highest}")).allowed(format!("{low}, {high}")))
 }
 
 /// `$Nodes`: blocks of numbers and then of coordinates, parametric ones behind them.
@@ -71,18 +109,10 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), 
     let blocks = count(scanner, 20, "blocks")?;
     let (promised, from) = long(scanner, "the number of nodes")?;
     scanner.fits(SIZE, promised, if scanner.binary { 32 } else { 8 }, "nodes", from)?;
-    long(scanner, "the lowest number of a node")?;
-    long(scanner, "the highest number of a node")?;
+    let bounds = bounds(scanner, "a node")?;
     line_end(scanner, "the number of nodes")?;
     for _ in 0..blocks {
-        let (dimension, at) = short(scanner, "the dimension of an entity")?;
-        let dimension = match usize::try_from(dimension) {
-            Ok(dimension) if dimension <= 3 => dimension,
-            _ => {
-                let error = scanner.error(SYNTAX, format!("an entity has {dimension} dimensions"), at);
-                return Err(error.value(dimension.to_string()).allowed("0 to 3"));
-            }
-        };
+        let (dimension, _) = self::dimension(scanner)?;
         short(scanner, "the number of an entity")?;
         let (parametric, at) = short(scanner, "0 or 1")?;
         if !(0..=1).contains(&parametric) {
@@ -116,7 +146,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), 
         );
         return Err(error.value(promised.to_string()).allowed(found.positions.len().to_string()));
     }
-    Ok(())
+    within(scanner, bounds, found.node_numbers.iter().copied(), "nodes")
 }
 
 /// `$Elements`: blocks of elements of one type and one entity, which knows its physical groups.
@@ -124,14 +154,29 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
     let blocks = count(scanner, 20, "blocks")?;
     let (promised, from) = long(scanner, "the number of elements")?;
     scanner.fits(SIZE, promised, if scanner.binary { 16 } else { 4 }, "elements", from)?;
-    long(scanner, "the lowest number of an element")?;
-    long(scanner, "the highest number of an element")?;
+    let bounds = bounds(scanner, "an element")?;
     line_end(scanner, "the number of elements")?;
     for _ in 0..blocks {
-        short(scanner, "the dimension of an entity")?;
-        let (tag, _) = short(scanner, "the number of an entity")?;
-        let (kind, at) = short(scanner, "the type of elements")?;
-        let kind = element_type(scanner, i64::from(kind), at)?;
+        let (dimension, at) = self::dimension(scanner)?;
+        let (tag, at_tag) = short(scanner, "the number of an entity")?;
+        let (kind, at_kind) = short(scanner, "the type of elements")?;
+        let kind = element_type(scanner, i64::from(kind), at_kind)?;
+        if dimension != kind.dimension() {
+            let message = format!("an entity of {dimension} dimensions has elements of the kind {}", kind.name());
+            let error = scanner.error(SYNTAX, message, at);
+            return Err(error.value(dimension.to_string()).allowed(kind.dimension().to_string()));
+        }
+        // Parts of a mesh that is divided have entities of their own, in a section that is left out.
+        if context.listed && !context.divided && !context.entities.contains_key(&(dimension, tag)) {
+            let tags: Vec<i32> = context.entities.keys().filter(|key| key.0 == dimension).map(|key| key.1).collect();
+            let allowed = match &tags[..] {
+                [] => format!("$Entities lists none of {dimension} dimensions"),
+                [only] => only.to_string(),
+                [first, .., last] => format!("one of the {} listed from {first} to {last}", tags.len()),
+            };
+            let message = format!("$Entities lists no entity {tag} of {dimension} dimensions");
+            return Err(scanner.error("mesh.index", message, at_tag).value(tag.to_string()).allowed(allowed));
+        }
         let own = count(scanner, 8 * (1 + kind.nodes() as u64), "elements")?;
         line_end(scanner, "a block of elements")?;
         let groups: Vec<String> = context
@@ -161,5 +206,5 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
         let error = scanner.error(SIZE, format!("{promised} elements are promised, but {there} are there"), from);
         return Err(error.value(promised.to_string()).allowed(there.to_string()));
     }
-    Ok(())
+    within(scanner, bounds, context.found.items.iter().map(|item| item.number), "elements")
 }

@@ -15,16 +15,26 @@ const SIZE: &str = "medit.size";
 /// Reads a file.
 ///
 /// # Errors
-/// `medit.syntax`, `medit.size`, `mesh.index`, `mesh.unsupported_element` with the line.
+/// `medit.syntax`, `medit.size`, `medit.version`, `mesh.index`, `mesh.unsupported_element` with the line.
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     scanner.expect(SYNTAX, "MeshVersionFormatted")?;
-    scanner.whole::<u32>(SYNTAX, "the version")?;
+    let (version, from) = scanner.whole::<u32>(SYNTAX, "the version")?;
+    // 1 and 2 are single and double precision, 3 and 4 larger files: as text they look the same.
+    if !(1..=4).contains(&version) {
+        let error = scanner.error("medit.version", format!("version `{version}` cannot be read"), from);
+        return Err(error.value(version.to_string()).allowed("1 to 4"));
+    }
     let (mut found, mut dimension, mut seen) = (Found::default(), 0, false);
+    let mut kinds = Vec::new();
     loop {
         // The keyword End is asked for: without it a file that is cut off would look whole.
         let (word, from) = scanner.word(SYNTAX, "`End`")?;
         let kind = match word {
             "End" => break,
+            "Dimension" if dimension > 0 => {
+                let error = scanner.error(SYNTAX, format!("there is a second section `{word}`"), from);
+                return Err(error.value(visible(word)).allowed("one"));
+            }
             "Dimension" => {
                 let (number, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
                 if number != 2 && number != 3 {
@@ -85,11 +95,16 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             let error = scanner.error(SYNTAX, format!("{word} come before the vertices"), from);
             return Err(error.value(visible(word)).allowed("Vertices"));
         }
+        if kinds.contains(&kind) {
+            let error = scanner.error(SYNTAX, format!("there is a second section `{word}`"), from);
+            return Err(error.value(visible(word)).allowed("one"));
+        }
+        kinds.push(kind);
         elements(scanner, &mut found, kind)?;
     }
-    if !scanner.is_done() {
-        let at = scanner.at;
-        return Err(scanner.error(SYNTAX, "something follows `End`", at).value("more").allowed("the end of the file"));
+    if let Some((word, from)) = scanner.peek() {
+        let error = scanner.error(SYNTAX, "something follows `End`", from);
+        return Err(error.value(visible(word)).allowed("the end of the file"));
     }
     Ok(found)
 }

@@ -12,6 +12,9 @@ use crate::problem::{SceneError, visible};
 const SYNTAX: &str = "mfem.syntax";
 const SIZE: &str = "mfem.size";
 
+/// Sections of which a file has one.
+const SECTIONS: [&str; 4] = ["dimension", "elements", "boundary", "vertices"];
+
 /// An element before the number of vertices is known.
 struct Draft {
     kind: Kind,
@@ -33,36 +36,57 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         let error = scanner.error("mfem.version", format!("version `{}` cannot be read", visible(version)), from);
         return Err(error.value(visible(version)).allowed("v1.0, v1.2, v1.3"));
     }
-    let (mut drafts, mut found, mut vertices) = (Vec::new(), Found::default(), false);
+    let (mut drafts, mut found, mut dimension) = (Vec::new(), Found::default(), None);
+    let mut seen: Vec<&str> = Vec::new();
+    let mut ended = false;
     while let Some((section, from)) = scanner.peek() {
+        if ended {
+            let error = scanner.error(SYNTAX, "something follows `mfem_mesh_end`", from);
+            return Err(error.value(visible(section)).allowed("the end of the file"));
+        }
         scanner.word(SYNTAX, "a section")?;
-        match section {
-            "dimension" => {
-                let (dimension, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
-                if !(1..=3).contains(&dimension) {
-                    let error = scanner.error(SYNTAX, format!("the dimension is {dimension}"), at);
-                    return Err(error.value(dimension.to_string()).allowed("1, 2 or 3"));
+        if let Some(single) = SECTIONS.into_iter().find(|single| section == *single) {
+            if seen.contains(&single) {
+                let error = scanner.error(SYNTAX, format!("there is a second section `{single}`"), from);
+                return Err(error.value(single).allowed("one"));
+            }
+            seen.push(single);
+        }
+        match (section, dimension) {
+            ("dimension", _) => {
+                let (number, at) = scanner.whole::<usize>(SYNTAX, "the dimension")?;
+                if !(1..=3).contains(&number) {
+                    let error = scanner.error(SYNTAX, format!("the dimension is {number}"), at);
+                    return Err(error.value(number.to_string()).allowed("1, 2 or 3"));
                 }
+                dimension = Some(number);
             }
-            "elements" | "boundary" => elements(scanner, &mut drafts, section == "boundary")?,
-            "vertices" => {
-                self::vertices(scanner, &mut found)?;
-                vertices = true;
+            ("elements" | "boundary" | "vertices", None) => {
+                let error = scanner.error(SYNTAX, format!("`{section}` stands before `dimension`"), from);
+                return Err(error.value(section).allowed("dimension"));
             }
-            "mfem_mesh_end" => {}
-            "nodes" => {
+            ("elements" | "boundary", Some(dimension)) => {
+                elements(scanner, &mut drafts, dimension, section == "boundary")?;
+            }
+            ("vertices", Some(dimension)) => vertices(scanner, &mut found, dimension)?,
+            ("mfem_mesh_end", _) => ended = true,
+            ("nodes", _) => {
                 let error = scanner.error("mfem.curved", "curved elements (`nodes`) cannot be read", from);
                 let hint = "save the mesh without `nodes`, its sides straight; curved cells of second order can be read from Gmsh and VTK files";
                 return Err(error.value("nodes").allowed("`vertices` with coordinates").hint(hint));
             }
-            other => {
+            (other, _) => {
                 let error = scanner.error(SYNTAX, format!("`{}` is no section that can be read", visible(other)), from);
                 return Err(error.value(visible(other)).allowed("dimension, elements, boundary, vertices"));
             }
         }
     }
-    if !vertices {
-        return Err(scanner.ends(SYNTAX, "`vertices`"));
+    if let Some(missing) = ["elements", "vertices"].into_iter().find(|section| !seen.contains(section)) {
+        return Err(scanner.ends(SYNTAX, &format!("`{missing}`")));
+    }
+    // Since version 1.2 a mark tells that the mesh is whole.
+    if version != "v1.0" && !ended {
+        return Err(scanner.ends(SYNTAX, "`mfem_mesh_end`"));
     }
     for (number, draft) in drafts.iter().enumerate() {
         let mut nodes = [0; 10];
@@ -81,7 +105,14 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     Ok(found)
 }
 
-fn elements(scanner: &mut Scanner<'_>, drafts: &mut Vec<Draft>, boundary: bool) -> Result<(), SceneError> {
+/// `elements` fill a mesh of so many dimensions, those of its `boundary` have one less.
+fn elements(
+    scanner: &mut Scanner<'_>,
+    drafts: &mut Vec<Draft>,
+    dimension: usize,
+    boundary: bool,
+) -> Result<(), SceneError> {
+    let wanted = dimension - usize::from(boundary);
     let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of elements")?;
     scanner.line_end(SYNTAX, "the number of elements")?;
     for _ in 0..scanner.fits(SIZE, count, 6, "elements", from)? {
@@ -105,6 +136,15 @@ fn elements(scanner: &mut Scanner<'_>, drafts: &mut Vec<Draft>, boundary: bool) 
                 return Err(error.value(geometry.to_string()).allowed(SUPPORTED));
             }
         };
+        if kind.dimension() != wanted {
+            let section = if boundary { "boundary" } else { "elements" };
+            let message =
+                format!("`{section}` of a mesh of {dimension} dimensions has elements of the kind {}", kind.name());
+            let allowed =
+                ["0 (point)", "1 (line)", "2 (triangle) or 3 (quadrilateral)", "4 (tetrahedron) or 5 (hexahedron)"];
+            let error = scanner.error("mesh.mixed_dimension", message, at).value(geometry.to_string());
+            return Err(error.allowed(allowed[wanted]));
+        }
         let mut nodes = Vec::with_capacity(kind.nodes());
         for _ in 0..kind.nodes() {
             nodes.push(scanner.whole::<u64>(SYNTAX, "a vertex of an element")?);
@@ -115,15 +155,16 @@ fn elements(scanner: &mut Scanner<'_>, drafts: &mut Vec<Draft>, boundary: bool) 
     Ok(())
 }
 
-fn vertices(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), SceneError> {
+fn vertices(scanner: &mut Scanner<'_>, found: &mut Found, least: usize) -> Result<(), SceneError> {
     let (count, from) = scanner.whole::<u64>(SYNTAX, "the number of vertices")?;
     if scanner.peek().is_some_and(|(word, _)| word == "nodes") {
         return Ok(()); // coordinates stand in `nodes`, which is refused
     }
     let (dimension, at) = scanner.whole::<usize>(SYNTAX, "the number of coordinates")?;
-    if !(1..=3).contains(&dimension) {
+    if !(least..=3).contains(&dimension) {
         let error = scanner.error(SYNTAX, format!("vertices have {dimension} coordinates"), at);
-        return Err(error.value(dimension.to_string()).allowed("1, 2 or 3"));
+        let allowed = ["1, 2 or 3", "2 or 3", "3"][least - 1];
+        return Err(error.value(dimension.to_string()).allowed(allowed));
     }
     for number in 0..scanner.fits(SIZE, count, 2 * dimension as u64, "vertices", from)? {
         scanner.peek();

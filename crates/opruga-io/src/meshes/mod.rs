@@ -19,6 +19,7 @@ mod mfem;
 mod scanner;
 mod tetgen;
 mod vtk;
+mod vtk_numbers;
 mod vtu;
 mod write;
 
@@ -43,6 +44,16 @@ pub const ENDINGS: &str = ".msh, .vtk, .vtu, .mesh, .mfem, .node, .ele";
 pub struct MeshFile<'a> {
     found: Found,
     scanner: Scanner<'a>,
+    beside: Option<Beside>,
+}
+
+/// TetGen's other file, for the places in it.
+#[derive(Debug)]
+struct Beside {
+    name: String,
+    bytes: Arc<[u8]>,
+    /// Whether it holds the nodes, and not the elements.
+    nodes: bool,
 }
 
 /// Whether a file of this name may hold a mesh.
@@ -64,6 +75,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
         let error = scanner.error("mesh.empty", "the file is empty", 0);
         return Err(error.value("0 bytes").allowed("a mesh"));
     }
+    let mut beside = None;
     let found = match ending(name).as_str() {
         "msh" => gmsh::read(&mut scanner)?,
         "vtk" => vtk::read(&mut scanner)?,
@@ -98,13 +110,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
             let mut found = tetgen::nodes(&mut nodes)?;
             let numbers = Numbers::of(&found, &nodes)?;
             tetgen::elements(&mut elements, &mut found, &numbers)?;
-            // Only places in the file that was named can be shown.
-            scanner.comment = Some(b'#');
-            if kind == "node" {
-                found.items.iter_mut().for_each(|item| item.place = 0);
-            } else {
-                found.node_places.clear();
-            }
+            beside = Some(Beside { name: other, bytes: more, nodes: kind == "ele" });
             found
         }
         other => {
@@ -114,7 +120,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
             return Err(SceneError { file: name.to_string(), ..error });
         }
     };
-    Ok(MeshFile { found, scanner })
+    Ok(MeshFile { found, scanner, beside })
 }
 
 impl MeshFile<'_> {
@@ -134,7 +140,13 @@ impl MeshFile<'_> {
     /// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
     /// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
     pub fn assemble<const D: usize>(self, mending: Mending) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
-        assemble::assemble(self.found, &self.scanner, mending)
+        let other = self.beside.as_ref().map(|beside| Scanner::new(&beside.name, &beside.bytes, None));
+        let (nodes, items) = match (&other, &self.beside) {
+            (Some(other), Some(Beside { nodes: true, .. })) => (other, &self.scanner),
+            (Some(other), _) => (&self.scanner, other),
+            (None, _) => (&self.scanner, &self.scanner),
+        };
+        assemble::assemble(self.found, nodes, items, mending)
     }
 
     /// What the file says, for those that want its triangles only.

@@ -164,7 +164,8 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    fn finite(&self, x: f64, what: &str, from: usize) -> Result<f64, SceneError> {
+    /// Refuses a number that is not finite.
+    pub(super) fn finite(&self, x: f64, what: &str, from: usize) -> Result<f64, SceneError> {
         if x.is_finite() {
             return Ok(x);
         }
@@ -225,12 +226,5 @@ impl<'a> Scanner<'a> {
         let from = self.at;
         let x = f64::from_le_bytes(self.fixed(code, what)?);
         self.finite(x, what, from)
-    }
-
-    /// A binary number of 4 bytes, finite.
-    pub(super) fn binary_f32(&mut self, code: &'static str, what: &str) -> Result<f64, SceneError> {
-        let from = self.at;
-        let x = f32::from_le_bytes(self.fixed(code, what)?);
-        self.finite(f64::from(x), what, from)
     }
 }

@@ -79,8 +79,15 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &N
     scanner.line_end(SYNTAX, "the head")?;
     let count = scanner.fits(SIZE, count, 2 * (1 + corners as u64), "elements", from)?;
     let mut values: Vec<Vec<f64>> = Vec::new();
+    let mut next: Option<u64> = None;
     for k in 0..count {
         let (number, place) = scanner.whole::<u64>(SYNTAX, "the number of an element")?;
+        // Elements are counted: another number says that lines are missing, twice there or out of order.
+        if let Some(next) = next.filter(|next| number != *next) {
+            let error = scanner.error(SYNTAX, format!("element {number} stands where element {next} should"), place);
+            return Err(error.value(number.to_string()).allowed(next.to_string()));
+        }
+        next = Some(number.saturating_add(1));
         let mut nodes = [0; 4];
         for node in &mut nodes[..corners] {
             let (named, at) = scanner.whole::<u64>(SYNTAX, "the number of a node")?;

@@ -5,6 +5,7 @@
 
 use super::found::{Found, Kind, SUPPORTED};
 use super::scanner::Scanner;
+use super::vtk_numbers::{Number, Value};
 use crate::problem::{SceneError, visible};
 
 const SYNTAX: &str = "vtk.syntax";
@@ -28,10 +29,10 @@ pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
     })
 }
 
-/// Adds a cell of VTK, or says why that cannot be.
-pub(super) fn add(found: &mut Found, number: u64, nodes: &[u64], place: usize) -> Result<(), SceneError> {
+/// Adds a cell of VTK whose nodes are counted from `first` on, or says why that cannot be.
+pub(super) fn add(found: &mut Found, number: i128, nodes: &[i128], first: u32, place: usize) -> Result<(), SceneError> {
     let cell = found.items.len() as u64;
-    let Some((kind, order)) = kind(number) else {
+    let Some((kind, order)) = u64::try_from(number).ok().and_then(kind) else {
         let name = match number {
             2 => "set of points",
             4 => "chain of lines",
@@ -58,48 +59,18 @@ pub(super) fn add(found: &mut Found, number: u64, nodes: &[u64], place: usize) -
         return Err(SceneError::new(SIZE, message).value(nodes.len().to_string()).allowed(order.len().to_string()));
     }
     let mut own = [0; 10];
+    let there = found.positions.len() as i128 - i128::from(first);
     for (slot, &from) in own.iter_mut().zip(order) {
         let node = nodes[from];
-        if node >= found.positions.len() as u64 {
+        if !(0..there).contains(&node) {
             let message = format!("cell {cell} names node {node}");
-            let allowed = format!("0 to {}", found.positions.len().saturating_sub(1));
+            let allowed = format!("0 to {}", (there - 1).max(0));
             return Err(SceneError::new("mesh.index", message).value(node.to_string()).allowed(allowed));
         }
-        *slot = node as u32;
+        *slot = first + node as u32;
     }
     found.item(kind, &own[..order.len()], cell, place);
     Ok(())
-}
-
-/// The type of numbers of an array.
-#[derive(Clone, Copy, PartialEq)]
-enum Number {
-    Whole(usize, bool),
-    Real(usize),
-}
-
-impl Number {
-    fn named(name: &str) -> Option<Number> {
-        Some(match name.to_ascii_lowercase().as_str() {
-            "char" | "vtktypeint8" => Number::Whole(1, true),
-            "unsigned_char" | "vtktypeuint8" => Number::Whole(1, false),
-            "short" | "vtktypeint16" => Number::Whole(2, true),
-            "unsigned_short" | "vtktypeuint16" => Number::Whole(2, false),
-            "int" | "vtkidtype" | "vtktypeint32" => Number::Whole(4, true),
-            "unsigned_int" | "vtktypeuint32" => Number::Whole(4, false),
-            "long" | "vtktypeint64" => Number::Whole(8, true),
-            "unsigned_long" | "vtktypeuint64" => Number::Whole(8, false),
-            "float" => Number::Real(4),
-            "double" => Number::Real(8),
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Number::Whole(size, _) | Number::Real(size) => size,
-        }
-    }
 }
 
 struct Reader<'s, 'a> {
@@ -108,7 +79,7 @@ struct Reader<'s, 'a> {
     binary: bool,
     found: Found,
     /// Nodes of the cells, before their types are known: their place and their nodes.
-    cells: Vec<(usize, Vec<u64>)>,
+    cells: Vec<(usize, Vec<i128>)>,
 }
 
 /// Reads a file.
@@ -146,19 +117,24 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
 
 impl Reader<'_, '_> {
     fn sections(&mut self) -> Result<(), SceneError> {
-        let mut typed = false;
+        // Sections of which there is one.
+        let mut seen: Vec<&str> = Vec::new();
         // Whether arrays belong to cells, and how many there are of what they belong to.
         let mut of: Option<(bool, usize)> = None;
         while let Some((word, from)) = self.scanner.peek() {
             let word = word.to_ascii_uppercase();
             self.scanner.word(SYNTAX, "")?;
+            if let Some(single) = ["POINTS", "CELLS", "CELL_TYPES"].into_iter().find(|single| word == *single) {
+                if seen.contains(&single) {
+                    let error = self.scanner.error(SYNTAX, format!("there is a second section `{single}`"), from);
+                    return Err(error.value(single).allowed("one"));
+                }
+                seen.push(single);
+            }
             match word.as_str() {
                 "POINTS" => self.points()?,
-                "CELLS" => self.connectivity(from)?,
-                "CELL_TYPES" => {
-                    self.types(from)?;
-                    typed = true;
-                }
+                "CELLS" => self.connectivity()?,
+                "CELL_TYPES" => self.types(from)?,
                 "CELL_DATA" | "POINT_DATA" => {
                     let (count, at) = self.scanner.whole::<u64>(SYNTAX, "a count")?;
                     let cells = word == "CELL_DATA";
@@ -189,7 +165,7 @@ impl Reader<'_, '_> {
                 }
             }
         }
-        if !typed {
+        if !seen.contains(&"CELL_TYPES") {
             let wanted = if self.found.positions.is_empty() { "`POINTS`" } else { "`CELLS` and `CELL_TYPES`" };
             return Err(self.scanner.ends(SYNTAX, wanted));
         }
@@ -204,8 +180,14 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Numbers of an array. In binary they begin behind the end of the line.
-    fn values(&mut self, count: u64, kind: Number, what: &str, from: usize) -> Result<Vec<(f64, usize)>, SceneError> {
+    /// What is made of the numbers of an array. In binary they begin behind the end of the line.
+    fn array<T>(
+        &mut self,
+        (count, from): (u64, usize),
+        kind: Number,
+        what: &str,
+        made: impl Fn(&Scanner<'_>, Value, usize) -> Result<T, SceneError>,
+    ) -> Result<Vec<(T, usize)>, SceneError> {
         if self.binary {
             self.scanner.line_end(SYNTAX, "the head of an array")?;
         }
@@ -215,31 +197,43 @@ impl Reader<'_, '_> {
         for _ in 0..count {
             self.scanner.peek().filter(|_| !self.binary);
             let place = self.scanner.at;
-            out.push((self.value(kind, what)?, place));
+            let value = self.value(kind, what)?;
+            out.push((made(self.scanner, value, place)?, place));
         }
         Ok(out)
     }
 
-    fn value(&mut self, kind: Number, what: &str) -> Result<f64, SceneError> {
-        let scanner = &mut *self.scanner;
-        if !self.binary {
-            return match kind {
-                Number::Real(_) => scanner.number(SYNTAX, what),
-                Number::Whole(..) => scanner.whole::<i64>(SYNTAX, what).map(|(x, _)| x as f64),
-            };
-        }
-        Ok(match kind {
-            Number::Real(4) => scanner.binary_f32(SIZE, what)?,
-            Number::Real(_) => scanner.binary_f64(SIZE, what)?,
-            Number::Whole(size, signed) => {
-                let bytes = scanner.take(size, SIZE, what)?;
-                let mut x = bytes.iter().fold(0u64, |x, byte| x << 8 | u64::from(*byte));
-                if signed && bytes[0] >= 0x80 && size < 8 {
-                    x |= u64::MAX << (8 * size);
-                }
-                if signed { x as i64 as f64 } else { x as f64 }
-            }
+    /// Numbers of an array, which may be real ones.
+    fn values(&mut self, count: u64, kind: Number, what: &str, from: usize) -> Result<Vec<(f64, usize)>, SceneError> {
+        self.array((count, from), kind, what, |_, value, _| Ok(value.real()))
+    }
+
+    /// Whole numbers of an array, whatever its type.
+    fn wholes(&mut self, count: u64, kind: Number, what: &str, from: usize) -> Result<Vec<(i128, usize)>, SceneError> {
+        self.array((count, from), kind, what, |scanner, value, place| {
+            value.whole().map_err(|x| {
+                let error = scanner.error(SYNTAX, format!("`{x}` stands where {what} should"), place);
+                error.value(x.to_string()).allowed("a whole number")
+            })
         })
+    }
+
+    fn value(&mut self, kind: Number, what: &str) -> Result<Value, SceneError> {
+        let scanner = &mut *self.scanner;
+        let (value, from) = if self.binary {
+            let from = scanner.at;
+            (kind.of_bytes(scanner.take(kind.size(), SIZE, what)?, true), from)
+        } else {
+            let (word, from) = scanner.word(SYNTAX, what)?;
+            let value = kind.of_word(word).map_err(|allowed| {
+                let error = scanner.error(SYNTAX, format!("`{}` stands where {what} should", visible(word)), from);
+                let error = error.value(visible(word)).allowed(allowed);
+                if word.contains(',') { error.hint("write a point, not a comma") } else { error }
+            })?;
+            (value, from)
+        };
+        scanner.finite(value.real(), what, from)?;
+        Ok(value)
     }
 
     fn points(&mut self) -> Result<(), SceneError> {
@@ -253,41 +247,53 @@ impl Reader<'_, '_> {
     }
 
     /// `CELLS n size`, each with the count of its nodes; since version 5.1 `CELLS n+1 size` with `OFFSETS` and `CONNECTIVITY`.
-    fn connectivity(&mut self, at: usize) -> Result<(), SceneError> {
+    fn connectivity(&mut self) -> Result<(), SceneError> {
         let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of cells")?;
         let (size, size_from) = self.scanner.whole::<u64>(SYNTAX, "the size of the list of cells")?;
         let ahead = (self.scanner.at, self.scanner.peek().map(|(word, _)| word.to_ascii_uppercase()));
         if ahead.1.as_deref() == Some("OFFSETS") {
             self.scanner.expect(SYNTAX, "OFFSETS")?;
             let kind = self.number_type()?;
-            let offsets = self.values(count, kind, "offsets", from)?;
+            let offsets = self.wholes(count, kind, "offsets", from)?;
             self.scanner.expect(SYNTAX, "CONNECTIVITY")?;
             let kind = self.number_type()?;
-            let nodes = self.values(size, kind, "nodes of cells", size_from)?;
+            let nodes = self.wholes(size, kind, "nodes of cells", size_from)?;
+            // What no cell names would be lost.
+            let there = nodes.len() as i128;
+            let ends = [(offsets.first(), 0, "first cell begins"), (offsets.last(), there, "last cell ends")];
+            for (end, wanted, which) in ends {
+                if let Some((number, place)) = end.filter(|(number, _)| *number != wanted) {
+                    let error = self.scanner.error(SIZE, format!("the {which} at {number}"), *place);
+                    return Err(error.value(number.to_string()).allowed(wanted.to_string()));
+                }
+            }
             for pair in offsets.windows(2) {
                 let (start, end) = (pair[0].0, pair[1].0);
-                if !(start >= 0.0 && start <= end && end <= nodes.len() as f64) {
+                if !(start <= end && end <= there) {
                     let error = self.scanner.error(SIZE, format!("a cell reaches from {start} to {end}"), pair[1].1);
-                    return Err(error.value(end.to_string()).allowed(format!("{start} to {}", nodes.len())));
+                    return Err(error.value(end.to_string()).allowed(format!("{start} to {there}")));
                 }
                 let own = &nodes[start as usize..end as usize];
                 let place = own.first().map_or(pair[0].1, |x| x.1);
-                self.cells.push((place, own.iter().map(|x| node(x.0)).collect()));
+                self.cells.push((place, own.iter().map(|x| x.0).collect()));
             }
             return Ok(());
         }
         self.scanner.at = ahead.0;
-        let numbers = self.values(size, Number::Whole(4, true), "nodes of cells", size_from)?;
+        let numbers = self.wholes(size, Number::Whole(4, true), "nodes of cells", size_from)?;
         let mut rest = &numbers[..];
-        for _ in 0..count {
-            let (length, place) = rest.first().copied().unwrap_or((f64::NAN, at));
-            if !(length >= 0.0 && length < rest.len() as f64) {
-                let there = rest.len().saturating_sub(1);
+        for cell in 0..count {
+            let there = rest.len().saturating_sub(1);
+            let Some(&(length, place)) = rest.first() else {
+                let error = self.scanner.error(SIZE, format!("there are {cell} cells, not {count}"), from);
+                return Err(error.value(count.to_string()).allowed(cell.to_string()));
+            };
+            if !(0..=there as i128).contains(&length) {
                 let error = self.scanner.error(SIZE, format!("a cell has {length} nodes, but {there} follow"), place);
                 return Err(error.value(length.to_string()).allowed(format!("at most {there}")));
             }
             let (own, behind) = rest[1..].split_at(length as usize);
-            self.cells.push((place, own.iter().map(|x| node(x.0)).collect()));
+            self.cells.push((place, own.iter().map(|x| x.0).collect()));
             rest = behind;
         }
         if !rest.is_empty() {
@@ -299,7 +305,7 @@ impl Reader<'_, '_> {
 
     fn types(&mut self, at: usize) -> Result<(), SceneError> {
         let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of cells")?;
-        if count != self.cells.len() as u64 || self.found.positions.is_empty() || !self.found.items.is_empty() {
+        if count != self.cells.len() as u64 || self.found.positions.is_empty() {
             let error = self.scanner.error(
                 SIZE,
                 format!("there are types for {count} cells"),
@@ -307,9 +313,9 @@ impl Reader<'_, '_> {
             );
             return Err(error.value(count.to_string()).allowed(self.cells.len().to_string()));
         }
-        let types = self.values(count, Number::Whole(4, true), "types of cells", from)?;
+        let types = self.wholes(count, Number::Whole(4, true), "types of cells", from)?;
         for ((place, nodes), (number, at)) in self.cells.iter().zip(types) {
-            add(&mut self.found, node(number), nodes, *place).map_err(|error| {
+            add(&mut self.found, number, nodes, 0, *place).map_err(|error| {
                 let at = if error.code == "mesh.unsupported_element" { at } else { *place };
                 let marked = self.scanner.error(error.code, error.message.clone(), at);
                 SceneError { value: error.value, allowed: error.allowed, ..marked }
@@ -319,9 +325,18 @@ impl Reader<'_, '_> {
     }
 
     /// Keeps values of cells of one component, and counts others.
-    fn keep(&mut self, name: &str, components: u64, values: Vec<(f64, usize)>, of: Option<(bool, usize)>) {
+    fn keep(
+        &mut self,
+        (name, at): (&str, usize),
+        components: u64,
+        values: Vec<(f64, usize)>,
+        of: Option<(bool, usize)>,
+    ) -> Result<(), SceneError> {
         match of {
             Some((true, _)) if components == 1 => {
+                if self.found.item_values.contains_key(name) {
+                    return Err(twice(self.scanner.error(SYNTAX, values_twice(name), at), name));
+                }
                 self.found.item_values.insert(name.to_string(), values.into_iter().map(|x| x.0).collect());
             }
             // Data of the whole file is no part of the body: time, cycle and the like.
@@ -331,16 +346,17 @@ impl Reader<'_, '_> {
                 self.found.left_out(what, visible(name));
             }
         }
+        Ok(())
     }
 
     fn field(&mut self, of: Option<(bool, usize)>) -> Result<(), SceneError> {
         self.scanner.word(SYNTAX, "the name of a field")?;
         let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of arrays")?;
         for _ in 0..self.scanner.fits(SIZE, count, 6, "arrays", from)? {
-            let (mut name, _) = self.scanner.word(SYNTAX, "the name of an array")?;
+            let (mut name, mut at_name) = self.scanner.word(SYNTAX, "the name of an array")?;
             if name.eq_ignore_ascii_case("METADATA") {
                 self.metadata();
-                name = self.scanner.word(SYNTAX, "the name of an array")?.0;
+                (name, at_name) = self.scanner.word(SYNTAX, "the name of an array")?;
             }
             let (components, _) = self.scanner.whole::<u64>(SYNTAX, "the number of components")?;
             let (tuples, from) = self.scanner.whole::<u64>(SYNTAX, "the number of values")?;
@@ -362,7 +378,7 @@ impl Reader<'_, '_> {
             };
             let values = self.values(tuples.saturating_mul(components), kind, "values", from)?;
             let name = name.replace("%20", " ");
-            self.keep(&name, components, values, of);
+            self.keep((&name, at_name), components, values, of)?;
         }
         Ok(())
     }
@@ -378,7 +394,8 @@ impl Reader<'_, '_> {
             let error = self.scanner.error(SYNTAX, format!("`{word}` stands before CELL_DATA and POINT_DATA"), at);
             return Err(error.value(word).allowed("CELL_DATA or POINT_DATA before it"));
         };
-        let name = self.scanner.word(SYNTAX, "the name of values")?.0.replace("%20", " ");
+        let (name, at_name) = self.scanner.word(SYNTAX, "the name of values")?;
+        let name = name.replace("%20", " ");
         let (components, kind, count) = match word {
             "SCALARS" => {
                 let kind = self.number_type()?;
@@ -416,13 +433,18 @@ impl Reader<'_, '_> {
         if word == "LOOKUP_TABLE" {
             self.found.left_out(format!("the colours `{}` are left out", visible(&name)), visible(&name));
         } else {
-            self.keep(&name, components, values, of);
+            self.keep((&name, at_name), components, values, of)?;
         }
         Ok(())
     }
 }
 
-/// A whole number as a node; what is negative is out of range.
-fn node(x: f64) -> u64 {
-    if x >= 0.0 { x as u64 } else { u64::MAX }
+/// What is said where cells have values of one name twice.
+pub(super) fn values_twice(name: &str) -> String {
+    format!("the cells have values `{}` twice", visible(name))
+}
+
+/// An error at the second of them.
+pub(super) fn twice(error: SceneError, name: &str) -> SceneError {
+    error.value(visible(name)).allowed("a name of its own for every array")
 }

@@ -6,6 +6,7 @@
 use super::found::Found;
 use super::scanner::Scanner;
 use super::vtk;
+use super::vtk_numbers::{Number, Value};
 use crate::base64;
 use crate::problem::{SceneError, visible};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -96,7 +97,14 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
             return Err(error.value(visible(other)).allowed("UInt32, UInt64"));
         }
     };
-    let big_endian = root.attribute("byte_order") == Some("BigEndian");
+    let big_endian = match root.attribute("byte_order") {
+        None | Some("LittleEndian") => false,
+        Some("BigEndian") => true,
+        Some(other) => {
+            let error = at(&scanner, root, SYNTAX, format!("`{}` is no order of bytes", visible(other)));
+            return Err(error.value(visible(other)).allowed("LittleEndian, BigEndian"));
+        }
+    };
     let reader = Reader { scanner: &scanner, big_endian, header, compressed: compressor.is_some(), appended };
     let mut found = Found::default();
     let pieces = root.descendants().filter(|node| node.has_tag_name("Piece"));
@@ -125,16 +133,38 @@ impl Reader<'_> {
         }
     }
 
+    /// The only element of a name in another one.
+    fn only<'a>(
+        &self,
+        parent: Node<'a, 'a>,
+        (what, value): (&str, &str),
+        wanted: impl Fn(&Node<'a, 'a>) -> bool,
+    ) -> Result<Option<Node<'a, 'a>>, SceneError> {
+        let mut all = parent.children().filter(wanted);
+        let first = all.next();
+        match all.next() {
+            None => Ok(first),
+            Some(second) => {
+                let error = at(self.scanner, second, SYNTAX, format!("there is a second {what}"));
+                Err(error.value(value).allowed("one"))
+            }
+        }
+    }
+
     /// The array of a name below an element of a piece.
     fn array<'a>(&self, piece: Node<'a, 'a>, of: &str, name: Option<&str>) -> Result<Node<'a, 'a>, SceneError> {
-        let parent = piece.children().find(|node| node.has_tag_name(of));
-        let found = parent.and_then(|parent| {
-            parent
-                .children()
-                .find(|node| node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name))
-        });
+        let tag = format!("<{of}>");
+        let parent = self.only(piece, (&tag, &tag), |node| node.has_tag_name(of))?;
+        let what = name.map_or(String::new(), |name| format!(" `{name}`"));
+        let is_wanted =
+            |node: &Node<'_, '_>| node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name);
+        let found = match parent {
+            Some(parent) => {
+                self.only(parent, (&format!("array{what} in {tag}"), name.unwrap_or("<DataArray>")), is_wanted)?
+            }
+            None => None,
+        };
         found.ok_or_else(|| {
-            let what = name.map_or(String::new(), |name| format!(" `{name}`"));
             let error = at(self.scanner, parent.unwrap_or(piece), SYNTAX, format!("<{of}> has no array{what}"));
             error.value("0").allowed("<DataArray>")
         })
@@ -142,10 +172,14 @@ impl Reader<'_> {
 
     fn piece(&self, piece: Node<'_, '_>, found: &mut Found) -> Result<(), SceneError> {
         let (points, cells) = (self.count(piece, "NumberOfPoints")?, self.count(piece, "NumberOfCells")?);
-        let first = found.positions.len() as u64;
+        let first = found.positions.len() as u32;
         let first_cell = found.items.len();
         let array = self.array(piece, "Points", None)?;
         let place = array.range().start;
+        if let Some(components) = array.attribute("NumberOfComponents").filter(|components| components.trim() != "3") {
+            let error = at(self.scanner, array, SYNTAX, format!("points have `{}` coordinates", visible(components)));
+            return Err(error.value(visible(components)).allowed("3"));
+        }
         let numbers = self.values(array, points * 3)?;
         for (number, x) in numbers.chunks_exact(3).enumerate() {
             if let Some(bad) = x.iter().find(|x| !x.is_finite()) {
@@ -153,32 +187,27 @@ impl Reader<'_> {
                     at(self.scanner, array, "scene.not_finite", format!("a coordinate of point {number} is {bad}"));
                 return Err(error.value(bad.to_string()).allowed("a finite number"));
             }
-            found.node(first + number as u64, [x[0], x[1], x[2]], place);
+            found.node(u64::from(first) + number as u64, [x[0], x[1], x[2]], place);
         }
         let offset_array = self.array(piece, "Cells", Some("offsets"))?;
-        let offsets = self.values(offset_array, cells)?;
+        let offsets = self.wholes(offset_array, cells)?;
         let type_array = self.array(piece, "Cells", Some("types"))?;
-        let types = self.values(type_array, cells)?;
-        let total = offsets.last().copied().unwrap_or(0.0);
-        if !(0.0..=1e10).contains(&total) {
+        let types = self.wholes(type_array, cells)?;
+        let total = offsets.last().copied().unwrap_or(0);
+        if !(0..=10_000_000_000).contains(&total) {
             let error = at(self.scanner, offset_array, SIZE, format!("the last cell ends at {total}"));
             return Err(error.value(total.to_string()).allowed("0 or more"));
         }
         let array = self.array(piece, "Cells", Some("connectivity"))?;
         let place = array.range().start;
-        let nodes = self.values(array, total as u64)?;
-        let mut start = 0.0;
+        let nodes = self.wholes(array, total as u64)?;
+        let mut start = 0;
         for (cell, (&end, kind)) in offsets.iter().zip(types).enumerate() {
-            if !(end >= start && end <= nodes.len() as f64) {
+            if !(start..=total).contains(&end) {
                 let error = at(self.scanner, offset_array, SIZE, format!("cell {cell} reaches from {start} to {end}"));
                 return Err(error.value(end.to_string()).allowed(format!("{start} to {}", nodes.len())));
             }
-            let own: Vec<u64> = nodes[start as usize..end as usize]
-                .iter()
-                .map(|node| if *node >= 0.0 && *node < points as f64 { first + *node as u64 } else { u64::MAX })
-                .collect();
-            let number = if kind >= 0.0 { kind as u64 } else { u64::MAX };
-            vtk::add(found, number, &own, place).map_err(|error| {
+            vtk::add(found, kind, &nodes[start as usize..end as usize], first, place).map_err(|error| {
                 let of = if error.code == "mesh.unsupported_element" { type_array } else { array };
                 let marked = at(self.scanner, of, error.code, error.message);
                 SceneError { value: error.value, allowed: error.allowed, ..marked }
@@ -190,6 +219,8 @@ impl Reader<'_> {
 
     /// Values of cells of one component; others, and those of points, are counted.
     fn data(&self, piece: Node<'_, '_>, cells: u64, first: usize, found: &mut Found) -> Result<(), SceneError> {
+        self.only(piece, ("<CellData>", "<CellData>"), |node| node.has_tag_name("CellData"))?;
+        let mut names = Vec::new();
         for (of, node) in piece.children().filter(Node::is_element).flat_map(|parent| {
             parent.children().filter(|n| n.has_tag_name("DataArray")).map(move |n| (parent.tag_name().name(), n))
         }) {
@@ -197,6 +228,10 @@ impl Reader<'_> {
             let single = matches!(node.attribute("NumberOfComponents"), None | Some("1" | "0"));
             match of {
                 "CellData" if single => {
+                    if names.contains(&name) {
+                        return Err(vtk::twice(at(self.scanner, node, SYNTAX, vtk::values_twice(name)), name));
+                    }
+                    names.push(name);
                     let own = self.values(node, cells)?;
                     let values = found.item_values.entry(name.to_string()).or_default();
                     values.resize(first, f64::NAN);
@@ -215,20 +250,34 @@ impl Reader<'_> {
 
     /// The numbers of an array, exactly so many.
     fn values(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<f64>, SceneError> {
-        let kind = array.attribute("type").unwrap_or("");
-        let size: usize = match kind {
-            "Int8" | "UInt8" => 1,
-            "Int16" | "UInt16" => 2,
-            "Int32" | "UInt32" | "Float32" => 4,
-            "Int64" | "UInt64" | "Float64" => 8,
-            _ => {
-                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no type of numbers", visible(kind)));
-                return Err(error.value(visible(kind)).allowed("Int8 … UInt64, Float32, Float64"));
-            }
+        self.numbers(array, count, |value| Ok(value.real()))
+    }
+
+    /// The same where only whole numbers say something, whatever their type.
+    fn wholes(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<i128>, SceneError> {
+        self.numbers(array, count, |value| {
+            value.whole().map_err(|x| {
+                let error = at(self.scanner, array, SYNTAX, format!("`{x}` is no whole number"));
+                error.value(x.to_string()).allowed("a whole number")
+            })
+        })
+    }
+
+    fn numbers<T>(
+        &self,
+        array: Node<'_, '_>,
+        count: u64,
+        made: impl Fn(Value) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
+        let name = array.attribute("type").unwrap_or("");
+        let Some(kind) = Number::of_xml(name) else {
+            let error = at(self.scanner, array, SYNTAX, format!("`{}` is no type of numbers", visible(name)));
+            return Err(error.value(visible(name)).allowed("Int8 … UInt64, Float32, Float64"));
         };
+        let size = kind.size();
         let text: String = array.children().filter_map(|n| n.text()).collect();
         let bytes = match array.attribute("format") {
-            Some("ascii") | None => return self.words(array, &text, count),
+            Some("ascii") | None => return self.words(array, &text, count, kind, made),
             Some("binary") => {
                 let letters: Vec<u8> = text.bytes().filter(|b| !b.is_ascii_whitespace()).collect();
                 self.unpack(array, &letters, false, count, size)?
@@ -251,24 +300,7 @@ impl Reader<'_> {
                 return Err(error.value(visible(other)).allowed("ascii, binary, appended"));
             }
         };
-        let number = |word: &[u8]| {
-            let mut eight = [0; 8];
-            eight[..size].copy_from_slice(word);
-            if self.big_endian {
-                eight[..size].reverse();
-            }
-            let [a, b, c, d, ..] = eight;
-            match kind {
-                "Int8" => f64::from(a as i8),
-                "Int16" => f64::from(i16::from_le_bytes([a, b])),
-                "Int32" => f64::from(i32::from_le_bytes([a, b, c, d])),
-                "Int64" => i64::from_le_bytes(eight) as f64,
-                "Float32" => f64::from(f32::from_le_bytes([a, b, c, d])),
-                "Float64" => f64::from_le_bytes(eight),
-                _ => u64::from_le_bytes(eight) as f64,
-            }
-        };
-        Ok(bytes.chunks_exact(size).map(number).collect())
+        bytes.chunks_exact(size).map(|word| made(kind.of_bytes(word, self.big_endian))).collect()
     }
 
     fn wrong_count(&self, array: Node<'_, '_>, there: u64, count: u64) -> SceneError {
@@ -276,16 +308,21 @@ impl Reader<'_> {
         error.value(there.to_string()).allowed(count.to_string()).hint("the file is cut off, or its counts are wrong")
     }
 
-    fn words(&self, array: Node<'_, '_>, text: &str, count: u64) -> Result<Vec<f64>, SceneError> {
+    fn words<T>(
+        &self,
+        array: Node<'_, '_>,
+        text: &str,
+        count: u64,
+        kind: Number,
+        made: impl Fn(Value) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
         let mut out = Vec::new();
         for word in text.split_ascii_whitespace() {
-            match word.parse::<f64>() {
-                Ok(x) => out.push(x),
-                Err(_) => {
-                    let error = at(self.scanner, array, SYNTAX, format!("`{}` is no number", visible(word)));
-                    return Err(error.value(visible(word)).allowed("a number such as 1.5 or -2e-3"));
-                }
-            }
+            let value = kind.of_word(word).map_err(|allowed| {
+                let error = at(self.scanner, array, SYNTAX, format!("`{}` is no number of its array", visible(word)));
+                error.value(visible(word)).allowed(allowed)
+            })?;
+            out.push(made(value)?);
         }
         if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
     }

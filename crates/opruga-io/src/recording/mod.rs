@@ -9,7 +9,7 @@
 //! 24      the header: program, scene, how the run was called, files that the scene had named, how many frames a state is
 //!         kept; then CRC-32 of it
 //!
-//! the first frame, every so manieth behind it and the last are chunks with their states; the frames between, as many as went to
+//! the first frame, one in so many behind it and the last are chunks with their states; the frames between, as many as went to
 //! the system together, are one chunk:
 //! 0    4  "FRAM"                "INPT": something that a program did
 //! 4    4  0: the state itself, 1: its difference from the state before, 3: an input, 4: frames

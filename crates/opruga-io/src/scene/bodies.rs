@@ -377,6 +377,25 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     }
 }
 
+/// The largest coordinate of a shape [m]: powers of lengths up to the fourth are numbers then.
+const LONGEST: f64 = 1e70;
+
+/// Whether a number of a value is longer than any length may be.
+fn is_vast(node: &Node) -> bool {
+    match &node.data {
+        Data::Number(x, _) => x.abs() > LONGEST,
+        Data::Array(items) => items.iter().any(is_vast),
+        _ => false,
+    }
+}
+
+/// Refuses a body whose volume would be no number any more.
+fn report_vast(reader: &mut Reader<'_>, node: &Node, path: String, what: String) {
+    let error = SceneError::new("scene.range", format!("{what}: products of such lengths are no numbers any more"));
+    let error = error.path(path).value(node.shown()).allowed("coordinates within 1e70 m of the origin of the shape");
+    reader.report(node.place, error);
+}
+
 /// Makes the mesh of a body, whatever else may be wrong with it, and checks its pins.
 fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Option<BodyBlueprint<D>> {
     if !draft.shaped {
@@ -386,7 +405,24 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     let transform = shapes::Transform { scale: draft.values.number("scale").unwrap_or(1.0), rotation: &draft.rotation };
     let place =
         ShapePlace { name: &draft.name, place: place_of(draft.node, "shape"), path: join(&draft.path, "shape") };
+    let vast = draft.node.get("shape").and_then(|shape| shape.entries().iter().find(|entry| is_vast(&entry.value)));
+    if let Some(entry) = vast {
+        let path = join(&place.path, &entry.key);
+        report_vast(reader, &entry.value, path, format!("`{}` is {}", entry.key, entry.value.shown()));
+        return None;
+    }
+    if let Some(scale) = draft.node.get("scale").filter(|node| is_vast(node)) {
+        report_vast(reader, scale, join(&draft.path, "scale"), format!("`scale` is {}", scale.shown()));
+        return None;
+    }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;
+    if mesh.positions.iter().flatten().any(|x| x.abs() > LONGEST) {
+        // Its own lengths are fair.
+        let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
+        let node = draft.node.get(key).unwrap_or(draft.node);
+        report_vast(reader, node, join(&draft.path, key), format!("`{key}` makes it too large"));
+        return None;
+    }
     let mesh = of_wanted_cells(reader, draft, mesh)?;
     // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
     let thin = match mesh.measure() {

@@ -29,7 +29,7 @@ use moments::Frames;
 use opruga_core::spec::Values;
 use opruga_math::words::number;
 use opruga_world::blueprint::{
-    AnyBlueprint, Blueprint, BodyBlueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
+    AnyBlueprint, Blueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
 use opruga_world::schema;
 pub(crate) use reader::MOST_ERRORS;
@@ -99,8 +99,8 @@ pub struct Options {
 /// What the reader made of a scene.
 #[derive(Debug)]
 pub struct Reading {
-    /// The whole scene where there are no errors. Where there are some, what is left of it without the bodies, obstacles
-    /// and loads that have errors of their own, and without pins, commands and probes: enough to find what else is wrong with
+    /// The whole scene where there are no errors. Where there are some, what is left of it without the bodies, obstacles,
+    /// loads and pins that have errors of their own, and without commands and probes: enough to find what else is wrong with
     /// the rest. None where errors leave nothing to build on.
     pub blueprint: Option<AnyBlueprint>,
     /// All errors that can be found at once, in the order of their places.
@@ -111,6 +111,20 @@ pub struct Reading {
     pub files: BTreeMap<String, Arc<[u8]>>,
     /// Files that it names and that could not be read, by those names.
     pub unread: Vec<String>,
+}
+
+impl Reading {
+    /// Whether all is known of what holds bodies in statics: no error hides a pin, a load or an obstacle from the blueprint.
+    pub fn knows_what_holds(&self) -> bool {
+        self.errors.iter().all(|error| {
+            let parts: Vec<&str> = error.path.split('.').collect();
+            let holds = matches!(parts[0], "load" | "collider" | "world") || parts.contains(&"pin");
+            // A section that is unknown may have been meant for one of them; and where errors are counted only, nobody knows of
+            // what they are.
+            let unknown = error.code == "scene.unknown_field" && parts.len() == 1;
+            !holds && !unknown && error.code != "scene.more"
+        })
+    }
 }
 
 /// Reads a scene from bytes.
@@ -300,13 +314,8 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
         .collect();
     let loads = whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: places[load.body]?, ..load }));
     founded.then(|| Blueprint {
-        // Pins may select what is not there, and hinder no body from being built.
-        bodies: whole
-            .bodies
-            .into_iter()
-            .zip(&places)
-            .filter_map(|(body, place)| place.map(|_| BodyBlueprint { pins: Vec::new(), ..body }))
-            .collect(),
+        // Their pins stay: without them statics would miss what holds a body. One that selects what is not there holds nothing.
+        bodies: whole.bodies.into_iter().zip(&places).filter_map(|(body, place)| place.map(|_| body)).collect(),
         colliders: sound_colliders,
         loads: loads.collect(),
         commands: Vec::new(),

@@ -4,6 +4,7 @@ use super::actions::spec_of;
 use super::bodies::Bodies;
 use super::place_of;
 use super::reader::{Reader, join, listed};
+use crate::catalogue::Catalogue;
 use crate::document::Node;
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Allowed, Field, Spec, Value, Values, nearest};
@@ -24,13 +25,22 @@ struct Lost {
     message: String,
     allowed: String,
     nearest: Option<String>,
+    /// What does what the path seems to want.
+    hint: Option<&'static str>,
 }
+
+/// What changes the kind of a part.
+const CHANGE: &str = "the command `do = \"change\"` gives a body other models or another integrator";
 
 fn lost<'w>(what: &str, word: &str, words: impl Iterator<Item = &'w str> + Clone) -> Lost {
     Lost {
         message: format!("there is no {what} `{}`", visible(word)),
-        allowed: listed(words.clone()),
+        allowed: match listed(words.clone()) {
+            none if none.is_empty() => "none, there is nothing to change".into(),
+            words => words,
+        },
         nearest: nearest(word, words),
+        hint: None,
     }
 }
 
@@ -59,7 +69,11 @@ pub(crate) fn check<const D: usize>(
             let error = SceneError::new("scene.unknown_parameter", lost.message)
                 .path(join(path, "path"))
                 .value(visible(parameter));
-            reader.report(place_of(node, "path"), error.allowed(lost.allowed).nearest(lost.nearest));
+            let error = match lost.hint {
+                Some(hint) => error.hint(hint),
+                None => error.nearest(lost.nearest),
+            };
+            reader.report(place_of(node, "path"), error.allowed(lost.allowed));
             None
         }
     }
@@ -84,7 +98,28 @@ fn field<const D: usize>(
 ) -> Result<Option<&'static Field>, Lost> {
     let parts: Vec<&str> = parameter.split('.').collect();
     let catalogue = reader.catalogue;
-    match parts.as_slice() {
+    let found = resolve(&parts, parameter, catalogue, known);
+    // Which models and which integrator a body has is no parameter of them.
+    let is_kind = matches!(
+        parts.as_slice(),
+        ["integrator"]
+            | ["integrator", "kind"]
+            | ["body", _, "integrator"]
+            | ["body", _, "integrator", "kind"]
+            | ["body", _, "models"]
+            | ["body", _, "models", _]
+            | ["body", _, "models", _, "kind"]
+    );
+    found.map_err(|lost| Lost { hint: is_kind.then_some(CHANGE), ..lost })
+}
+
+fn resolve<const D: usize>(
+    parts: &[&str],
+    parameter: &str,
+    catalogue: &Catalogue,
+    known: &Known<'_, D>,
+) -> Result<Option<&'static Field>, Lost> {
+    match parts {
         ["world", name] => find(schema::WORLD.spec, name).map(Some),
         ["time", "substeps"] => find(schema::TIME.spec, "substeps").map(Some),
         ["time", ..] => Err(lost("parameter that changes in the run", parameter, ["time.substeps"].into_iter())),
@@ -110,6 +145,7 @@ fn field<const D: usize>(
                     message: format!("body `{}` has no integrator of its own", visible(name)),
                     allowed: "integrator.FIELD".into(),
                     nearest: None,
+                    hint: None,
                 }),
             }
         }
@@ -143,6 +179,7 @@ fn field<const D: usize>(
                 message: format!("`{}` is no parameter", visible(parameter)),
                 allowed: FORMS.join(", "),
                 nearest: near,
+                hint: None,
             })
         }
     }

@@ -63,6 +63,11 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
                     let error = SceneError::new("obj.syntax", "a vertex has more than seven numbers");
                     return Err(refuse(more[4], error).allowed("v x y z, with a weight or a colour"));
                 }
+                if more.len() == 2 {
+                    let error = SceneError::new("obj.syntax", "a vertex has five numbers");
+                    let allowed = "3 numbers, 4 with a weight, 6 with a colour, 7 with both";
+                    return Err(refuse(more[1], error).value(visible(statement(line).0.trim())).allowed(allowed));
+                }
                 let mut numbers = Vec::with_capacity(more.len());
                 for part in more {
                     numbers.push(number(part).map_err(|e| refuse(part, e))?);

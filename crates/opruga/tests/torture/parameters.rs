@@ -38,7 +38,7 @@ fn parameters_that_make_no_sense() {
         (solid("youngs_modulus = 1e5, poissons_ratio = 0.6"), "error[scene.range]: `poissons_ratio` is 0.6"),
         (
             solid("youngs_modulus = 1e5, poissons_ratio = 0.4999999").replace("mass = 1", "mass = 1\norder = 1"),
-            "`poissons_ratio` is 0.4999999; allowed for linear triangles: at most 0.45",
+            "`poissons_ratio` is 0.4999999 for linear triangles, which lock near incompressibility; allowed: at most 0.45",
         ),
         (solid("youngs_modulus = 0"), "error[scene.range]: `youngs_modulus` is 0"),
         (solid("youngs_modulus = -1"), "error[scene.range]: `youngs_modulus` is -1"),
