@@ -96,7 +96,7 @@ impl View {
 
     /// The place of a scalar from 0 to 1 between the ends of a range.
     pub(crate) fn place(range: [f64; 2], scalar: f64) -> f64 {
-        if range[1] > range[0] { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
+        if range[1] > range[0] || scalar.is_nan() { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
     }
 
     /// The range of scalars which a picture uses: its own, or the one of the run.

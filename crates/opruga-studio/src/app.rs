@@ -7,9 +7,8 @@ use crate::differences::Difference;
 use crate::hand::{Arrived, Hand};
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
-use crate::panels::plots::Plots;
 use crate::panels::properties::Properties;
-use crate::panels::{bars, palette};
+use crate::panels::{bars, palette, plots};
 use crate::runner::Link;
 use crate::said::Said;
 use crate::session::{Edit, Placed, Request, Session};
@@ -17,6 +16,7 @@ use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
 use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Ui};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The scene that comes first.
 pub const FIRST_SCENE: &str = "ball";
@@ -24,13 +24,17 @@ pub const FIRST_SCENE: &str = "ball";
 /// The width up to which the properties are in a drawer [points]: a phone held upright.
 const NARROW: f32 = 700.0;
 
+/// The time between two pictures from which on they do not follow one another, unless time passes [s].
+const IDLE: f64 = 0.25;
+/// How long a frame is computed before what is shown counts as old.
+const STALE: Duration = Duration::from_millis(700);
+
 /// The whole window.
 #[derive(Debug)]
 pub struct Studio {
     link: Link,
     canvas: Canvas,
     properties: Properties,
-    plots: Plots,
     gallery: Gallery,
     keeping: Keeping,
     hand: Hand,
@@ -49,8 +53,10 @@ pub struct Studio {
     closed: u64,
     /// What was told last, and since when: it goes by itself.
     told: (String, f64),
-    /// Seconds of the interface for a frame, without the time of the graphics card.
+    /// Pictures of the interface in a second.
     rate: f64,
+    /// Whether time passed in the last picture.
+    played: bool,
     /// What draws, and on which device, where there is a choice.
     drawn_by: Option<[String; 2]>,
     /// Where what is done is kept against the loss of the window.
@@ -71,7 +77,6 @@ impl Studio {
             link,
             canvas: Canvas::default(),
             properties: Properties::default(),
-            plots: Plots::default(),
             gallery: Gallery::default(),
             keeping: Keeping::default(),
             hand: Default::default(),
@@ -85,6 +90,7 @@ impl Studio {
             closed: 0,
             told: (String::new(), 0.0),
             rate: 60.0,
+            played: false,
             drawn_by: None,
             #[cfg(not(target_arch = "wasm32"))]
             rescue: None,
@@ -143,7 +149,15 @@ impl Studio {
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
-        self.rate += 0.05 * (1.0 / seconds - self.rate);
+        // Between pictures that do not follow one another nothing was drawn, and nobody waited for it.
+        let follows = seconds < IDLE || shown.playing && self.played;
+        self.played = shown.playing;
+        if follows {
+            self.rate += 0.05 * (1.0 / seconds - self.rate);
+        }
+        // What is done is told by this picture: it may be the last one for long.
+        self.keeping.poll();
+        self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
         self.shortcuts(ui, &shown, &mut asks);
         self.dropped(ui, &shown, &mut asks);
@@ -154,7 +168,9 @@ impl Studio {
             let chosen = bars::tools(ui, &shown, words, narrow, &mut asks);
             self.choose(ui, chosen);
             let making = self.keeping.working();
-            bars::status(ui, &shown, words, self.rate, narrow, self.drawn_by.as_ref(), making);
+            let rate = follows.then_some(self.rate);
+            let busy = self.link.busy().filter(|busy| *busy > STALE);
+            bars::status(ui, &shown, words, (rate, busy), narrow, self.drawn_by.as_ref(), making);
         });
         Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));
         let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));
@@ -177,19 +193,17 @@ impl Studio {
                     let room = ui.available_size() - egui::vec2(0.0, 10.0);
                     ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-                        self.plots.show(ui, &shown, words, self.canvas.selected.as_deref(), room);
+                        plots::show(ui, &shown, words, self.canvas.selected.as_deref(), room);
                     });
                 },
             );
         }
-        self.plots.remember(&shown, self.canvas.selected.as_deref());
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
             asks.extend(self.canvas.show(ui, &shown, words));
             self.on_canvas(ui, rect, &shown, &mut asks);
         });
         self.windows(ui, &shown, &mut asks);
-        self.keeping.poll();
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(rescue) = &mut self.rescue {
             rescue.poll(&self.link);
@@ -204,7 +218,11 @@ impl Studio {
             self.link.ask(ask);
         }
         if self.gallery.is_drawing() || self.keeping.is_working() {
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+            ui.ctx().request_repaint_after(Duration::from_millis(100));
+        }
+        // A frame that takes long is told of while it is computed.
+        if shown.playing || self.link.busy().is_some() {
+            ui.ctx().request_repaint_after(STALE);
         }
     }
 

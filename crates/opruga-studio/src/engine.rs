@@ -1,11 +1,13 @@
 //! A world of either dimension behind one face: what a person does to it, as commands of the scene file.
 
+mod arrows;
+
 use crate::document::{FOR_EVER, command_table};
-use crate::normals::normals;
+use crate::samples::Sample;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
-use opruga::draw::{ArrowKind, ArrowPicture, Facets};
+use opruga::draw::Facets;
 use opruga::pictures::{Quantity, Scenery};
 use opruga::{Options, Warning, World, WorldError};
 use toml_edit::Table;
@@ -39,6 +41,10 @@ pub trait Engine: Send {
     fn frame_seconds(&self) -> f64;
     /// The time [s].
     fn time(&self) -> f64;
+    /// The dimension.
+    fn dimension(&self) -> usize;
+    /// Substeps of a frame.
+    fn substeps(&self) -> u32;
     /// The whole state.
     fn snapshot(&self) -> Vec<u8>;
     /// Back to a state of the same past.
@@ -47,6 +53,8 @@ pub trait Engine: Send {
     fn hash(&self) -> u64;
     /// Pulls a node of a body toward a pointer that is led.
     fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError>;
+    /// The stiffness [N/m] and the largest force [N] of such a pull.
+    fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
     /// Leads the pointer of a pull two frames ahead; the row of its path.
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError>;
     /// Ends a command now; the time of its end [s].
@@ -94,14 +102,13 @@ pub trait Engine: Send {
     fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])>;
     /// All there is to see.
     fn shown(&mut self, show: &Show) -> Shown;
+    /// The numbers of the curves for the present state.
+    fn sample(&mut self) -> Sample;
     /// The columns and the row of a table for the present state.
     fn row(&mut self) -> Vec<(String, f64)>;
     /// What a film needs.
     fn moment(&mut self, show: &Show) -> opruga::draw::Picture;
 }
-
-/// Bodies up to which arrows are drawn: those of more could not be told apart.
-const MOST_WITH_ARROWS: usize = 64;
 
 /// A world and what stays the same from picture to picture.
 struct Living<const D: usize> {
@@ -207,39 +214,6 @@ impl<const D: usize> Living<D> {
         self.add_arrows(&mut picture, show);
         picture
     }
-
-    /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
-    fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
-        let living: Vec<usize> = self.world.bodies().collect();
-        if living.len() > MOST_WITH_ARROWS {
-            return;
-        }
-        let mut arrows = Vec::new();
-        for (place, &body) in living.iter().enumerate() {
-            let nodes = self.world.node_count(body) as u32;
-            if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
-                seen.pinned = self.world.held_nodes(body);
-            }
-            let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
-            let at = |node: u32| three(self.world.position(body, node));
-            let some = (0..nodes).step_by((nodes / 40).max(1) as usize);
-            if show.velocities {
-                arrows.extend(
-                    some.clone().map(|node| (ArrowKind::Velocity, at(node), three(self.world.velocity(body, node)))),
-                );
-            }
-            if show.normals
-                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes as usize)
-            {
-                let normals = normals(seen);
-                arrows.extend(some.map(|node| (ArrowKind::Normal, at(node), normals[node as usize])));
-            }
-            let pressed = forces.into_iter().enumerate().filter(|(_, force)| force.iter().any(|f| *f != 0.0));
-            arrows.extend(pressed.map(|(node, force)| (ArrowKind::Contact, at(node as u32), three(force))));
-        }
-        let arrows = arrows.into_iter().filter(|(_, _, vector)| vector.iter().all(|c| c.is_finite()));
-        picture.arrows.extend(arrows.map(|(kind, from, vector)| ArrowPicture { kind, from, vector }));
-    }
 }
 
 impl<const D: usize> Engine for Living<D> {
@@ -258,6 +232,12 @@ impl<const D: usize> Engine for Living<D> {
     fn time(&self) -> f64 {
         self.world.time()
     }
+    fn dimension(&self) -> usize {
+        D
+    }
+    fn substeps(&self) -> u32 {
+        self.world.blueprint().time.substeps
+    }
     fn snapshot(&self) -> Vec<u8> {
         self.world.snapshot()
     }
@@ -274,6 +254,10 @@ impl<const D: usize> Engine for Living<D> {
         let path = vec![self.row_of(now, pointer), self.row_of(now + 1, pointer)];
         let action = Action::Drag { body, node: Some(node), facet: false, stiffness: None, path, largest_force: None };
         self.give(FOR_EVER, action, &name)
+    }
+
+    fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
+        self.world.usual_pull(body)
     }
 
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
@@ -453,6 +437,23 @@ impl<const D: usize> Engine for Living<D> {
             extents: picture.bodies.iter().map(Extent::of).collect(),
             picture,
             ..Shown::default()
+        }
+    }
+
+    fn sample(&mut self) -> Sample {
+        let numbers: Vec<usize> = self.world.bodies().collect();
+        let told = if numbers.len() <= 64 { &numbers[..] } else { &[] };
+        let readings = told.iter().map(|body| (*body, self.world.readings(*body)));
+        let readings = readings.filter(|(_, list)| !list.is_empty()).map(|(body, list)| (body, list.into())).collect();
+        let (e, m) = (self.world.energy(), self.world.momentum());
+        let losses = e.loss_damping + e.loss_friction + e.loss_contact;
+        Sample {
+            frame: self.world.frames(),
+            time: self.world.time(),
+            energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work_user, losses, e.loss_integrator],
+            momentum: three(m.linear.0),
+            readings,
+            ..Sample::default()
         }
     }
 

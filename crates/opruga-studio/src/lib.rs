@@ -11,6 +11,7 @@ pub mod keyframes;
 pub mod pacing;
 pub mod pair;
 pub mod said;
+pub mod samples;
 pub mod session;
 pub mod shown;
 

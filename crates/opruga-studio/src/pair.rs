@@ -4,6 +4,7 @@ use crate::differences::{Difference, Twins, right_of};
 use crate::document::Document;
 use crate::engine::{self, Common, Engine, Given};
 use crate::said::Said;
+use crate::samples::Sample;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
@@ -127,6 +128,12 @@ impl Engine for Pair {
     fn time(&self) -> f64 {
         self.left.time()
     }
+    fn dimension(&self) -> usize {
+        self.left.dimension()
+    }
+    fn substeps(&self) -> u32 {
+        self.left.substeps()
+    }
     fn snapshot(&self) -> Vec<u8> {
         let (left, right) = (self.left.snapshot(), self.right.snapshot());
         let reason = self.stopped.as_deref().unwrap_or_default().as_bytes();
@@ -169,6 +176,9 @@ impl Engine for Pair {
         let node = self.twins.on_right(body, node);
         self.follow(|right| right.pull(body, node, pointer));
         Ok(given)
+    }
+    fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
+        self.left.usual_pull(body)
     }
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
         let row = self.left.lead(number, pointer)?;
@@ -265,6 +275,17 @@ impl Engine for Pair {
             right: Arc::new(right),
         });
         shown
+    }
+    fn sample(&mut self) -> Sample {
+        let mut sample = self.left.sample();
+        if self.stopped.is_none() {
+            let stored = |sample: &Sample| sample.energy[..4].iter().sum::<f64>();
+            let more = stored(&self.right.sample()) - stored(&sample);
+            let [mean, largest] = self.distances().unwrap_or([f64::NAN; 2]);
+            let [center, volume] = self.in_common().map(|x| x.unwrap_or(f64::NAN));
+            sample.beside = Some([mean, largest, center, volume, more]);
+        }
+        sample
     }
     fn row(&mut self) -> Vec<(String, f64)> {
         let mut row = self.left.row();

@@ -24,6 +24,8 @@ pub enum Step {
     Delete,
     /// Another scene was opened instead of the one of this name.
     Open(String),
+    /// A point was pinned, or taken elsewhere and pinned there.
+    Pin,
     /// A point was let go.
     Unpin,
     /// Everything that was recorded was taken back.

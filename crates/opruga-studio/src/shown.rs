@@ -2,12 +2,13 @@
 
 use crate::differences::Difference;
 use crate::said::{Said, Step};
+use crate::samples::Samples;
 use opruga::Warning;
 use opruga::core::potential::Reading;
 use opruga::core::spec::Values;
 use opruga::draw::{BodyPicture, ColourMap, Picture};
 use opruga::pictures::Quantity;
-use std::sync::Arc;
+use std::sync::{Arc, RwLock};
 
 /// What a person wants to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,6 +150,8 @@ pub enum Offer {
     Steady(Option<usize>),
     /// Take so many substeps and try again what was refused.
     Substeps(u32),
+    /// Give a field of the shape of a body this value instead of the one that was refused, with as many substeps as that needs.
+    Coarser(String, &'static str, i64),
     /// Go on behind the end of a recording.
     GoOn,
 }
@@ -166,6 +169,8 @@ pub struct Message {
     pub text: String,
     /// What would help.
     pub offer: Option<Offer>,
+    /// What a frame would take with the substeps that what was refused needs [s], where that is long.
+    pub frame_seconds: Option<f64>,
 }
 
 /// How far a body reaches. Who makes a picture finds it once: the window asks several times for every one that it draws, and a crowd has
@@ -230,12 +235,16 @@ pub struct Shown {
     pub obstacles: Vec<ObstacleShown>,
     /// Pulls: node, pointer, force [m, m, N].
     pub pulls: Vec<[[f64; 3]; 3]>,
+    /// Pushes of the pointer: node, end of the arrow, force [m, m, N].
+    pub pushes: Vec<[[f64; 3]; 3]>,
     /// Points that a person has pinned: body, node, place [m].
     pub pins: Vec<(usize, u32, [f64; 3])>,
     /// The energy ledger.
     pub energy: EnergyShown,
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
+    /// The curves of this course of things; those of the scene that is open, also behind this moment.
+    pub samples: Arc<RwLock<Samples>>,
     /// What attracted attention.
     pub warnings: Vec<Warning>,
     /// The picture.
@@ -260,6 +269,8 @@ pub struct Shown {
     pub beside: Option<Beside>,
     /// Bodies that were set down anew under another name: old and new.
     pub renamed: Vec<(String, String)>,
+    /// The last copy of a body that was made, with a number that counts them.
+    pub copied: Option<(u64, String)>,
     /// Whether bodies carry drawings with colours of their own.
     pub has_drawings: bool,
     /// The last frame that is as it was recorded, where a recording is viewed.

@@ -184,6 +184,9 @@ words! {
     halve_step: "Go back a second and halve the step", "Vrati se sekundu i prepolovi korak";
     take_steady: "Go back a second and take {}", "Vrati se sekundu i uzmi integrator „{}”";
     use_substeps: "Take {} substeps, with some to spare", "Uzmi {} podkoraka, s rezervom";
+    take_coarser: "Take {} instead, with the substeps for that", "Uzmi radije {}, s podkoracima za to";
+    frame_would_take: "With as many substeps a frame takes about {} s", "S toliko podkoraka sličica traje oko {} s";
+    computing: "computing a frame for {} s", "sličica se računa {} s";
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";
@@ -195,6 +198,7 @@ words! {
     step_duplicate: "copy", "kopija";
     step_move: "move", "pomak";
     step_delete: "delete", "brisanje";
+    step_pin: "pin a point", "pribadanje točke";
     step_unpin: "free a point", "oslobađanje točke";
     step_reset: "reset", "povratak na početak";
     step_open: "back to", "natrag na";

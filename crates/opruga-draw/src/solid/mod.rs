@@ -53,6 +53,12 @@ pub(crate) fn scene(
         let shadow = shadow.as_ref().filter(|_| Some(plane) == floor);
         ground::draw(&mut screen, &painter.camera, view, *plane, shadow);
     }
+    // The dot of a node lies before its place: it would hide the arrow that begins there.
+    let dotted = picture.bodies.iter().any(|body| body.nodes_drawn);
+    let surfaces = (dotted && !picture.arrows.is_empty()).then(|| screen.near.clone());
+    for (index, body) in picture.bodies.iter().enumerate() {
+        painter.nodes(&mut screen, body, BODIES[index % BODIES.len()]);
+    }
     let mut image = screen.image()?;
     for body in &picture.bodies {
         if let Some(colour) = body.outlined {
@@ -62,8 +68,9 @@ pub(crate) fn scene(
     }
     let mut canvas = Canvas::new(&mut image);
     let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
+    let near = surfaces.as_deref().unwrap_or(&screen.near);
     draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point| {
-        painter.in_sight(&screen, point)
+        painter.in_sight([screen.width, screen.height], near, point)
     });
     Ok((image, painter.camera.scale(view.center()) / SAMPLES as f64))
 }
@@ -123,11 +130,11 @@ impl Painter<'_> {
         shadow
     }
 
-    /// Whether nothing on the screen hides a point of a surface.
-    fn in_sight(&self, screen: &Screen, point: [f64; 3]) -> bool {
+    /// Whether nothing hides a point of a surface on a screen of this size with surfaces so near.
+    fn in_sight(&self, [width, height]: [usize; 2], near: &[f32], point: [f64; 3]) -> bool {
         let Some(seen) = self.camera.see(point) else { return false };
         let [column, row] = seen.pixel.map(|value| value as usize);
-        column >= screen.width || row >= screen.height || screen.near[row * screen.width + column] < seen.near * 1.004
+        column >= width || row >= height || near[row * width + column] < seen.near * 1.004
     }
 
     /// Draws a line between two points.
@@ -191,16 +198,37 @@ impl Painter<'_> {
         if triangles(body).is_empty() { 1.6 * self.unit } else { 0.8 * self.unit }
     }
 
-    /// Draws a body.
+    /// The places of the scalars of a body on its map.
+    fn places(&self, body: &BodyPicture) -> (ColourMap, Vec<f32>) {
+        let range = self.view.range(self.picture);
+        let map = self.picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
+        (map, body.scalar.iter().map(|&scalar| View::place(range, scalar) as f32).collect())
+    }
+
+    /// Draws the nodes of a body, where they are wanted.
+    fn nodes(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
+        if !body.nodes_drawn {
+            return;
+        }
+        let (map, places) = self.places(body);
+        for (node, &position) in body.positions.iter().enumerate() {
+            if let Some(seen) = self.camera.see(position) {
+                let colour = places
+                    .get(node)
+                    .map_or_else(|| darker(body.colour.unwrap_or(base)), |&place| map.colour(f64::from(place)));
+                screen.disc(seen, 1.9 * self.unit, darker(colour));
+            }
+        }
+    }
+
+    /// Draws a body but for its nodes.
     fn body(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         for ends in &body.rest.segments {
             let ends = ends.map(|node| body.rest.positions[node as usize]);
             self.line(screen, ends, 1.0 * self.unit, SOFT_INK);
         }
         let base = body.colour.unwrap_or(base);
-        let range = self.view.range(self.picture);
-        let places: Vec<f32> = body.scalar.iter().map(|&scalar| View::place(range, scalar) as f32).collect();
-        let map = self.picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
+        let (map, places) = self.places(body);
         let colouring = if places.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &places) };
         let surface = Surface { positions: &body.positions, triangles: triangles(body), smooth: true };
         shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
@@ -218,13 +246,6 @@ impl Painter<'_> {
                 screen.line([from, to], width, colours);
             }
         }
-        if body.nodes_drawn {
-            for (node, seen) in seen.iter().enumerate() {
-                if let Some(seen) = seen {
-                    screen.disc(*seen, 1.9 * self.unit, darker(colour(node as u32)));
-                }
-            }
-        }
     }
 }
 
@@ -239,6 +260,52 @@ fn triangles(body: &BodyPicture) -> &[[u32; 3]] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::{ArrowKind, ArrowPicture, Legend};
+
+    /// A square that lies before the camera of its view, with an arrow at its first corner.
+    fn square() -> Picture {
+        let body = BodyPicture {
+            positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+            facets: Facets::Triangles(vec![[0, 1, 2], [0, 2, 3]]),
+            ..BodyPicture::default()
+        };
+        let arrow = ArrowPicture { kind: ArrowKind::Velocity, from: [0.0; 3], vector: [1.0, 1.0, 0.0] };
+        Picture { dimension: 3, bodies: vec![body], arrows: vec![arrow], ..Picture::default() }
+    }
+
+    #[test]
+    fn an_arrow_that_begins_at_a_node_is_seen_with_the_dot_of_that_node() {
+        let drawn = |nodes_drawn: bool, arrows: bool| {
+            let mut picture = square();
+            let view = View::fit([&picture]).expect("a view");
+            picture.bodies[0].nodes_drawn = nodes_drawn;
+            if !arrows {
+                picture.arrows.clear();
+            }
+            scene(&picture, &view, [255; 3], [200, 200], 1.0).expect("an image").0
+        };
+        for nodes_drawn in [false, true] {
+            let (with, without) = (drawn(nodes_drawn, true), drawn(nodes_drawn, false));
+            let other = with.pixels().chunks_exact(4).zip(without.pixels().chunks_exact(4)).filter(|(a, b)| a != b);
+            assert!(other.count() > 40, "with dots: {nodes_drawn}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_grey_and_not_the_colour_of_the_lowest_one() {
+        for range in [[0.0, 1.0], [0.0, 0.0]] {
+            let mut picture = square();
+            picture.arrows.clear();
+            picture.bodies[0].scalar = vec![f64::NAN; 4];
+            picture.legend = Some(Legend { range: Some(range), ..Legend::default() });
+            let view = View::fit([&picture]).expect("a view");
+            let image = scene(&picture, &view, [255; 3], [200, 200], 1.0).expect("an image").0;
+            let coloured = image.pixels().chunks_exact(4).filter(|p| p[0] != p[1] || p[1] != p[2]);
+            assert_eq!(coloured.count(), 0, "{range:?}");
+            let grey = image.pixels().chunks_exact(4).filter(|p| p[0] < 200);
+            assert!(grey.count() > 2000, "the square is seen");
+        }
+    }
 
     /// Every face of a box has one colour up to its edges: the light of its neighbours does not run over.
     #[test]

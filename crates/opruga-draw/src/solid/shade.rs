@@ -57,7 +57,7 @@ pub(crate) enum Colouring<'a> {
     Plain([u8; 3]),
     /// From a place on a colour map at each corner.
     Mapped {
-        /// The colours of the map.
+        /// The colours of the map, and behind them that of what is no number.
         colours: Vec<[u8; 3]>,
         /// The places of the corners, from 0 to 1.
         places: &'a [f32],
@@ -67,7 +67,8 @@ pub(crate) enum Colouring<'a> {
 impl<'a> Colouring<'a> {
     /// The colours of a map at places.
     pub(crate) fn mapped(map: ColourMap, places: &'a [f32]) -> Colouring<'a> {
-        let colours = (0..256).map(|step| map.colour(f64::from(step) / 255.0)).collect();
+        let steps = (0..256).map(|step| f64::from(step) / 255.0).chain([f64::NAN]);
+        let colours = steps.map(|place| map.colour(place)).collect();
         Colouring::Mapped { colours, places }
     }
 }
@@ -187,8 +188,9 @@ fn paint(
         Colouring::Mapped { colours, places } => {
             let places = triangle.map(|node| places[node as usize]);
             screen.triangle(seen, |weights| {
-                let step = (total(weights, places).clamp(0.0, 1.0) * 255.0 + 0.5) as usize;
-                lit(colours[step.min(255)], shine(weights))
+                let place = total(weights, places);
+                let step = if place.is_nan() { 256 } else { (place.clamp(0.0, 1.0) * 255.0 + 0.5) as usize };
+                lit(colours[step.min(256)], shine(weights))
             });
         }
     }

@@ -1,10 +1,12 @@
 //! The last message, over the scene.
 
 use super::Studio;
+use crate::said::Step;
 use crate::session::{Request, STEADY};
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::Part;
 use egui::{Align2, Color32, CornerRadius, Frame, RichText, Stroke, Ui};
+use opruga::draw::format_value;
 
 /// How long it stays on the screen that something was done [s].
 const TOLD_FOR: f64 = 6.0;
@@ -24,6 +26,11 @@ impl Studio {
             (None, Some(message), _) => (words.said(&message.said), message.severity, message.offer.clone()),
             (None, None, Some((said, severity))) => (words.said(said), *severity, None),
             _ => return,
+        };
+        let takes = message.filter(|_| own.is_none()).and_then(|message| message.frame_seconds);
+        let text = match takes {
+            Some(seconds) => format!("{text}. {}", words.frame_would_take().replace("{}", &format_value(seconds))),
+            None => text,
         };
         let refused = severity == Severity::Refused;
         let now = ui.input(|i| i.time);
@@ -47,7 +54,7 @@ impl Studio {
                         let lines: Vec<&str> = text.lines().collect();
                         let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
                         let monospaced = lines.len() > 1;
-                        let text = RichText::new(short);
+                        let text = RichText::new(if monospaced { short } else { unbroken(&short) });
                         ui.label(if monospaced { text.monospace().size(11.5) } else { text });
                         ui.horizontal(|ui| {
                             if let Some(offer) = &offer {
@@ -57,6 +64,10 @@ impl Studio {
                                         words.take_steady().replace("{}", &words.kind(Part::Integrator, STEADY))
                                     }
                                     Offer::Substeps(n) => words.use_substeps().replace("{}", &n.to_string()),
+                                    Offer::Coarser(_, field, value) => {
+                                        let field = words.done(&Step::Shape(field));
+                                        words.take_coarser().replace("{}", &format!("{field} {value}"))
+                                    }
                                     Offer::GoOn => words.go_on().to_string(),
                                 };
                                 if ui.button(name).clicked() {
@@ -85,5 +96,41 @@ impl Studio {
                     },
                 );
             });
+    }
+}
+
+/// Units that stand behind numbers in messages.
+const UNITS: [&str; 12] = ["s", "ms", "m", "kg", "N", "J", "Pa", "Hz", "%", "rad/s", "m/s", "N/m"];
+
+/// The same with what belongs together held on one line: a letter, its sign of equality and its number, a number and its unit.
+fn unbroken(text: &str) -> String {
+    let mut whole = String::with_capacity(text.len() + 8);
+    let mut last = "";
+    for (place, word) in text.split(' ').enumerate() {
+        let unit = word.trim_end_matches(['.', ',', ';', ':', ')']);
+        let together =
+            word == "=" || last == "=" || last.ends_with(|c: char| c.is_ascii_digit()) && UNITS.contains(&unit);
+        if place > 0 {
+            whole.push(if together { '\u{a0}' } else { ' ' });
+        }
+        whole.push_str(word);
+        last = word;
+    }
+    whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unbroken;
+
+    #[test]
+    fn a_number_stays_with_its_letter_and_its_unit() {
+        let text = unbroken("Undone: move, t = 0.333333 s, at 5 nodes (h = 2 ms).");
+        let lines: Vec<&str> = text.split(' ').collect();
+        assert_eq!(
+            lines,
+            ["Undone:", "move,", "t\u{a0}=\u{a0}0.333333\u{a0}s,", "at", "5", "nodes", "(h\u{a0}=\u{a0}2\u{a0}ms)."]
+        );
+        assert_eq!(unbroken(" a  b "), " a  b ");
     }
 }

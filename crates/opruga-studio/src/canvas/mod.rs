@@ -32,8 +32,9 @@ pub use tool::Tool;
 enum Doing {
     #[default]
     Nothing,
-    /// A body is held; in space at this distance from the camera [m].
-    Holding(f64),
+    /// A body is held; in space at this distance from the camera. Of a push where the pointer was pressed, and the point that was taken
+    /// hold of: that goes the way of the pointer [m].
+    Holding(f64, Option<[[f64; 3]; 2]>),
     /// The view moves along.
     Panning,
     /// The view turns.
@@ -53,6 +54,8 @@ pub struct Canvas {
     pub tool: Tool,
     /// The body that was pressed last.
     pub selected: Option<String>,
+    /// The last copy of a body that was made.
+    copied: Option<(u64, String)>,
     /// Where it is in the window.
     rect: Option<Rect>,
     /// Where the tools lie over it.
@@ -156,7 +159,6 @@ impl Canvas {
         painter.rect_filled(rect, 0.0, paper.background);
         self.fit_if_new(shown, rect);
         self.fit_colours(shown);
-        self.follow_names(shown);
         let mut asks = Vec::new();
         // What is beside is looked at; it moves with the view of the scene that is worked on.
         let within = |at: Pos2| match other {
@@ -231,14 +233,34 @@ impl Canvas {
         }
     }
 
-    /// A body that was set down anew under another name stays selected.
-    fn follow_names(&mut self, shown: &Shown) {
-        let Some(selected) = &self.selected else { return };
-        if shown.bodies.iter().any(|body| body.name == *selected) {
-            return;
+    /// A body that was set down anew under another name stays selected, and one of which that was undone; a copy is selected instead of
+    /// what it was made of.
+    pub(crate) fn follow_names(&mut self, shown: &Shown) {
+        if self.copied != shown.copied {
+            self.copied.clone_from(&shown.copied);
+            let copy = shown.copied.as_ref().map(|(_, name)| name);
+            if let Some(body) = shown.bodies.iter().find(|body| Some(&body.name) == copy) {
+                self.selected = Some(body.name.clone());
+            }
         }
-        if let Some((_, new)) = shown.renamed.iter().rev().find(|(old, _)| old == selected) {
-            self.selected = Some(new.clone());
+        let there = |name: &String| shown.bodies.iter().any(|body| body.name == *name);
+        let Some(selected) = self.selected.as_ref().filter(|selected| !there(selected)) else { return };
+        // From name to name, what came later first.
+        let mut names = vec![selected.clone()];
+        let mut place = 0;
+        while let Some(name) = names.get(place).cloned() {
+            let later = shown.renamed.iter().rev().filter(|(old, _)| *old == name).map(|(_, new)| new);
+            let earlier = shown.renamed.iter().rev().filter(|(_, new)| *new == name).map(|(old, _)| old);
+            for other in later.chain(earlier) {
+                if !names.contains(other) {
+                    names.push(other.clone());
+                }
+            }
+            place += 1;
+        }
+        let only = || (shown.bodies.len() == 1).then(|| shown.bodies[0].name.clone());
+        if let Some(name) = names.into_iter().find(there).or_else(only) {
+            self.selected = Some(name);
         }
     }
 

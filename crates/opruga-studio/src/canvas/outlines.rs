@@ -35,10 +35,26 @@ pub(crate) struct Outline {
     pub(crate) open: Vec<[u32; 2]>,
     /// Whether there are springs that are not edges as well: those would be painted over.
     pub(crate) springs: bool,
-    /// The triangles between the closed lines; none where the body has cells, or more edges than are filled in full.
-    pub(crate) triangles: Vec<[u32; 3]>,
+    /// What the closed lines enclose; nothing where the body has cells, or more edges than are filled in full.
+    pub(crate) parts: Vec<Part>,
     /// Whether it has more edges than are filled in full.
     pub(crate) large: bool,
+}
+
+/// What one line and its holes enclose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Part {
+    /// The nodes of the line and of its holes.
+    pub(crate) nodes: Vec<u32>,
+    /// The triangles between them, each by three places among these nodes.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Part {
+    /// The triangles by the numbers of their nodes in the body.
+    fn of_body(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.triangles.iter().map(|corners| corners.map(|place| self.nodes[place as usize]))
+    }
 }
 
 impl Outlines {
@@ -70,8 +86,8 @@ impl Outlines {
         }
         let outline = slot.get_or_insert_with(|| Outline::new(body, edges, counts));
         let looked_at = its_turn && !outline.large && body.cells.is_empty();
-        if looked_at && !fits(body, &outline.triangles) {
-            outline.triangles = fill(body, &outline.closed);
+        if looked_at && !fits(body, outline) {
+            outline.parts = fill(body, &outline.closed);
         }
         outline
     }
@@ -84,14 +100,28 @@ impl Outline {
             |list: &[[u32; 2]]| -> BTreeSet<[u32; 2]> { list.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect() };
         let springs = !sorted(&body.segments).is_subset(&sorted(edges));
         let large = edges.len() > MOST_ANEW && body.cells.is_empty();
-        let triangles = if body.cells.is_empty() && !large { fill(body, &closed) } else { Vec::new() };
-        Outline { counts, closed, open, springs, triangles, large }
+        let parts = if body.cells.is_empty() && !large { fill(body, &closed) } else { Vec::new() };
+        Outline { counts, closed, open, springs, parts, large }
     }
 }
 
-/// Whether no triangle has turned over.
-fn fits(body: &BodyPicture, triangles: &[[u32; 3]]) -> bool {
-    triangles.iter().all(|t| area(t.map(|node| body.positions[node as usize])) >= 0.0)
+/// Whether no triangle has turned over, and they cover what the lines enclose: where these had crossed, they may not have.
+fn fits(body: &BodyPicture, outline: &Outline) -> bool {
+    let mut covered = 0.0;
+    for triangle in outline.parts.iter().flat_map(Part::of_body) {
+        let twice = area(triangle.map(|node| body.positions[node as usize]));
+        if twice < 0.0 {
+            return false;
+        }
+        covered += twice;
+    }
+    covered >= 0.999 * outline.closed.iter().map(|line| enclosed(body, line)).sum::<f64>()
+}
+
+/// Twice the area within a line; negative where that runs clockwise.
+fn enclosed(body: &BodyPicture, line: &[u32]) -> f64 {
+    let point = |place: usize| body.positions[line[place % line.len()] as usize];
+    (0..line.len()).map(|k| (point(k), point(k + 1))).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
 fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
@@ -140,17 +170,9 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
 }
 
 /// Triangles within closed lines; a line that runs clockwise is a hole in the one around it.
-pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
+pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<Part> {
     let point = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
-    let twice = |line: &[u32]| -> f64 {
-        (0..line.len())
-            .map(|k| {
-                let (a, b) = (point(line[k]), point(line[(k + 1) % line.len()]));
-                a[0] * b[1] - a[1] * b[0]
-            })
-            .sum()
-    };
-    let (outer, holes): (Vec<&Vec<u32>>, Vec<&Vec<u32>>) = lines.iter().partition(|line| twice(line) > 0.0);
+    let (outer, holes): (Vec<&Vec<u32>>, Vec<&Vec<u32>>) = lines.iter().partition(|line| enclosed(body, line) > 0.0);
     let within = |line: &[u32], p: [f64; 2]| {
         let crosses = |k: &usize| {
             let (a, b) = (point(line[*k]), point(line[(*k + 1) % line.len()]));
@@ -164,7 +186,7 @@ pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
         let inside = some.clone().filter(|node| within(line, point(**node))).count();
         2 * inside > some.count()
     };
-    let mut triangles = Vec::new();
+    let mut parts = Vec::new();
     let mut earcut = earcut::Earcut::new();
     for line in &outer {
         let mut nodes = (*line).clone();
@@ -175,23 +197,26 @@ pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<[u32; 3]> {
         }
         let mut found: Vec<u32> = Vec::new();
         earcut.earcut(nodes.iter().map(|node| point(*node)), &starts, &mut found);
+        let mut triangles = Vec::with_capacity(found.len() / 3);
         for corners in found.chunks_exact(3) {
-            let mut triangle = [0, 1, 2].map(|k| nodes[corners[k] as usize]);
-            if area(triangle.map(|node| body.positions[node as usize])) < 0.0 {
+            let mut triangle = [0, 1, 2].map(|k| corners[k]);
+            if area(triangle.map(|place| body.positions[nodes[place as usize] as usize])) < 0.0 {
                 triangle.swap(1, 2);
             }
             triangles.push(triangle);
         }
+        parts.push(Part { nodes, triangles });
     }
-    triangles
+    parts
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn covered(body: &BodyPicture, triangles: &[[u32; 3]]) -> f64 {
-        triangles.iter().map(|t| 0.5 * area(t.map(|node| body.positions[node as usize]))).sum()
+    fn covered(body: &BodyPicture, parts: &[Part]) -> f64 {
+        let triangles = parts.iter().flat_map(Part::of_body);
+        triangles.map(|t| 0.5 * area(t.map(|node| body.positions[node as usize]))).sum()
     }
 
     fn ring(points: &[[f64; 2]], first: u32) -> (Vec<[f64; 3]>, Vec<[u32; 2]>) {
@@ -210,14 +235,48 @@ mod tests {
         edges.extend(others);
         let mut body = BodyPicture { positions, facets: Facets::Edges(edges), ..Default::default() };
         let mut fills = Outlines::default();
-        let triangles = fills.of(0, &body).triangles.clone();
-        assert!((covered(&body, &triangles) - 3.0).abs() < 1e-12);
+        let parts = fills.of(0, &body).parts.clone();
+        assert!((covered(&body, &parts) - 3.0).abs() < 1e-12);
         // A corner is pushed in: the old triangles would overlap.
         body.positions[2] = [0.2, 0.2, 0.0];
         body.positions.truncate(4);
         body.facets = Facets::Edges((0..4).map(|k| [k, (k + 1) % 4]).collect());
-        let triangles = fills.of(0, &body).triangles.clone();
-        assert!((covered(&body, &triangles) - 0.4).abs() < 1e-12, "{triangles:?}");
+        let parts = fills.of(0, &body).parts.clone();
+        assert!((covered(&body, &parts) - 0.4).abs() < 1e-12, "{parts:?}");
+    }
+
+    #[test]
+    fn a_body_that_was_inside_out_or_crossed_is_filled_again_once_it_is_right() {
+        let right = ring(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]], 0);
+        let body = |points: &[[f64; 2]]| BodyPicture {
+            positions: ring(points, 0).0,
+            facets: Facets::Edges(right.1.clone()),
+            ..Default::default()
+        };
+        // Its corners round the other way, all in one point, and crossed so that the turns cancel.
+        for wrong in [
+            [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]],
+            [[1.0, 1.0]; 4],
+            [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]],
+        ] {
+            let mut outlines = Outlines::default();
+            outlines.of(0, &body(&wrong));
+            let body = BodyPicture { positions: right.0.clone(), ..body(&wrong) };
+            let parts = outlines.of(0, &body).parts.clone();
+            assert!((covered(&body, &parts) - 4.0).abs() < 1e-12, "{wrong:?}: {parts:?}");
+        }
+        // One of two rings alone.
+        let (mut positions, mut edges) = right.clone();
+        let (more, others) = ring(&[[5.0, 0.0], [5.0, 1.0], [6.0, 1.0], [6.0, 0.0]], 4);
+        positions.extend(more);
+        edges.extend(others);
+        let mut body = BodyPicture { positions, facets: Facets::Edges(edges), ..Default::default() };
+        let mut outlines = Outlines::default();
+        let before = outlines.of(0, &body).parts.clone();
+        assert!((covered(&body, &before) - 4.0).abs() < 1e-12, "{before:?}");
+        body.positions.swap(5, 7);
+        let parts = outlines.of(0, &body).parts.clone();
+        assert!((covered(&body, &parts) - 5.0).abs() < 1e-12 && parts.len() == 2, "{parts:?}");
     }
 
     #[test]
@@ -236,14 +295,14 @@ mod tests {
             let mut outlines = Outlines::default();
             let outline = outlines.of(0, &body);
             assert_eq!((outline.closed.len(), outline.open.len()), (2, 0));
-            assert!((covered(&body, &outline.triangles) - 1.0).abs() < 1e-12, "{:?}", outline.triangles);
+            assert!((covered(&body, &outline.parts) - 1.0).abs() < 1e-12, "{:?}", outline.parts);
         }
         // A square whose triangular hole touches it in node 0.
         let positions = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.5, 1.0], [1.0, 0.5]];
         let body = body(vec![[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [4, 5], [5, 0]], &positions);
         let mut outlines = Outlines::default();
         let outline = outlines.of(0, &body);
-        assert!((covered(&body, &outline.triangles) - (4.0 - 0.375)).abs() < 1e-12, "{:?}", outline.triangles);
+        assert!((covered(&body, &outline.parts) - (4.0 - 0.375)).abs() < 1e-12, "{:?}", outline.parts);
     }
 
     #[test]

@@ -49,6 +49,11 @@ impl Canvas {
                 plane::rubber(look, from, to, force, &taken);
             }
         }
+        for [node, end, force] in &shown.pushes {
+            if let (Some(from), Some(to)) = (project(*node), project(*end)) {
+                plane::push(look, from, to, force, &taken);
+            }
+        }
         let body = |name: &str| {
             let place = shown.bodies.iter().position(|body| body.name == name)?;
             shown.picture.bodies.get(place)

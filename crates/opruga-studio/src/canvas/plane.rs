@@ -5,7 +5,7 @@ use super::camera::Flat;
 use super::detail::{Detail, apart, corners};
 use super::labels;
 use super::look::{Look, Paper};
-use super::outlines::{Outlines, fill};
+use super::outlines::{Outlines, Part, fill};
 use crate::shown::Shown;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
@@ -78,9 +78,8 @@ pub(crate) struct Kept {
     /// Where the nodes of a body are on the screen, and their colours.
     at: Vec<Pos2>,
     inks: Vec<Ink>,
-    /// The corners of a large outline that are seen: their places on it, and of each node its number among them.
+    /// The corners of a large outline that are seen: their places on it.
     seen: Vec<u32>,
-    number: Vec<u32>,
 }
 
 impl Kept {
@@ -135,7 +134,7 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, shown, .. } = *look;
     let (place, body) = number;
-    let Kept { outlines, brush, at, inks, seen, number: numbers } = kept;
+    let Kept { outlines, brush, at, inks, seen } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
         // The areas that it carries, in their own colours, one over another.
         for area in &body.areas {
@@ -168,16 +167,20 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         // So many points of a surface are not told apart: those are filled that are.
         let detail = Detail { near: 1.0, beside: 0.35, colour: 24, screen: rect };
         let lines = corners(closed, detail, |node| (at[*node as usize], inks[*node as usize].line), seen);
-        let mut triangles = fill(body, &lines);
-        numbers.resize(at.len(), 0);
-        lines.iter().flatten().zip(0..).for_each(|(node, number)| numbers[*node as usize] = number);
-        triangles.iter_mut().flatten().for_each(|node| *node = numbers[*node as usize]);
-        let shade = |node: &u32| (at[*node as usize], inks[*node as usize].fill);
-        brush.fill(lines.iter().flatten().map(shade), &triangles);
+        let parts = fill(body, &lines);
+        // How near it is looked at does not change the colour of its inside.
+        let all: Vec<u32> = outline.closed.iter().flatten().copied().collect();
+        for part in &parts {
+            let ink = inside(body, if parts.len() == 1 { &all } else { &part.nodes }, map, inks);
+            brush.fill(part.nodes.iter().map(|node| (at[*node as usize], ink)), &part.triangles);
+        }
     } else if !body.cells.is_empty() {
         brush.fill(at.iter().zip(inks.iter()).map(|(pos, ink)| (*pos, ink.fill_of_cells)), &body.cells);
-    } else if !outline.triangles.is_empty() {
-        brush.fill(at.iter().zip(inks.iter()).map(|(pos, ink)| (*pos, ink.fill)), &outline.triangles);
+    } else {
+        for Part { nodes, triangles } in &outline.parts {
+            let ink = inside(body, nodes, map, inks);
+            brush.fill(nodes.iter().map(|node| (at[*node as usize], ink)), triangles);
+        }
     }
     let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
@@ -199,6 +202,19 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
         at.iter().zip(inks.iter()).for_each(|(pos, ink)| brush.disc(*pos, radius, ink.line));
+    }
+}
+
+/// The colour of what lines enclose: that of the mean over their nodes, as in the pictures of the command line. Between them no number is
+/// known, and the triangles mean nothing.
+fn inside(body: &BodyPicture, nodes: &[u32], map: &Colours, inks: &[Ink]) -> Color32 {
+    match (body.scalar.is_empty(), nodes.first()) {
+        (false, Some(_)) => {
+            let sum: f64 = nodes.iter().map(|node| body.scalar[*node as usize]).sum();
+            map.at(sum / nodes.len() as f64).fill
+        }
+        (true, Some(node)) => inks[*node as usize].fill,
+        (_, None) => Color32::TRANSPARENT,
     }
 }
 
@@ -347,13 +363,18 @@ fn arrows(painter: &Painter, shown: &Shown, flat: &Flat, project: &dyn Fn([f64; 
         if way.length() < 2.0 {
             continue;
         }
-        let stroke = Stroke::new(1.5, arrow_colour(arrow.kind));
-        painter.line_segment([from, to], stroke);
-        let back = way.normalized() * 6.0_f32.min(0.5 * way.length());
-        let side = Vec2::new(-back.y, back.x) * 0.45;
-        let head = vec![to, to - back + side, to - back - side];
-        painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+        self::arrow(painter, from, to, Stroke::new(1.5, arrow_colour(arrow.kind)), 6.0);
     }
+}
+
+/// A line with a head of this length.
+fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, long: f32) {
+    let way = to - from;
+    painter.line_segment([from, to], stroke);
+    let back = way.normalized() * long.min(0.5 * way.length());
+    let side = Vec2::new(-back.y, back.x) * 0.45;
+    let head = vec![to, to - back + side, to - back - side];
+    painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
 }
 
 /// The mark of a pinned node.
@@ -367,6 +388,21 @@ pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], ta
     painter.line_segment([from, to], Stroke::new(2.5, RUBBER));
     painter.circle_filled(from, 4.0, RUBBER);
     painter.circle(to, 6.0, paper.background, Stroke::new(2.0, RUBBER));
+    newtons(look, to, force, taken);
+}
+
+/// The arrow of a push, as long as the way of the pointer, and its force in newtons.
+pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
+    look.painter.circle_filled(from, 4.0, RUBBER);
+    if (to - from).length() >= 2.0 {
+        arrow(look.painter, from, to, Stroke::new(2.5, RUBBER), 11.0);
+    }
+    newtons(look, to, force, taken);
+}
+
+/// A force in newtons, beside the point where the pointer has it, where nothing else is.
+fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
+    let Look { painter, paper, .. } = *look;
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
     let text = format!("{} N", format_value(newtons));
     let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), RUBBER);

@@ -104,7 +104,7 @@ impl Canvas {
         let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
         // Two fingers move the view: what the first of them took hold of is let go.
         if ui.input(|i| i.multi_touch().is_some()) {
-            if let Doing::Holding(_) = std::mem::take(&mut self.doing) {
+            if let Doing::Holding(..) = std::mem::take(&mut self.doing) {
                 asks.push(Request::Release);
             }
             return;
@@ -134,10 +134,13 @@ impl Canvas {
         let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
-            Doing::Holding(distance) => {
-                let distance = *distance;
+            Doing::Holding(distance, push) => {
+                let (distance, push) = (*distance, *push);
                 if let Some(point) = self.point(shown, rect, at, distance) {
-                    asks.push(Request::Lead(point));
+                    asks.push(Request::Lead(match push {
+                        Some([pressed, hold]) => [0, 1, 2].map(|d| hold[d] + (point[d] - pressed[d])),
+                        None => point,
+                    }));
                 }
                 ui.ctx().request_repaint();
             }
@@ -223,12 +226,14 @@ impl Canvas {
             (None, true) => Request::GrabBeside(grip, under.body, under.point),
             (None, false) => Request::Grab(grip, under.body, under.point),
         });
-        self.doing = Doing::Holding(under.distance);
+        // A push begins without force, though the pointer is somewhere beside the node; what is pulled comes to the pointer.
+        let pressed = self.point(shown, rect, at, under.distance).filter(|_| grip == Grip::Push);
+        self.doing = Doing::Holding(under.distance, pressed.map(|pressed| [pressed, under.point]));
     }
 
     fn end(&mut self, shown: &Shown, rect: Rect, at: Pos2, asks: &mut Vec<Request>) {
         match std::mem::take(&mut self.doing) {
-            Doing::Holding(_) => asks.push(Request::Release),
+            Doing::Holding(..) => asks.push(Request::Release),
             Doing::Shifting(name, start, distance) => {
                 if let Some(end) = self.point(shown, rect, at, distance) {
                     let moved = [0, 1, 2].map(|d| end[d] - start[d]);

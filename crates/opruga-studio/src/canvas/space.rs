@@ -155,9 +155,9 @@ impl Space {
         let size = [side(rect.width()), side(rect.height())];
         // The only body of a scene needs no mark.
         let selected = selected.filter(|_| shown.bodies.len() > 1).map(String::from);
-        let wanted = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
+        let wanted: Last = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
         if self.last.as_ref() != Some(&wanted) && !self.busy.swap(true, Ordering::AcqRel) {
-            self.last = Some(wanted);
+            self.last = Some(wanted.clone());
             let [r, g, b, _] = paper.background.to_array();
             let order = Order {
                 shown: Arc::clone(shown),
@@ -177,6 +177,13 @@ impl Space {
                 busy.store(false, Ordering::Release);
                 context.request_repaint();
             }));
+        }
+        // Where the picture shows this very moment, what has come to it since, such as the way of a pull, is drawn over it.
+        if self.last.as_ref() == Some(&wanted)
+            && !self.is_drawing()
+            && let Some((seen, _)) = &mut self.seen
+        {
+            *seen = Arc::clone(shown);
         }
         if let Some(texture) = &self.texture {
             let all = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
@@ -214,11 +221,15 @@ fn fingerprint(shown: &Shown) -> u64 {
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
     let map = picture.legend.as_ref().map_or(0, |legend| legend.map as u64);
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
-    map * 1_000_000_007
+    // A body that is set down elsewhere at the start is so in the same frame.
+    let corners = shown.extents.iter().flat_map(|extent| extent.corners).flatten();
+    let places = corners.fold(0_u64, |sum, x| sum.rotate_left(7) ^ x.to_bits());
+    let counted = map * 1_000_000_007
         + label * 1_000_003
         + lines as u64 * 1_009
         + picture.arrows.len() as u64 * 7
-        + picture.bodies.len() as u64
+        + picture.bodies.len() as u64;
+    counted ^ places
 }
 
 /// Draws what is ordered.

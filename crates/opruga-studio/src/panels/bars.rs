@@ -7,6 +7,7 @@ use crate::words::Language;
 use egui::{Align, Layout, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
 use opruga::draw::ColourMap;
 use opruga::pictures::Quantity;
+use std::time::Duration;
 
 /// What was chosen in the bar above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,12 +209,13 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, way: Re
     response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
 }
 
-/// The line on top: the numbers of the machine, and what draws.
+/// The line on top: the numbers of the machine, and what draws. The rate of pictures where they follow one another, and for how long a
+/// frame has been computed that is not done.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,
     words: Language,
-    rate: f64,
+    (rate, busy): (Option<f64>, Option<Duration>),
     narrow: bool,
     drawn_by: Option<&[String; 2]>,
     making: impl Iterator<Item = (What, u32)>,
@@ -228,7 +230,14 @@ pub fn status(
     let whole = |text: RichText| egui::Label::new(text).extend();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
-        ui.add(whole(small(format!("{rate:.0} FPS"))));
+        let rate = rate.map_or("–".into(), |rate| format!("{rate:.0}"));
+        ui.add(whole(small(format!("{rate} FPS"))));
+        if let Some(busy) = busy {
+            // The figures behind it are those of the frame before.
+            let text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
+            ui.add(whole(small(text).color(egui::Color32::from_rgb(230, 140, 20))));
+            ui.disable();
+        }
         ui.add(whole(small(format!("{:.2} ms", 1e3 * cost)))).on_hover_text(words.step_time());
         let pace = format!("{moving:.2} × {}", words.real_time());
         if shown.playing && shown.pace.ratio < 0.95 {
@@ -380,7 +389,7 @@ mod tests {
     #[test]
     fn the_beginning_of_a_sentence_has_whole_words_and_says_where_it_was_cut() {
         assert_eq!(beginning("the body is stretched:\nby far"), "the body is stretched: by far");
-        let long = "`heun` has no stable step for body `ball` (ω = 160 rad/s): its fastest motion grows as exp(7 t)";
+        let long = "`heun` has no stable step for body `ball` (ω = 160 rad/s): a motion grows as exp(7 t)";
         assert_eq!(beginning(long), "`heun` has no stable step for body `ball` …");
         let words = "a word ".repeat(20);
         assert_eq!(beginning(&words), "a word a word a word a word a word a word a word a word a …");

@@ -171,6 +171,9 @@ fn number(
 /// The end of sliders of whole numbers that know none before it.
 const MOST_WHOLE: i64 = 100_000;
 
+/// Bounds beyond this are no ends of sliders.
+const FAR: f64 = 1e5;
+
 /// The ends of a slider, and whether the upper one is open.
 fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let default = match field.default {
@@ -182,15 +185,16 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let wide = 10f64.powf((20.0 * size).log10().ceil());
     match field.range {
         Allowed::Number { least, greatest } => {
+            // Far ends say what has a meaning, not what is usual.
             let low = match least {
-                Bound::Closed(x) | Bound::Open(x) => x,
-                Bound::None if whole => 0.0,
-                Bound::None => -wide,
+                Bound::Closed(x) | Bound::Open(x) if x >= -FAR => x,
+                _ if whole => 0.0,
+                _ => -wide,
             };
             match greatest {
-                Bound::Closed(x) | Bound::Open(x) => (low, x, false),
-                Bound::None if low < 0.0 => (low, wide, false),
-                Bound::None => (low, wide, true),
+                Bound::Closed(x) | Bound::Open(x) if x <= FAR => (low, x, false),
+                _ if low < 0.0 => (low, wide, false),
+                _ => (low, wide, true),
             }
         }
         // Numbers of vertices and the like: as many as can be worked with.
@@ -247,6 +251,8 @@ mod tests {
         assert_eq!(ends(&field(Allowed::FRACTION), 0.3, false), (0.0, 1.0, false));
         let (low, high, _) = ends(&field(Allowed::ANY), -3.0, false);
         assert!(low <= -30.0 && high >= 30.0);
+        let turned = Allowed::Number { least: Bound::Closed(-1e6), greatest: Bound::Closed(1e6) };
+        assert_eq!(ends(&field(turned), -3.0, false), ends(&field(Allowed::ANY), -3.0, false));
         let (low, high, _) = ends(&field(Allowed::Integer { least: 3, greatest: 1 << 40 }), 36.0, true);
         assert!(low == 3.0 && (200.0..1e6).contains(&high));
     }

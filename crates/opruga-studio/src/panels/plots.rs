@@ -1,151 +1,77 @@
-//! Curves of the last moments: energy, gas, momentum, computing time.
+//! Curves of the course of things: energy, gas, momentum, computing time.
 
-use crate::differences::Difference;
+use crate::samples::Sample;
 use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Color32, RichText, Ui};
-use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints};
-use opruga::core::potential::Reading;
+use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints, VLine};
 use opruga::draw::{OKABE_ITO, format_tick, format_value, nice_ticks};
+use std::sync::PoisonError;
 
-/// The most moments that are kept.
-const MOST: usize = 3_000;
+/// A curve: its points in runs, between which nothing is known.
+type Curve = Vec<Vec<[f64; 2]>>;
 
-/// One moment.
-#[derive(Clone, Debug, Default)]
-struct Moment {
-    time: f64,
-    energy: [f64; 7],
-    momentum: [f64; 3],
-    cost: f64,
-    /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
-    /// energy; not a number where the sides have it not in common.
-    beside: Option<[f64; 5]>,
-    readings: Vec<Reading>,
-}
-
-/// What was seen.
-#[derive(Debug, Default)]
-pub struct Plots {
-    moments: Vec<Moment>,
-    opened: u64,
-    /// What the right side differs in.
-    differences: Option<Vec<Difference>>,
-    body: Option<String>,
-}
-
-impl Plots {
-    /// Keeps a moment; one that lies in the past takes those behind it away.
-    pub fn remember(&mut self, shown: &Shown, selected: Option<&str>) {
-        if self.opened != shown.opened || self.body.as_deref() != selected {
-            self.opened = shown.opened;
-            if self.body.as_deref() != selected {
-                self.moments.iter_mut().for_each(|moment| moment.readings.clear());
-            } else {
-                self.moments.clear();
+/// Shows the curves side by side; those of gas of the selected body.
+pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, room: egui::Vec2) {
+    let samples = shown.samples.read().unwrap_or_else(PoisonError::into_inner);
+    let selected = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
+    let readings = selected.map_or(&[][..], |body| &body.readings);
+    let beside = shown.beside.is_some();
+    let volume = shown.beside.as_ref().is_some_and(|beside| beside.volume.is_some());
+    let count = 3 + usize::from(!readings.is_empty()) + 2 * usize::from(beside) + usize::from(volume);
+    let size = egui::vec2((room.x / count as f32 - 10.0).max(180.0), room.y);
+    // Where one has gone back, the curves go on behind the moment that is seen.
+    let now = (shown.frames < shown.latest).then_some(shown.time);
+    let curve = |of: &dyn Fn(&Sample) -> Option<f64>| -> Curve {
+        let point = |sample: &Sample| Some([sample.time, of(sample).filter(|x| x.is_finite())?]);
+        let runs = samples.runs().flat_map(|run| run.split(|sample| point(sample).is_none()));
+        runs.map(|run| run.iter().filter_map(point).collect()).filter(|run: &Vec<_>| !run.is_empty()).collect()
+    };
+    ui.horizontal(|ui| {
+        if beside {
+            let difference = |k: usize| curve(&|sample| Some(sample.beside?[k]));
+            let names = [words.mean_distance(), words.largest_distance(), words.center_distance()];
+            let lines = names.into_iter().zip(0..).map(|(name, k)| (name, difference(k)));
+            let lines = lines.filter(|(_, runs)| !runs.is_empty()).collect();
+            plot(ui, "distance", words.distance_of_sides(), size, now, lines);
+            if volume {
+                let unit = if shown.dimension == 3 { "m³" } else { "m²" };
+                let title = format!("{} [{unit}]", words.volume_of_sides());
+                plot(ui, "volume beside", &title, size, now, vec![("", difference(3))]);
             }
-            self.body = selected.map(String::from);
+            plot(ui, "energy beside", words.energy_of_sides(), size, now, vec![("", difference(4))]);
         }
-        // What has differed from the start is computed from the start: the old curves are those of others.
-        let differences = shown.beside.as_ref().map(|beside| beside.differences.clone());
-        if self.differences != differences {
-            self.differences = differences;
-            self.moments.iter_mut().for_each(|moment| moment.beside = None);
-        }
-        if self.moments.last().is_some_and(|last| last.time == shown.time) {
-            return;
-        }
-        self.moments.retain(|moment| moment.time < shown.time);
-        if self.moments.len() >= MOST {
-            // Every second of the older half goes: long runs stay whole.
-            let half = MOST / 2;
-            let mut place = 0;
-            self.moments.retain(|_| {
-                place += 1;
-                place > half || place % 2 == 0
-            });
-        }
-        let e = &shown.energy;
-        let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
-        self.moments.push(Moment {
-            time: shown.time,
-            energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work, e.losses, e.error],
-            momentum: shown.momentum,
-            cost: 1e3 * shown.pace.frame_cost,
-            beside: shown.beside.as_ref().filter(|beside| beside.stopped.is_none()).map(|beside| {
-                let [mean, largest] = beside.distances.unwrap_or([f64::NAN; 2]);
-                let [center, volume, energy] =
-                    [beside.center, beside.volume, beside.energy].map(|x| x.unwrap_or(f64::NAN));
-                [mean, largest, center, volume, energy]
-            }),
-            readings: body.map_or_else(Vec::new, |body| body.readings.clone()),
-        });
-    }
-
-    /// Shows the curves side by side.
-    pub fn show(&self, ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, room: egui::Vec2) {
-        let gas = self.moments.last().is_some_and(|last| !last.readings.is_empty());
-        let beside = shown.beside.is_some();
-        let volume = shown.beside.as_ref().is_some_and(|beside| beside.volume.is_some());
-        let count = 3 + usize::from(gas) + 2 * usize::from(beside) + usize::from(volume);
-        let size = egui::vec2((room.x / count as f32 - 10.0).max(180.0), room.y);
-        ui.horizontal(|ui| {
-            let energies = [
-                (words.kinetic(), 0),
-                (words.elastic(), 1),
-                (words.of_gas(), 2),
-                (words.of_gravity(), 3),
-                (words.work(), 4),
-                (words.losses(), 5),
-                (words.integration_error(), 6),
-            ];
-            let curve = |of: &dyn Fn(&Moment) -> f64| -> Vec<[f64; 2]> {
-                self.moments.iter().map(|moment| [moment.time, of(moment)]).collect()
+        let energies = [
+            words.kinetic(),
+            words.elastic(),
+            words.of_gas(),
+            words.of_gravity(),
+            words.work(),
+            words.losses(),
+            words.integration_error(),
+        ];
+        let lines = energies.into_iter().zip(0..).map(|(name, k)| (name, curve(&|s| Some(s.energy[k])))).collect();
+        plot(ui, "energy", words.energy(), size, now, lines);
+        if let Some(body) = selected.filter(|_| !readings.is_empty()) {
+            // Volume and pressure differ in size: each is shown as a share of its largest value.
+            let share = |name: &str| {
+                let value = |sample: &Sample| {
+                    sample.readings_of(body.number).iter().find(|(other, _)| *other == name).map(|(_, x)| *x)
+                };
+                let values = samples.all().iter().filter_map(value).filter(|x| x.is_finite());
+                let most = values.fold(0.0, |most: f64, x| most.max(x.abs()));
+                curve(&|sample| value(sample).map(|x| if most > 0.0 { 100.0 * x / most } else { 0.0 }))
             };
-            if beside {
-                let difference = |k: usize| -> Vec<[f64; 2]> {
-                    let there = |m: &Moment| Some([m.time, m.beside?[k]]).filter(|point| point[1].is_finite());
-                    self.moments.iter().filter_map(there).collect()
-                };
-                let names = [words.mean_distance(), words.largest_distance(), words.center_distance()];
-                let lines = names.into_iter().zip(0..).map(|(name, k)| (name, difference(k)));
-                let lines = lines.filter(|(_, points)| !points.is_empty()).collect();
-                plot(ui, "distance", words.distance_of_sides(), size, lines);
-                if volume {
-                    let unit = if shown.dimension == 3 { "m³" } else { "m²" };
-                    let title = format!("{} [{unit}]", words.volume_of_sides());
-                    plot(ui, "volume beside", &title, size, vec![("", difference(3))]);
-                }
-                plot(ui, "energy beside", words.energy_of_sides(), size, vec![("", difference(4))]);
-            }
-            let lines = energies.iter().map(|(name, k)| (*name, curve(&|m| m.energy[*k]))).collect();
-            plot(ui, "energy", words.energy(), size, lines);
-            if gas {
-                let names: Vec<&str> =
-                    self.moments.last().map_or_else(Vec::new, |m| m.readings.iter().map(|(name, _)| &**name).collect());
-                // Volume and pressure differ in size: each is shown as a share of its largest value.
-                let share = |name: &str| {
-                    let values: Vec<[f64; 2]> = self
-                        .moments
-                        .iter()
-                        .filter_map(|m| m.readings.iter().find(|(n, _)| *n == name).map(|(_, x)| [m.time, *x]))
-                        .collect();
-                    let most = values.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
-                    values.into_iter().map(|[t, x]| [t, if most > 0.0 { 100.0 * x / most } else { 0.0 }]).collect()
-                };
-                let named: Vec<String> = names.iter().map(|name| words.reading(name)).collect();
-                let lines =
-                    names.iter().zip(&named).take(4).map(|(name, shown)| (shown.as_str(), share(name))).collect();
-                let body = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
-                let title = format!("{}: {} [% max]", words.gas(), body.map_or("", |body| body.title.as_str()));
-                plot(ui, "gas", &title, size, lines);
-            }
-            let axes = ["x", "y", "z"];
-            let lines = (0..usize::from(shown.dimension)).map(|d| (axes[d], curve(&|m| m.momentum[d]))).collect();
-            plot(ui, "momentum", words.momentum(), size, lines);
-            plot(ui, "cost", words.step_time(), size, vec![("", curve(&|m| m.cost))]);
-        });
-    }
+            let named: Vec<String> = readings.iter().map(|(name, _)| words.reading(name)).collect();
+            let lines = readings.iter().zip(&named).take(4).map(|((name, _), shown)| (shown.as_str(), share(name)));
+            let title = format!("{}: {} [% max]", words.gas(), body.title);
+            plot(ui, "gas", &title, size, now, lines.collect());
+        }
+        let axes = ["x", "y", "z"];
+        let lines = (0..usize::from(shown.dimension)).map(|d| (axes[d], curve(&|s| Some(s.momentum[d])))).collect();
+        plot(ui, "momentum", words.momentum(), size, now, lines);
+        plot(ui, "cost", words.step_time(), size, now, vec![("", curve(&|s| Some(s.cost)))]);
+    });
 }
 
 /// About so many round numbers on an axis. Their distance is that of all of them, so that all are seen alike.
@@ -181,7 +107,8 @@ fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     kept
 }
 
-fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, Vec<[f64; 2]>)>) {
+/// One field of curves; a line where `now` is.
+fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, lines: Vec<(&str, Curve)>) {
     let dark = ui.visuals().dark_mode;
     let ink = |number: usize| {
         let [r, g, b] = OKABE_ITO[number % OKABE_ITO.len()];
@@ -214,12 +141,26 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, lines: Vec<(&str, 
             .custom_x_axes(vec![seconds])
             .y_axis_formatter(|mark, _| figure(&mark))
             .y_axis_min_width(30.0);
+        let weak = ui.visuals().weak_text_color();
         // What the screen cannot tell apart is not drawn: a minute has thousands of moments.
-        let columns = size.x.max(1.0) as usize;
-        let owned: Vec<(String, Vec<[f64; 2]>)> =
-            lines.into_iter().map(|(n, l)| (n.to_string(), thinned(l, columns))).collect();
+        let ends = lines.iter().flat_map(|(_, curve)| curve).flat_map(|run| run.first().into_iter().chain(run.last()));
+        let (first, last) = ends.fold((f64::MAX, f64::MIN), |(a, b), point| (a.min(point[0]), b.max(point[0])));
+        let columns = |run: &[[f64; 2]]| {
+            let share = if last > first { (run[run.len() - 1][0] - run[0][0]) / (last - first) } else { 1.0 };
+            ((share * f64::from(size.x)) as usize).max(1)
+        };
+        let mut owned: Vec<(usize, String, Vec<[f64; 2]>)> = Vec::new();
+        for (number, (name, curve)) in lines.into_iter().enumerate() {
+            owned.extend(curve.into_iter().map(|run| {
+                let columns = columns(&run);
+                (number, name.to_string(), thinned(run, columns))
+            }));
+        }
         plot.show(ui, move |plot| {
-            for (number, (name, points)) in owned.into_iter().enumerate() {
+            if let Some(now) = now {
+                plot.vline(VLine::new("", now).color(weak).width(1.0));
+            }
+            for (number, name, points) in owned {
                 plot.line(Line::new(name, PlotPoints::from(points)).color(ink(number)).width(1.6));
             }
         });

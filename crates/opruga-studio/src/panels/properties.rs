@@ -19,6 +19,8 @@ pub struct Properties {
     hand: Hand,
     /// A field of a shape that waits until the hand lets go.
     pending: Option<(String, &'static str, Value)>,
+    /// The substeps that the hand holds.
+    substeps: Option<u32>,
 }
 
 /// The specifications of a dimension.
@@ -132,6 +134,8 @@ impl Properties {
                 } else if *name == "volume" {
                     // As the plots have it: what a body of the plane encloses is an area.
                     if kinds.dimension == 3 { " m³" } else { " m²" }
+                } else if *name == "nRT" {
+                    " J"
                 } else {
                     ""
                 };
@@ -144,7 +148,7 @@ impl Properties {
             let Some(spec) = kinds.models.iter().copied().find(|spec| spec.kind == model.kind()) else { continue };
             let title = RichText::new(words.kind(Part::Model, spec.kind)).strong();
             let header =
-                CollapsingHeader::new(title).id_salt(("model", &body.name, spec.kind)).default_open(number < 2);
+                CollapsingHeader::new(title).id_salt(("model", &body.title, spec.kind)).default_open(number < 2);
             let response = header.show(ui, |ui| {
                 for field in spec.fields {
                     let path = &format!("body.{}.models.{number}.{}", body.name, field.name);
@@ -164,7 +168,7 @@ impl Properties {
             });
             response.header_response.on_hover_text(words.summary(Part::Model, spec));
         }
-        let add = ComboBox::from_id_salt(("add", &body.name)).selected_text(words.add_model()).show_ui(ui, |ui| {
+        let add = ComboBox::from_id_salt(("add", &body.title)).selected_text(words.add_model()).show_ui(ui, |ui| {
             for spec in &kinds.models {
                 let button = ui.button(words.kind(Part::Model, spec.kind));
                 if button.on_hover_text(words.summary(Part::Model, spec)).clicked() {
@@ -245,7 +249,7 @@ impl Properties {
         let name = if now.is_empty() { words.of_the_scene().into() } else { words.kind(Part::Integrator, now) };
         ui.horizontal(|ui| {
             let label = ui.label(words.integrator());
-            let salt = ("integrator", body.map(|body| body.name.as_str()));
+            let salt = ("integrator", body.map(|body| body.title.as_str()));
             let menu = ComboBox::from_id_salt(salt).selected_text(name).show_ui(ui, |ui| {
                 for spec in &kinds.integrators {
                     let here = spec.kind == now;
@@ -277,9 +281,10 @@ impl Properties {
         let Some(shape) = &body.shape else { return };
         let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == shape.kind()) else { return };
         let title = RichText::new(format!("{}: {}", words.shape(), words.kind(Part::Shape, spec.kind))).strong();
-        CollapsingHeader::new(title).id_salt(("shape", &body.name)).default_open(false).show(ui, |ui| {
+        CollapsingHeader::new(title).id_salt(("shape", &body.title)).default_open(false).show(ui, |ui| {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
-                let path = &format!("shape.{}.{}", body.name, field.name);
+                // It is another body with every value, and the same one for the person.
+                let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
                 let place =
                     Place { path, part: Part::Shape, kind: spec.kind, field, dimension, words, values: Some(shape) };
@@ -328,11 +333,13 @@ impl Properties {
         let own = shown.integrator.as_ref();
         self.integrator(ui, words, own, None, kinds, asks);
         let label = ui.label(words.substeps()).on_hover_text(words.substeps_hint());
-        let mut substeps = shown.substeps;
+        let mut substeps = self.substeps.unwrap_or(shown.substeps);
         // A slider that ends before its value would set that to its end.
         let most = (4 * shown.substeps.max(16)).next_power_of_two().min(MOST_SUBSTEPS);
         let response = ui.add(Slider::new(&mut substeps, 1..=most).logarithmic(true)).labelled_by(label.id);
-        if response.changed() && substeps != shown.substeps {
+        // Where the hand lets go counts, and not what it has passed on the way.
+        self.substeps = response.dragged().then_some(substeps);
+        if (response.changed() || response.drag_stopped()) && !response.dragged() && substeps != shown.substeps {
             asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));
         }
         if shown.stable_step.is_finite() && shown.stable_step > 0.0 {

@@ -46,6 +46,11 @@ impl Link {
         self.wake = Box::new(wake);
     }
 
+    /// For how long it has been at what it does now: here the window waits for it, and it is never at anything.
+    pub fn busy(&self) -> Option<Duration> {
+        None
+    }
+
     /// Asks for something; it is done in the next turn.
     pub fn ask(&self, request: Request) {
         self.inner.borrow_mut().asks.push(Ask::Do(request));

@@ -5,7 +5,7 @@ use crate::session::{Request, Session};
 use crate::shown::Shown;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long frames are computed before a new picture is shown.
 const BUDGET: Duration = Duration::from_millis(14);
@@ -16,6 +16,8 @@ const NAP: Duration = Duration::from_millis(3);
 pub struct Link {
     asks: Sender<Ask>,
     last: Arc<Mutex<Arc<Shown>>>,
+    /// When the thread began what it does now; none while it waits.
+    since: Arc<Mutex<Option<Instant>>>,
 }
 
 /// Pictures that the thread has made and somebody may still look at. They are taken apart here once nobody does: to free what a
@@ -44,9 +46,11 @@ impl Link {
     pub fn start(mut session: Session, wake: impl Fn() + Send + 'static) -> std::io::Result<Link> {
         let (asks, asked) = channel();
         let last = Arc::new(Mutex::new(Arc::new(session.shown())));
-        let slot = Arc::clone(&last);
-        std::thread::Builder::new().name("simulation".into()).spawn(move || run(session, &asked, &slot, &wake))?;
-        Ok(Link { asks, last })
+        let (slot, since) = (Arc::clone(&last), Arc::new(Mutex::new(None)));
+        let busy = Arc::clone(&since);
+        let work = move || run(session, &asked, &slot, &busy, &wake);
+        std::thread::Builder::new().name("simulation".into()).spawn(work)?;
+        Ok(Link { asks, last, since })
     }
 
     /// Asks for something; it is done between two frames.
@@ -62,13 +66,25 @@ impl Link {
         receiver
     }
 
+    /// For how long the thread has been at what it does now.
+    pub fn busy(&self) -> Option<Duration> {
+        self.since.lock().unwrap_or_else(PoisonError::into_inner).map(|since| since.elapsed())
+    }
+
     /// The last picture.
     pub fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.last.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: &(dyn Fn() + Send)) {
+fn run(
+    session: Session,
+    asked: &Receiver<Ask>,
+    slot: &Mutex<Arc<Shown>>,
+    busy: &Mutex<Option<Instant>>,
+    wake: &(dyn Fn() + Send),
+) {
+    let set = |since: Option<Instant>| *busy.lock().unwrap_or_else(PoisonError::into_inner) = since;
     let (mut course, mut old) = (Course::new(session), Old::default());
     loop {
         // While nothing moves the thread sleeps until somebody asks for something.
@@ -87,7 +103,10 @@ fn run(session: Session, asked: &Receiver<Ask>, slot: &Mutex<Arc<Shown>>, wake: 
                 Err(_) => return,
             }
         };
-        if let Some(shown) = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET) {
+        set(Some(Instant::now()));
+        let news = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET);
+        set(None);
+        if let Some(shown) = news {
             let shown = Arc::new(shown);
             let last = std::mem::replace(&mut *slot.lock().unwrap_or_else(PoisonError::into_inner), shown);
             old.keep(last);

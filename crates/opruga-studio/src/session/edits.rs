@@ -152,10 +152,13 @@ impl Session {
             }
             Edit::Duplicate(name) => {
                 let mut table = self.table_of(name)?;
-                table.insert("name", self.document.free_name(name).into());
+                let copy = self.document.free_name(name);
+                table.insert("name", copy.as_str().into());
                 let (size, way) = (self.size_of(name), self.way_of(name));
                 shift(&mut table, [way[0] + 1.15 * size, way[1], way[2]], self.dimension());
-                self.exchange(Step::Duplicate, None, Some(table))
+                self.exchange(Step::Duplicate, None, Some(table))?;
+                self.copied = Some((self.copied.as_ref().map_or(1, |(count, _)| count + 1), copy));
+                Ok(())
             }
             Edit::Place(name, placed) => {
                 let mut table = self.table_of(name)?;

@@ -12,6 +12,8 @@ mod opening;
 mod pointer;
 mod recorded;
 mod seen;
+#[cfg(test)]
+mod tests;
 mod titles;
 mod travel;
 
@@ -27,12 +29,14 @@ use crate::keyframes::Keyframes;
 use crate::pacing::Pacing;
 use crate::pair;
 use crate::said::Said;
+use crate::samples::Samples;
 use crate::shown::{Message, Offer, Severity, Show};
 use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::{Options, WorldError};
 use pointer::Held;
+use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
 
@@ -122,9 +126,13 @@ pub struct Session {
     differences: Option<Vec<Difference>>,
     /// Bodies that were set down anew under another name: old and new.
     renamed: Vec<(String, String)>,
+    /// The last copy of a body that was made, with a number that counts them.
+    copied: Option<(u64, String)>,
     /// Commands that the scene had when it was opened; those behind them were recorded.
     own_commands: usize,
     keyframes: Keyframes,
+    /// The curves; the interface reads them.
+    samples: Arc<RwLock<Samples>>,
     /// The last frame of this course of things.
     latest: u64,
     /// Where to go, frame by frame.
@@ -132,11 +140,15 @@ pub struct Session {
     undo: Vec<Past>,
     redo: Vec<Past>,
     held: Option<Held>,
+    /// Pulls that ended of late.
+    released: Vec<pointer::Released>,
     /// Points that are pinned, and those that were.
     pins: Vec<pointer::Pinned>,
     playing: bool,
     speed: f64,
     pacing: Pacing,
+    /// What a frame took of late [s], also while one is computed.
+    cost: f64,
     show: Show,
     message: Option<Message>,
     messages: u64,
@@ -171,16 +183,20 @@ impl Session {
             engine,
             differences: None,
             renamed: Vec::new(),
+            copied: None,
             keyframes: Keyframes::new(KEYFRAME_BYTES),
+            samples: Arc::default(),
             latest: 0,
             goal: None,
             undo: Vec::new(),
             redo: Vec::new(),
             held: None,
+            released: Vec::new(),
             pins: Vec::new(),
             playing: false,
             speed: 1.0,
             pacing: Pacing::default(),
+            cost: 0.0,
             show: Show::default(),
             message: None,
             messages: 0,
@@ -287,6 +303,7 @@ impl Session {
             return;
         }
         let (length, speed) = (self.engine.frame_seconds(), self.speed);
+        self.cost = self.pacing.cost();
         let mut pacing = std::mem::take(&mut self.pacing);
         let outcome = pacing.run(elapsed, speed, length, budget, || {
             let start = clock();
@@ -305,6 +322,7 @@ impl Session {
     /// One frame, with the pointer led before it and a keyframe behind it.
     fn frame(&mut self) -> Result<(), WorldError> {
         if self.recorded_frame()? {
+            self.sample();
             return Ok(());
         }
         self.lead_held();
@@ -319,18 +337,32 @@ impl Session {
         if self.keyframes.wants(frame) {
             self.keyframes.keep(frame, self.engine.snapshot());
         }
+        self.sample();
+    }
+
+    fn samples(&self) -> RwLockWriteGuard<'_, Samples> {
+        self.samples.write().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Keeps the numbers of the curves for the present frame, if they are not known.
+    fn sample(&mut self) {
+        if self.samples().wants(self.engine.frames()) {
+            let mut sample = self.engine.sample();
+            sample.cost = 1e3 * self.cost;
+            self.samples().keep(sample);
+        }
     }
 
     fn tell(&mut self, severity: Severity, said: Said, offer: Option<Offer>) {
         self.messages += 1;
         let said = self.titled(said);
         let text = Language::English.said(&said);
-        self.message = Some(Message { number: self.messages, severity, said, text, offer });
+        self.message = Some(Message { number: self.messages, severity, said, text, offer, frame_seconds: None });
     }
 
     /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
     pub fn saved(&self) -> String {
-        let mut document = self.document.clone();
+        let mut document = self.let_go_of_all();
         document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
         document.text()
     }

@@ -1,14 +1,27 @@
 //! What is offered where something was refused or a motion has ended, and what becomes of it where a person accepts.
 
-use super::{Request, Session};
+use super::{Edit, Request, Session};
+use crate::document::Document;
+use crate::pair::read;
 use crate::said::Said;
 use crate::shown::{Offer, Severity, Shown};
+use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
+use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Registry, WorldError};
 
 /// The integrator that is offered instead of one without a stable step: it costs as little.
 pub const STEADY: &str = "symplectic_euler";
+
+/// What a frame may take before a person is told of it [s].
+const LONG: f64 = 1.0;
+/// What a frame may take that is offered [s]: nothing else can be done meanwhile.
+const TOO_LONG: f64 = 4.0;
+/// What a node takes in a substep where nothing was measured yet [s], and at least.
+const NODE: [f64; 2] = [2e-8, 1e-8];
+/// What a substep takes at most however few the nodes [s].
+const OVERHEAD: f64 = 5e-6;
 
 impl Session {
     pub(super) fn accept(&mut self, offer: &Offer) -> Result<(), Said> {
@@ -26,9 +39,20 @@ impl Session {
                 let dimension = self.dimension();
                 if let Some(kind) = Registry::<2>::default().integrator(STEADY) {
                     let values = Values::defaults(kind.spec(), dimension);
-                    match body {
-                        Some(body) => self.change(*body, None, Some(values))?,
-                        None => self.integrator(&values)?,
+                    let take = |session: &mut Session, values: &Values| match body {
+                        Some(body) => session.change(*body, None, Some(values.clone())),
+                        None => session.integrator(values),
+                    };
+                    match take(self, &values) {
+                        // It has a stable step, and that may be a shorter one.
+                        Err(Said::World(WorldError::UnstableStep { substeps, .. }))
+                            if substeps <= MOST_SUBSTEPS
+                                && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
+                        {
+                            self.set("time.substeps", Value::Integer(i64::from(with_a_margin(substeps))))?;
+                            take(self, &values)?;
+                        }
+                        outcome => outcome?,
                     }
                 }
                 self.playing = true;
@@ -45,6 +69,13 @@ impl Session {
                     self.handle(request);
                 }
                 Ok(())
+            }
+            Offer::Coarser(name, field, value) => {
+                self.handle(Request::Edit(Edit::Shape(name.clone(), field, Value::Integer(*value))));
+                match self.message.as_ref().and_then(|message| message.offer.clone()) {
+                    Some(offer @ Offer::Substeps(_)) => self.accept(&offer),
+                    _ => Ok(()),
+                }
             }
             Offer::GoOn => {
                 self.leave_the_recording(self.latest);
@@ -68,6 +99,7 @@ impl Session {
     }
 
     pub(super) fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
+        let mut frame_seconds = None;
         let offer = match error {
             WorldError::Diverged { body, .. }
             | WorldError::Step { body, .. }
@@ -79,12 +111,107 @@ impl Session {
             }
             // Where a frame cannot have as many, the message says what else helps.
             WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
-                self.refused = request;
-                Some(Offer::Substeps(with_a_margin(*substeps)))
+                let wanted = with_a_margin(*substeps);
+                let nodes = self.nodes_with(request.as_ref());
+                let seconds = self.frame_would_take(nodes, wanted);
+                frame_seconds = (seconds > LONG).then_some(seconds);
+                let opens = matches!(request, Some(Request::Open { .. }));
+                if seconds > TOO_LONG {
+                    self.coarser(request.as_ref(), nodes, wanted)
+                } else if opens || *substeps > self.engine.substeps() {
+                    self.refused = request;
+                    Some(Offer::Substeps(wanted))
+                } else {
+                    // As many as there are already: fewer were asked for, and what is there stays.
+                    None
+                }
             }
             _ => None,
         };
         self.tell(Severity::Refused, Said::World(error.clone()), offer);
+        if let Some(message) = &mut self.message {
+            message.frame_seconds = frame_seconds;
+        }
+    }
+
+    fn nodes_now(&self) -> usize {
+        self.engine.positions().len()
+    }
+
+    /// How many nodes there would be with what is asked for.
+    fn nodes_with(&self, request: Option<&Request>) -> usize {
+        let now = self.nodes_now();
+        let of = |document: &Document, files: &Files| -> Vec<usize> {
+            match read(document, files) {
+                Ok((AnyBlueprint::Plane(scene), _)) => scene.bodies.iter().map(|body| body.mesh.nodes()).collect(),
+                Ok((AnyBlueprint::Space(scene), _)) => scene.bodies.iter().map(|body| body.mesh.nodes()).collect(),
+                Err(_) => Vec::new(),
+            }
+        };
+        match request {
+            Some(Request::Open { name, text, files }) => {
+                let nodes = Document::new(name, text).map(|document| of(&document, files));
+                nodes.map_or(now, |nodes| nodes.iter().sum())
+            }
+            Some(Request::Edit(Edit::Shape(name, field, value))) => {
+                let with = |other: &Value| {
+                    let mut table = self.document.body(name)?;
+                    table.get_mut("shape")?.as_inline_table_mut()?.insert(*field, crate::document::toml(other));
+                    // Which nodes it has pinned does not matter.
+                    table.remove("pin");
+                    table.insert("name", self.document.free_name(name).into());
+                    let mut bare = self.document.without_nodes();
+                    bare.push_body(&table);
+                    of(&bare, &self.files).last().copied()
+                };
+                let old =
+                    self.document.shape(name, self.engine.dimension()).and_then(|shape| shape.get(field).cloned());
+                let (new, old) = (with(value), old.and_then(|old| with(&old)));
+                new.zip(old).map_or(now, |(new, old)| (now + new).saturating_sub(old))
+            }
+            _ => now,
+        }
+    }
+
+    /// What a frame of so many nodes and substeps would take [s], as far as the frames of late tell: a substep takes something by
+    /// itself, and the rest goes with the nodes.
+    fn frame_would_take(&self, nodes: usize, substeps: u32) -> f64 {
+        let now = f64::from(self.engine.substeps().max(1));
+        let one = self.pacing.cost() / now;
+        let [unknown, least] = NODE;
+        let (itself, node) = match one > 0.0 {
+            true => (one.min(OVERHEAD), ((one - OVERHEAD) / self.nodes_now().max(1) as f64).max(least)),
+            false => (0.0, unknown),
+        };
+        f64::from(substeps) * (itself + node * nodes as f64)
+    }
+
+    /// A shape between the one that there is and the one that was refused, of which a frame would not take long.
+    fn coarser(&mut self, request: Option<&Request>, nodes: usize, substeps: u32) -> Option<Offer> {
+        let Some(Request::Edit(Edit::Shape(name, field, Value::Integer(wanted)))) = request else { return None };
+        let shape = self.document.shape(name, self.engine.dimension())?;
+        let Some(Value::Integer(now)) = shape.get(field) else { return None };
+        let shown = self.engine.shown(&self.show);
+        let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
+        let needed = if limited { shown.frame / shown.stable_step } else { f64::from(shown.substeps) }.max(1.0);
+        let ratio = (*wanted as f64 / *now as f64).ln();
+        if *now < 1 || ratio <= 0.0 {
+            return None;
+        }
+        // Both grow by powers of the value, as far as these two tell.
+        let of_steps = (f64::from(substeps) / needed).ln() / ratio;
+        let of_nodes = (nodes as f64 / self.nodes_now().max(1) as f64).ln() / ratio;
+        let takes = |value: i64| {
+            let larger = (value as f64 / *now as f64).ln();
+            let nodes = self.nodes_now() as f64 * (of_nodes * larger).exp();
+            self.frame_would_take(nodes as usize, (1.125 * needed * (of_steps * larger).exp()) as u32)
+        };
+        let (mut good, mut bad) = (*now, *wanted);
+        while bad - good > 1 {
+            let middle = good + (bad - good) / 2;
+            if takes(middle) <= LONG { good = middle } else { bad = middle }
+        }
+        (good > *now).then(|| Offer::Coarser(name.clone(), field, good))
     }
 }
 

@@ -1,11 +1,12 @@
 //! What the pointer does to bodies: it pulls, pushes and pins.
 
 use super::Session;
+use crate::document::Document;
 use crate::engine::Given;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 
-/// The force of a push for each metre between the node and the pointer [N/m].
+/// The force of a push for each metre of the way of the pointer from where it was pressed [N/m].
 const PUSH_STIFFNESS: f64 = 20.0;
 
 /// What a press of the pointer does.
@@ -13,7 +14,7 @@ const PUSH_STIFFNESS: f64 = 20.0;
 pub enum Grip {
     /// Pull the nearest node by a spring.
     Pull,
-    /// Push the nearest node by a force that grows with the way.
+    /// Push the nearest node by a force in proportion to the way of the pointer from the point of the press.
     Push,
     /// Pin the nearest node, or take a pinned one elsewhere.
     Pin,
@@ -27,11 +28,31 @@ pub(super) struct Held {
     node: u32,
     /// Command of the world and of the document; none while a push has no force.
     command: Option<[usize; 2]>,
+    /// The frame at which that command began.
+    since: u64,
+    /// Where the body was pressed [m].
+    pressed: [f64; 3],
     pointer: [f64; 3],
     /// Whether the pointer has moved since the last push began.
     moved: bool,
     /// The frame up to which the path is known.
     led: u64,
+}
+
+impl Held {
+    /// The force of a push: it follows the pointer alone, wherever the node goes [N].
+    fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|d| PUSH_STIFFNESS * (self.pointer[d] - self.pressed[d]))
+    }
+}
+
+/// A pull that has ended: the world leaves it out with its next frame, the person sees at once that it is over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Released {
+    body: usize,
+    node: u32,
+    /// The frame at which it was let go, and the last one at which it acts.
+    at: [u64; 2],
 }
 
 /// A point that a person has pinned.
@@ -66,7 +87,17 @@ impl Session {
         let node = if beside { engine.nearest_beside(body, point) } else { engine.nearest(body, point) };
         let node = node.ok_or_else(|| Said::NoBody(body.to_string()))?;
         let now = self.engine.frames();
-        let mut held = Held { grip, body, node, command: None, pointer: point, moved: false, led: now + 1 };
+        let mut held = Held {
+            grip,
+            body,
+            node,
+            command: None,
+            since: now,
+            pressed: point,
+            pointer: point,
+            moved: false,
+            led: now + 1,
+        };
         match grip {
             Grip::Pull => {
                 let given = self.engine.pull(body, node, point)?;
@@ -74,19 +105,33 @@ impl Session {
             }
             Grip::Push => {}
             Grip::Pin => {
-                if self.pinned(body, node).is_some() {
-                    // A pinned point goes with the pointer and is pinned where that lets go.
-                    self.unpin(body, node)?;
-                    let given = self.engine.pull(body, node, point)?;
-                    held.command = Some(self.write(given));
-                } else {
+                let past = self.past(Step::Pin);
+                if self.pinned(body, node).is_none() {
                     self.pin(body, node)?;
+                    self.remember(past);
                     return Ok(());
                 }
+                // A pinned point goes with the pointer and is pinned where that lets go.
+                self.unpin(body, node)?;
+                let given = self.engine.pull(body, node, point)?;
+                held.command = Some(self.write(given));
+                self.remember(past);
             }
         }
         self.held = Some(held);
         Ok(())
+    }
+
+    /// The document as it is once the hand has let go of what it holds: nobody would hold it for ever.
+    pub(super) fn let_go_of_all(&self) -> Document {
+        let mut document = self.document.clone();
+        if let Some((held, [_, written])) = self.held.as_ref().and_then(|held| Some((held, held.command?))) {
+            let now = self.engine.frames();
+            // What has just begun acts for one frame.
+            let until = if held.since < now { self.engine.time() } else { self.time_of(now + 1) };
+            document.end_command(written, until);
+        }
+        document
     }
 
     fn pin(&mut self, body: usize, node: u32) -> Result<(), WorldError> {
@@ -104,6 +149,8 @@ impl Session {
 
     /// Frees a node that a person or the scene has pinned.
     pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Said> {
+        // The second press of a double click holds what is freed.
+        self.release();
         self.branch()?;
         let past = self.past(Step::Unpin);
         self.unpin(body, node).map_err(Said::World)?;
@@ -158,7 +205,7 @@ impl Session {
                     self.refuse(&error, None);
                 }
                 held.command = self.push_now(&held);
-                held.moved = false;
+                (held.since, held.moved) = (self.engine.frames(), false);
             }
             (Grip::Push, _) => {}
             (_, Some([number, written])) if held.led <= self.engine.frames() + 1 => {
@@ -172,16 +219,23 @@ impl Session {
         self.held = Some(held);
     }
 
-    /// A force toward the pointer, in proportion to the way.
+    /// A push in proportion to the way of the pointer; none where that is back where it was pressed.
     fn push_now(&mut self, held: &Held) -> Option<[usize; 2]> {
-        let at = self.engine.position(held.body, held.node)?;
-        let force = [0, 1, 2].map(|d| PUSH_STIFFNESS * (held.pointer[d] - at[d]));
+        let force = held.force();
+        if force == [0.0; 3] {
+            return None;
+        }
         let given = self.engine.push(held.body, held.node, force).ok()?;
         Some(self.write(given))
     }
 
     pub(super) fn release(&mut self) {
         let Some(held) = self.held.take() else { return };
+        let now = self.engine.frames();
+        if held.grip != Grip::Push {
+            self.released.retain(|other| other.at[1] >= now);
+            self.released.push(Released { body: held.body, node: held.node, at: [now, now.max(held.since + 1)] });
+        }
         if let Some(command) = held.command
             && let Err(error) = self.end(command)
         {
@@ -192,6 +246,36 @@ impl Session {
         {
             self.refuse(&error, None);
         }
+    }
+
+    /// What the hand does now, which the world learns with its next frame: while time stands still a pull follows the pointer, and
+    /// one that was let go is over. `place` gives the place of a node in the scene of these pulls.
+    pub(super) fn show_hand(&self, pulls: &mut Vec<[[f64; 3]; 3]>, place: &dyn Fn(usize, u32) -> Option<[f64; 3]>) {
+        let now = self.engine.frames();
+        for over in self.released.iter().filter(|over| (over.at[0]..=over.at[1]).contains(&now)) {
+            let place = place(over.body, over.node);
+            // Who has taken hold of the same node since pulls it behind the one that is over.
+            if let Some(first) = pulls.iter().position(|[node, ..]| Some(*node) == place) {
+                pulls.remove(first);
+            }
+        }
+        let held = self.held.as_ref().filter(|held| held.grip != Grip::Push && !self.is_moving());
+        let Some((held, [stiffness, most])) = held.and_then(|held| Some((held, self.engine.usual_pull(held.body)?)))
+        else {
+            return;
+        };
+        let place = place(held.body, held.node);
+        let Some([_, pointer, force]) = pulls.iter_mut().rfind(|[node, ..]| Some(*node) == place) else { return };
+        let stretched = [0, 1, 2].map(|d| force[d] + stiffness * (held.pointer[d] - pointer[d]));
+        let share = (most / stretched.iter().map(|f| f * f).sum::<f64>().sqrt()).min(1.0);
+        (*pointer, *force) = (held.pointer, stretched.map(|f| share * f));
+    }
+
+    /// The push of the hand: its node, where its arrow ends, its force [m, m, N].
+    pub(super) fn push_shown(&self, place: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
+        let held = self.held.as_ref().filter(|held| held.grip == Grip::Push && held.pointer != held.pressed)?;
+        let node = place(held.body, held.node)?;
+        Some([node, [0, 1, 2].map(|d| node[d] + held.pointer[d] - held.pressed[d]), held.force()])
     }
 
     pub(super) fn pins_shown(&self) -> Vec<(usize, u32, [f64; 3])> {

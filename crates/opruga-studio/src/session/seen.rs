@@ -23,7 +23,11 @@ impl Session {
         shown.opened = self.opened;
         shown.recorded = self.document.commands().saturating_sub(self.own_commands);
         shown.recorded_until = self.recorded_until();
+        shown.samples = Arc::clone(&self.samples);
         shown.kept_bytes = self.keyframes.bytes();
+        let here = |body, node| self.engine.position(body, node);
+        self.show_hand(&mut shown.pulls, &here);
+        shown.pushes = self.push_shown(&here).into_iter().collect();
         let pins = self.pins_shown();
         let titles = self.titles();
         if let Some(stopped) = shown.beside.as_mut().and_then(|beside| beside.stopped.as_mut()) {
@@ -35,12 +39,16 @@ impl Session {
                 Some((*body, *node, self.engine.position_beside(*body, *node)?))
             };
             right.pins = pins.iter().filter_map(there).collect();
+            let there = |body, node| self.engine.position_beside(body, node);
+            self.show_hand(&mut right.pulls, &there);
+            right.pushes = self.push_shown(&there).into_iter().collect();
             for body in right.bodies.iter_mut().take(if shown.bodies.len() <= 64 { 64 } else { 0 }) {
                 body.shape = self.shape_beside(&body.name, usize::from(shown.dimension));
             }
         }
         shown.pins = pins;
         shown.renamed.clone_from(&self.renamed);
+        shown.copied.clone_from(&self.copied);
         give_titles(&mut shown, &titles);
         if shown.bodies.len() <= 64 {
             for body in &mut shown.bodies {

@@ -8,6 +8,7 @@ use crate::engine::Engine;
 use crate::keyframes::Keyframes;
 use crate::pair;
 use crate::said::{Said, Step};
+use crate::samples::Samples;
 use crate::shown::Severity;
 
 /// A moment that can be gone back to.
@@ -40,6 +41,7 @@ impl Session {
     /// Makes a frame the one to go on to in the coming ticks, or stays there.
     fn head_for(&mut self, frame: u64) {
         self.goal = (frame > self.engine.frames()).then_some(frame);
+        self.sample();
         if self.goal.is_none() {
             self.arrive();
         }
@@ -78,18 +80,20 @@ impl Session {
         engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
         (self.document, self.engine) = (document, engine);
         self.cut_pins();
+        self.released.clear();
         self.keyframes.forget_after(now);
+        self.samples().forget_after(now);
         self.latest = now;
         self.goal = None;
         self.leave_the_recording(now);
         Ok(())
     }
 
-    /// A point to come back to.
+    /// A point to come back to. What the hand holds then it holds no longer when one comes back.
     pub(super) fn past(&self, label: Step) -> Past {
         Past {
             label,
-            document: self.document.clone(),
+            document: self.let_go_of_all(),
             own_commands: self.own_commands,
             frame: self.engine.frames(),
             pins: self.pins.clone(),
@@ -165,12 +169,16 @@ impl Session {
         let common = frame > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
         if common {
-            self.keyframes.forget_after(self.engine.frames());
+            let kept = self.engine.frames();
+            self.keyframes.forget_after(kept);
+            self.samples().forget_after(kept);
         } else {
             self.keyframes = Keyframes::new(KEYFRAME_BYTES);
+            *self.samples() = Samples::default();
             self.keep();
         }
         self.pins.clear();
+        self.released.clear();
         if frame < self.latest {
             self.leave_the_recording(frame);
         }

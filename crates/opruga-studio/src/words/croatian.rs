@@ -84,7 +84,7 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
     (
         "integrator.*.accuracy",
         "točnost",
-        "„točno” iterira dok jednadžbe koraka ne vrijede do tolerancije. „u stvarnom vremenu” ima stalan trošak: tri iteracije od gibanja prošlog koraka, svaka s najviše 100 umnožaka s matricom koja se zadržava dok vodi do kraja koraka; petina neravnoteže smije ostati i nadoknađuje se u sljedećim koracima. Pravila koja ništa ne prigušuju zbrajala bi to i odbijaju tu postavku.",
+        "„točno” iterira dok jednadžbe koraka ne vrijede do tolerancije. „u stvarnom vremenu” ima stalan trošak: tri iteracije od gibanja prošlog koraka, svaka s najviše 100 umnožaka s matricom koja se zadržava dok vodi do kraja koraka; petina neravnoteže smije ostati i nadoknađuje se u sljedećim koracima. `implicit_midpoint`, koji ništa ne prigušuje, i `newmark`, koji to pamti u svojem ubrzanju, zbrajali bi to i odbijaju tu postavku.",
     ),
     (
         "integrator.*.iterations",

@@ -32,6 +32,7 @@ impl Language {
             Step::Move => self.step_move().into(),
             Step::Delete => self.step_delete().into(),
             Step::Open(name) => format!("{} {name}", self.step_open()),
+            Step::Pin => self.step_pin().into(),
             Step::Unpin => self.step_unpin().into(),
             Step::Reset => self.step_reset().into(),
             Step::Compare => self.step_compare().into(),
@@ -207,7 +208,7 @@ impl Language {
             ),
             WorldError::Step { body, message } => format!(
                 "Tijelo `{body}`: model u tom stanju nema smisla; svijet je na zadnjoj dobroj sličici\n{}",
-                self.detail(message)
+                of_model(message).unwrap_or_else(|| self.english(message))
             ),
             WorldError::Build { place, source } => {
                 let why = match source.code {
@@ -249,6 +250,20 @@ impl Language {
     }
 }
 
+/// What a model says, after its name, and before a hint of the rule that steps it.
+fn of_model(message: &str) -> Option<String> {
+    let known = |said: &str| {
+        details::croatian(said).or_else(|| {
+            let (said, hint) = said.split_once("; hint: ")?;
+            Some(format!("{}; savjet: {}", details::croatian(said)?, details::croatian(hint)?))
+        })
+    };
+    known(message).or_else(|| {
+        let (model, said) = message.split_once(": ")?;
+        Some(format!("{model}: {}", known(said)?))
+    })
+}
+
 /// What of a world refuses: a body, its integrator, a part of the world.
 fn croatian_place(place: &str) -> String {
     match place.strip_prefix("body ").or_else(|| place.strip_prefix("integrator of body ")) {
@@ -260,5 +275,22 @@ fn croatian_place(place: &str) -> String {
             other => other,
         }
         .into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_model_refuses_in_a_step_is_said_in_croatian_with_its_hint() {
+        let model = "fem: cell 3 has no positive thickness without stress across the plane at t = 0.75 s: it is stretched or turned \
+                     inside out beyond what its material can follow in plane stress";
+        let hint = "; hint: `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`";
+        for (message, wanted) in [(model.to_string(), "u ravninskom"), (format!("{model}{hint}"), "; savjet: ")] {
+            let said = Language::Croatian.said(&Said::World(WorldError::Step { body: "b".into(), message }));
+            assert!(said.contains("fem: ćelija 3 u t = 0.75 s") && said.contains(wanted), "{said}");
+            assert!(!said.contains("na engleskom"), "{said}");
+        }
     }
 }

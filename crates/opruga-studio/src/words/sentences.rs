@@ -34,22 +34,39 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("the mesh has no group of cells `{}`; {}", "mreža nema skupinu ćelija `{}`; ima: {}"),
     ("the group of cells `{}` is empty", "skupina ćelija `{}` je prazna"),
     (
-        "`{}`: the cells of the mesh have no numbers `{}`; known: {}",
-        "`{}`: ćelije mreže nemaju brojeve `{}`; poznati: {}",
+        "`{}` is \"{}\", and the cells of the mesh have no such numbers; allowed: {}; hint: `{}` gives one number for all cells",
+        "`{}` je \"{}\", a ćelije mreže nemaju takvih brojeva; dopušteno: {}; savjet: `{}` daje jedan broj za sve ćelije",
     ),
     ("the cells of the mesh have no numbers `{}`", "ćelije mreže nemaju brojeve `{}`"),
     ("the density of cell {} is {} kg/m³", "gustoća ćelije {} je {} kg/m³"),
     (
-        "`mooney_share` is {}; allowed with `poissons_ratio` = {}: at most {} = ν/(1 − 2ν)",
-        "`mooney_share` je {}; dopušteno uz `poissons_ratio` = {}: najviše {} = ν/(1 − 2ν)",
+        "`mooney_share` is {} with `poissons_ratio` = {}, and not convex; allowed: at most {} = ν/(1 − 2ν); hint: a larger \
+         `poissons_ratio` allows a larger one",
+        "`mooney_share` je {} uz `poissons_ratio` = {}, i nije konveksno; dopušteno: najviše {} = ν/(1 − 2ν); savjet: veći \
+         `poissons_ratio` dopušta veći",
     ),
-    ("`{}` of cell {} is {}; allowed: {}", "`{}` ćelije {} je {}; dopušteno: {}"),
+    (
+        "`{}` of cell {} is {}; allowed: {~}; hint: the numbers are in the file of the mesh; `{}` gives one for all cells",
+        "`{}` ćelije {} je {}; dopušteno: {~}; savjet: brojevi su u datoteci mreže; `{}` daje jedan za sve ćelije",
+    ),
     ("there is no material `{}`", "nema materijala `{}`"),
     (
-        "`poissons_ratio` is {}; allowed for linear {}: at most {}, since they lock near incompressibility. Give the body \
-         `order = 2`, or say `locking = \"nodal_volume\"`",
-        "`poissons_ratio` je {}; dopušteno za linearne ćelije ({}): najviše {}, jer se blizu nestlačivosti ukoče. Zadaj tijelu \
-         `order = 2` ili `locking = \"nodal_volume\"`",
+        "`poissons_ratio` is {} for linear {}, which lock near incompressibility; allowed: at most {}; hint: `order = 2` for the \
+         body, or `locking = \"nodal_volume\"`",
+        "`poissons_ratio` je {} za linearne ćelije ({}), koje se blizu nestlačivosti ukoče; dopušteno: najviše {}; savjet: \
+         `order = 2` tijelu, ili `locking = \"nodal_volume\"`",
+    ),
+    (
+        "`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks; allowed: {}; hint: leave \
+         `locking` out",
+        "`locking` je \"nodal_volume\" u ravninskom naprezanju, gdje je debljina slobodna i ništa se ne ukoči; dopušteno: {}; savjet: \
+         izostavi `locking`",
+    ),
+    (
+        "`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock; allowed: {}; hint: \
+         leave `locking` out",
+        "`locking` je \"nodal_volume\", ali ćelije nisu linearni trokuti ni tetraedri i ne ukoče se; dopušteno: {}; savjet: izostavi \
+         `locking`",
     ),
     (
         "cell {} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out \
@@ -109,6 +126,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          odjednom, bez `arc_length`",
     ),
     (
+        "no load acts on what is free at t = {} s, and `arc_length` goes by the part of the load that is on; allowed: weight or \
+         loads; hint: without `arc_length` every step ends where pins and gases balance",
+        "ništa ne opterećuje ono što je slobodno u t = {} s, a `arc_length` ide po dijelu tereta koji djeluje; dopušteno: težina ili \
+         tereti; savjet: bez `arc_length` svaki korak završava gdje su pribodene točke i plinovi u ravnoteži",
+    ),
+    (
         "the body lies on an obstacle, and neither that nor pins hold it against {~}; an equilibrium needs a body that is held; \
          hint: pin an axis of a node for each, or let the obstacle rub (`friction`)",
         "tijelo leži na prepreci, a ni ona ni pribodene točke ne drže ga protiv: {~}; ravnoteža treba tijelo koje nešto drži; \
@@ -130,6 +153,20 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          end; allowed: \"exact\"; hint: `backward_euler` and `bdf2` have a real-time setting",
         "`accuracy` je \"real_time\", čiji koraci dio ostave izvan ravnoteže; `{}` ništa ne prigušuje i zbrajao bi ga bez kraja; \
          dopušteno: \"exact\"; savjet: `backward_euler` i `bdf2` mogu u stvarnom vremenu",
+    ),
+    (
+        "`accuracy` is \"real_time\", whose steps leave a part out of balance; `{}` with `spectral_radius` = {} damps slow motions \
+         hardly, and hands that part on with the acceleration that it remembers; allowed: \"exact\"; hint: `backward_euler` and \
+         `bdf2` have a real-time setting",
+        "`accuracy` je \"real_time\", čiji koraci dio ostave izvan ravnoteže; `{}` uz `spectral_radius` = {} spora gibanja jedva \
+         prigušuje i predaje taj dio dalje s ubrzanjem koje pamti; dopušteno: \"exact\"; savjet: `backward_euler` i `bdf2` mogu u \
+         stvarnom vremenu",
+    ),
+    (
+        "`poissons_ratio` is {}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`; allowed: at least {}, so that \
+         {} <= ν/(1 − 2ν); hint: a smaller `mooney_share` allows a smaller one, down to 0",
+        "`poissons_ratio` je {}, s čime `mooney_rivlin` nije konveksan, koliki god bio `mooney_share`; dopušteno: najmanje {}, tako da \
+         je {} <= ν/(1 − 2ν); savjet: manji `mooney_share` dopušta manji, sve do 0",
     ),
     (
         "`linear_solver` is \"matrix_free\", and `accuracy` is \"real_time\", which keeps a matrix; allowed with it: \"auto\", \
@@ -187,6 +224,15 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          {} m; dopušteno: {} m",
     ),
     (
+        "`{}` did not converge in {~} at t = {} s, {~}: the forces are out of balance by {} N, and the last correction was {} m; \
+         allowed: {} m",
+        "`{}` nije konvergirao ({~}) u t = {} s, {~}: sile su izvan ravnoteže za {} N, a zadnji je popravak {} m; dopušteno: {} m",
+    ),
+    (
+        "from a state with {} of {} cells flat or inside out",
+        "iz stanja u kojem su ćelije bez volumena ili izvrnute ({} od {})",
+    ),
+    (
         "`{}` did not converge in {~} at t = {}: the forces are out of balance by {} N, and the last correction was \
          {} m; allowed: {} m",
         "`{}` nije konvergirao ({~}) u t = {}: sile su izvan ravnoteže za {} N, a zadnji je popravak {} m; dopušteno: \
@@ -221,15 +267,27 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{}` moves every node by its own \
-         mass; allowed with it: `mass = \"lumped\"`. Consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark",
-        "`mass` je \"consistent\", što povezuje ubrzanja čvorova ćelije, a `{}` miče svaki čvor njegovom masom; dopušteno uz \
-         njega: `mass = \"lumped\"`. Konzistentne mase idu uz backward_euler, bdf2, implicit_midpoint i newmark",
+         mass; allowed: \"lumped\"; hint: consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark",
+        "`mass` je \"consistent\", što povezuje ubrzanja čvorova ćelije, a `{}` miče svaki čvor njegovom masom; dopušteno: \
+         \"lumped\"; savjet: konzistentne mase idu uz backward_euler, bdf2, implicit_midpoint i newmark",
     ),
     (
-        "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed with \
-         obstacles: `mass = \"lumped\"`, and both in `equilibrium`, which knows no impacts",
-        "`mass` je \"consistent\", a ima prepreka, čiji sudari djeluju na mase pojedinih čvorova; dopušteno uz prepreke: \
-         `mass = \"lumped\"`, a oboje u `equilibrium`, gdje sudara nema",
+        "`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes; allowed: \
+         \"lumped\"; hint: consistent masses go with obstacles in `equilibrium`, which knows no impacts",
+        "`mass` je \"consistent\", a ima prepreka, čiji sudari djeluju na mase pojedinih čvorova; dopušteno: \
+         \"lumped\"; savjet: konzistentne mase idu uz prepreke u `equilibrium`, gdje sudara nema",
+    ),
+    (
+        "`mass` is \"consistent\", and `node_mass` = {} kg gives every node the same mass, whatever its cells; allowed: \"lumped\"; \
+         hint: `mass` or `density` of the body goes with consistent masses",
+        "`mass` je \"consistent\", a `node_mass` = {} kg daje svakom čvoru istu masu, kakve god bile ćelije; dopušteno: \"lumped\"; \
+         savjet: uz konzistentne mase ide `mass` ili `density` tijela",
+    ),
+    (
+        "all nodes of the body are held along every axis, and nothing of it can swing; allowed: a node that is free along an axis; \
+         hint: another body, or fewer pins",
+        "svi čvorovi tijela pribodeni su po svim osima, i ništa na njemu ne može titrati; dopušteno: čvor slobodan po nekoj osi; \
+         savjet: drugo tijelo ili manje pribodenih točaka",
     ),
     ("body `{}` has no model `{}`; it has {}", "tijelo `{}` nema model `{}`; ima {}"),
     (
@@ -282,8 +340,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("no shift along the surfaces around it would free it", "nijedan pomak duž ploha oko njega ne bi ga oslobodio"),
     (
-        "`{}` has no stable step for body `{}` (ω = {} rad/s): its fastest motion grows as exp({} t)",
-        "`{}` nema stabilnog koraka za tijelo `{}` (ω = {} rad/s): njegovo najbrže gibanje raste kao exp({} t)",
+        "`{}` has no stable step for body `{}` (ω = {} rad/s): a motion grows as exp({} t)",
+        "`{}` nema stabilnog koraka za tijelo `{}` (ω = {} rad/s): jedno gibanje raste kao exp({} t)",
     ),
     (
         "at t = {} s the largest stable step of body `{}` had fallen to {} s, below h = {} s: what is squeezed or stretched is \

@@ -3,6 +3,7 @@
 // No physics here.
 #![allow(clippy::disallowed_methods)]
 
+mod panels;
 mod pointer;
 #[path = "../screen/mod.rs"]
 mod screen;
@@ -331,7 +332,9 @@ fn in_croatian_no_name_of_a_model_or_parameter_and_no_message_of_the_studio_is_e
     }
     let told = |window: &Window| -> Vec<String> {
         let all = window.harness.query_all_by(|_| true);
-        all.filter_map(|node| node.accesskit_node().label().or_else(|| node.accesskit_node().value())).collect()
+        let said = all.filter_map(|node| node.accesskit_node().label().or_else(|| node.accesskit_node().value()));
+        // What belongs together is held on one line.
+        said.map(|text| text.replace('\u{a0}', " ")).collect()
     };
     let english = |window: &Window| -> Vec<String> {
         told(window).into_iter().filter(|text| ENGLISH.iter().any(|word| text.contains(word))).collect()

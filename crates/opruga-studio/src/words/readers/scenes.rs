@@ -3,6 +3,20 @@
 /// What stands in a scene and cannot.
 pub(super) const SENTENCES: &[(&str, &str)] = &[
     // Commands and probes.
+    (
+        "the command `do = \"change\"` gives a body other models or another integrator",
+        "naredba `do = \"change\"` daje tijelu druge modele ili drugi integrator",
+    ),
+    ("none, there is nothing to change", "ništa, nema se što mijenjati"),
+    (
+        "`{}` is {#}: products of such lengths are no numbers any more",
+        "`{}` je {#}: umnošci takvih duljina više nisu brojevi",
+    ),
+    (
+        "`{}` makes it too large: products of such lengths are no numbers any more",
+        "`{}` ga čini prevelikim: umnošci takvih duljina više nisu brojevi",
+    ),
+    ("coordinates within 1e70 m of the origin of the shape", "koordinate do 1e70 m od ishodišta oblika"),
     ("the command ends at {} s, before it begins at {} s", "naredba završava u {} s, prije nego što počinje u {} s"),
     ("the command ends at {} s, when it begins at {} s", "naredba završava u {} s, kad i počinje u {} s"),
     ("a time from {}", "vrijeme od {}"),

@@ -86,6 +86,8 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     // OBJ.
     ("a vertex has fewer than three coordinates", "vrh ima manje od tri koordinate"),
     ("a vertex has more than seven numbers", "vrh ima više od sedam brojeva"),
+    ("a vertex has five numbers", "vrh ima pet brojeva"),
+    ("3 numbers, 4 with a weight, 6 with a colour, 7 with both", "3 broja, 4 s težinom, 6 s bojom, 7 s oboje"),
     ("v x y z, with a weight or a colour", "v x y z, s težinom ili bojom"),
     ("a corner of a face is no whole number", "ugao strane nije cijeli broj"),
     ("v, v/vt, v//vn or v/vt/vn", "v, v/vt, v//vn ili v/vt/vn"),
@@ -432,6 +434,7 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("positive", "pozitivno"),
     ("finite", "konačno"),
     ("positive and finite", "pozitivno i konačno"),
+    ("from -1e6 to 1e6 rad", "od -1e6 do 1e6 rad"),
     ("finite and not zero", "konačno i različito od nule"),
     ("0 or more, and finite", "0 ili više, i konačno"),
     ("smaller than the major radius", "manje od velikog polumjera"),

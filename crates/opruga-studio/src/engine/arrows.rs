@@ -1,0 +1,44 @@
+//! Arrows over a picture.
+
+use super::{Living, three};
+use crate::normals::normals;
+use crate::shown::Show;
+use opruga::draw::{ArrowKind, ArrowPicture};
+
+/// Bodies up to which arrows are drawn: those of more could not be told apart.
+const MOST_WITH_ARROWS: usize = 64;
+
+impl<const D: usize> Living<D> {
+    /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
+    pub(super) fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
+        let living: Vec<usize> = self.world.bodies().collect();
+        if living.len() > MOST_WITH_ARROWS {
+            return;
+        }
+        let mut arrows = Vec::new();
+        for (place, &body) in living.iter().enumerate() {
+            let nodes = self.world.node_count(body) as u32;
+            if let Some(seen) = picture.bodies.get_mut(place).filter(|seen| !seen.pinned.is_empty()) {
+                seen.pinned = self.world.held_nodes(body);
+            }
+            let forces = if show.contacts { self.world.contact_forces(body) } else { Vec::new() };
+            let at = |node: u32| three(self.world.position(body, node));
+            let some = (0..nodes).step_by((nodes / 40).max(1) as usize);
+            if show.velocities {
+                arrows.extend(
+                    some.clone().map(|node| (ArrowKind::Velocity, at(node), three(self.world.velocity(body, node)))),
+                );
+            }
+            if show.normals
+                && let Some(seen) = picture.bodies.get(place).filter(|seen| seen.positions.len() == nodes as usize)
+            {
+                let normals = normals(seen);
+                arrows.extend(some.map(|node| (ArrowKind::Normal, at(node), normals[node as usize])));
+            }
+            let pressed = forces.into_iter().enumerate().filter(|(_, force)| force.iter().any(|f| *f != 0.0));
+            arrows.extend(pressed.map(|(node, force)| (ArrowKind::Contact, at(node as u32), three(force))));
+        }
+        let arrows = arrows.into_iter().filter(|(_, _, vector)| vector.iter().all(|c| c.is_finite()));
+        picture.arrows.extend(arrows.map(|(kind, from, vector)| ArrowPicture { kind, from, vector }));
+    }
+}

@@ -1,0 +1,141 @@
+//! The curves of a course of things: numbers frame by frame, within a bounded memory. Where they would take more, every second frame
+//! goes.
+
+use opruga::core::potential::Reading;
+use std::sync::Arc;
+
+/// What the samples may take [bytes].
+const MOST_BYTES: usize = 16 << 20;
+/// The most samples: no window is so wide that more could be told apart.
+const MOST: usize = 8_192;
+
+/// The numbers of one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Frames since the start.
+    pub frame: u64,
+    /// The time [s].
+    pub time: f64,
+    /// Kinetic, elastic, of the gas, of the weight; work put in, losses, error of the integrator [J].
+    pub energy: [f64; 7],
+    /// The momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// What a frame took of late to compute [ms].
+    pub cost: f64,
+    /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
+    /// energy; not a number where the sides have it not in common.
+    pub beside: Option<[f64; 5]>,
+    /// What the models of bodies say, by the number of the body; empty in a crowd.
+    pub readings: Vec<(usize, Arc<[Reading]>)>,
+}
+
+impl Sample {
+    /// What the models of a body say.
+    pub fn readings_of(&self, body: usize) -> &[Reading] {
+        self.readings.iter().find(|(number, _)| *number == body).map_or(&[], |(_, readings)| readings)
+    }
+
+    fn bytes(&self) -> usize {
+        let readings = |(_, list): &(usize, Arc<[Reading]>)| 40 + size_of_val::<[Reading]>(list);
+        size_of::<Sample>() + self.readings.iter().map(readings).sum::<usize>()
+    }
+}
+
+/// Samples in the order of their frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    kept: Vec<Sample>,
+    /// Frames between two of them.
+    every: u64,
+    bytes: usize,
+}
+
+impl Default for Samples {
+    fn default() -> Samples {
+        Samples { kept: Vec::new(), every: 1, bytes: 0 }
+    }
+}
+
+impl Samples {
+    /// Whether a frame should be sampled: it is none of those that were.
+    pub fn wants(&self, frame: u64) -> bool {
+        frame.is_multiple_of(self.every) && self.kept.binary_search_by_key(&frame, |sample| sample.frame).is_err()
+    }
+
+    /// Keeps a sample, wherever its frame lies among the others.
+    pub fn keep(&mut self, sample: Sample) {
+        let place = self.kept.partition_point(|other| other.frame < sample.frame);
+        self.bytes += sample.bytes();
+        self.kept.insert(place, sample);
+        while (self.kept.len() > MOST || self.bytes > MOST_BYTES) && self.kept.len() > 2 {
+            self.every *= 2;
+            self.kept.retain(|sample| sample.frame.is_multiple_of(self.every));
+            self.bytes = self.kept.iter().map(Sample::bytes).sum();
+        }
+    }
+
+    /// Gives up what comes after a frame: that future is another one now.
+    pub fn forget_after(&mut self, frame: u64) {
+        self.kept.retain(|sample| sample.frame <= frame);
+        self.bytes = self.kept.iter().map(Sample::bytes).sum();
+    }
+
+    /// The samples of frames that follow one another; between two such runs nothing is known.
+    pub fn runs(&self) -> impl Iterator<Item = &[Sample]> {
+        self.kept.chunk_by(|a, b| b.frame - a.frame <= self.every)
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Sample] {
+        &self.kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(frame: u64) -> Sample {
+        Sample { frame, time: frame as f64, ..Sample::default() }
+    }
+
+    #[test]
+    fn samples_stay_within_their_bounds_and_cover_the_whole_past_without_gaps() {
+        let mut samples = Samples::default();
+        for frame in 0..50_000 {
+            if samples.wants(frame) {
+                samples.keep(sample(frame));
+            }
+        }
+        assert!((MOST / 2..=MOST).contains(&samples.all().len()), "{}", samples.all().len());
+        assert_eq!(samples.runs().count(), 1);
+        let ends = [samples.all().first(), samples.all().last()].map(|end| end.expect("samples").frame);
+        assert!(ends[0] == 0 && ends[1] > 49_980, "{ends:?}");
+        // What bodies say counts too.
+        let reading: Arc<[Reading]> = vec![("pressure".into(), 1.0); 1000].into();
+        let mut heavy = Samples::default();
+        for frame in 0..2_000 {
+            if heavy.wants(frame) {
+                heavy.keep(Sample { readings: vec![(0, Arc::clone(&reading))], ..sample(frame) });
+            }
+        }
+        assert!(heavy.bytes <= MOST_BYTES && heavy.all().len() > 200, "{}", heavy.all().len());
+        assert_eq!(heavy.runs().count(), 1);
+    }
+
+    #[test]
+    fn where_nothing_was_sampled_there_is_a_gap_until_it_is() {
+        let mut samples = Samples::default();
+        (0..10).chain(20..30).for_each(|frame| samples.keep(sample(frame)));
+        let ends = |samples: &Samples| -> Vec<[u64; 2]> {
+            samples.runs().map(|run| [run[0].frame, run[run.len() - 1].frame]).collect()
+        };
+        assert_eq!(ends(&samples), [[0, 9], [20, 29]]);
+        assert!(samples.wants(15) && !samples.wants(25));
+        (10..20).for_each(|frame| samples.keep(sample(frame)));
+        assert_eq!(ends(&samples), [[0, 29]]);
+        samples.forget_after(12);
+        assert_eq!(ends(&samples), [[0, 12]]);
+        assert!(Samples::default().runs().next().is_none());
+    }
+}

@@ -1,0 +1,103 @@
+//! What the panels show and keep while bodies become others.
+
+use super::screen::window::{SIZE, Window, top_of};
+use egui::{Key, Modifiers, PointerButton, Role, Vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use opruga::core::spec::Value;
+use opruga_studio::session::{Edit, Request};
+use opruga_studio::shown::Severity;
+
+/// So tall that nothing has to be scrolled to.
+const TALL: [f32; 2] = [1280.0, 1600.0];
+
+fn finer(name: &str) -> Request {
+    Request::Edit(Edit::Shape(name.into(), "vertices", Value::Integer(48)))
+}
+
+#[test]
+fn a_body_stays_selected_and_its_sections_open_when_it_is_set_down_anew_and_when_that_is_undone() {
+    let mut window = Window::open("ball", TALL);
+    window.studio().ask(Request::Step);
+    window.until("it moves", |shown| shown.frames == 1);
+    window.click("Shape: ring");
+    window.frames(30);
+    let is_open = |window: &Window| {
+        window.harness.query_by_role_and_label(Role::Slider, "stiffness [N/m]").is_some()
+            && window.harness.query_by_role_and_label(Role::Slider, "vertices").is_some()
+    };
+    assert!(is_open(&window));
+    window.studio().ask(finer("ball"));
+    window.until("another body", |shown| shown.bodies[0].name == "ball-2");
+    window.frames(30);
+    assert!(is_open(&window), "after another resolution");
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("undone", |shown| shown.bodies[0].name == "ball");
+    window.frames(30);
+    assert!(is_open(&window), "after undo");
+    window.key(Modifiers::COMMAND, Key::D);
+    window.until("two of them", |shown| shown.bodies.len() == 2);
+    window.frames(30);
+    let copy = window.shown().bodies[1].title.clone();
+    assert!(window.harness.query_by_label(&copy).is_some(), "the copy {copy} is selected");
+}
+
+#[test]
+fn substeps_that_are_too_few_leave_those_from_before_and_not_what_the_hand_has_passed() {
+    let mut window = Window::open("ball", TALL);
+    let rect = window.harness.get_by_role_and_label(Role::Slider, "Substeps").rect();
+    let at = |x: f32| egui::pos2(rect.left() + x, rect.center().y);
+    let way: Vec<egui::Pos2> = (0..=20).map(|k| at(110.0 - 6.0 * k as f32)).collect();
+    window.drag(&way, PointerButton::Primary, Modifiers::NONE);
+    window.until("a refusal", |shown| shown.message.as_ref().is_some_and(|m| m.severity == Severity::Refused));
+    window.frames(3);
+    let shown = window.shown();
+    assert_eq!((shown.substeps, shown.undo.is_none()), (32, true));
+    let node = window.harness.get_by_role_and_label(Role::Slider, "Substeps");
+    assert_eq!(node.accesskit_node().numeric_value(), Some(32.0));
+    // What is enough is taken where the hand lets go.
+    window.drag(&[at(110.0), at(120.0), at(130.0), at(140.0)], PointerButton::Primary, Modifiers::NONE);
+    window.until("more substeps", |shown| shown.substeps > 32);
+}
+
+#[test]
+fn a_push_of_the_right_button_begins_without_force_and_grows_with_the_way() {
+    let mut window = Window::open("ball", SIZE);
+    // A little beside the node, as hands are.
+    let at = top_of(&window) + Vec2::new(4.0, 5.0);
+    window.pointer(at);
+    window.button(at, PointerButton::Secondary, true, Modifiers::NONE);
+    window.studio().ask(Request::Step);
+    window.until("a frame", |shown| shown.frames == 1);
+    assert!(window.shown().pushes.is_empty());
+    let metre = {
+        let place = |x: f64| window.studio().on_screen([x, 2.0, 0.0]).expect("in sight").x;
+        place(1.0) - place(0.0)
+    };
+    window.pointer(at + Vec2::new(0.5 * metre, 0.0));
+    window.until("a push", |shown| shown.pushes.len() == 1);
+    let [.., force] = window.shown().pushes[0];
+    assert!((force[0] - 10.0).abs() < 0.1 && force[1].abs() < 0.1, "{force:?}");
+    window.studio().ask(Request::Step);
+    window.until("it is written down", |shown| shown.frames == 2 && shown.recorded == 1);
+    window.button(at, PointerButton::Secondary, false, Modifiers::NONE);
+    window.until("it is over", |shown| shown.pushes.is_empty());
+}
+
+/// The rate is one of pictures that follow one another.
+#[test]
+fn the_time_in_which_nothing_was_drawn_is_not_counted_in_the_rate_of_pictures() {
+    let mut window = Window::open("ball", SIZE);
+    let mut time = 100.0;
+    let mut rate = |after: f64| {
+        time += after;
+        window.harness.input_mut().time = Some(time);
+        window.frames(1);
+        let told = ["60 FPS", "– FPS"].map(|text| window.harness.query_by_label(text).is_some());
+        assert!(told[0] != told[1], "{told:?}");
+        told[0]
+    };
+    for _ in 0..20 {
+        assert!(!rate(3.0), "nobody knows");
+        assert!(rate(1.0 / 60.0) && rate(1.0 / 60.0));
+    }
+}
