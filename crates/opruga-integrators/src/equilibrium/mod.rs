@@ -178,34 +178,20 @@ impl Equilibrium {
     }
 
     /// An error with how far the load was on, and what helps in statics.
-    fn told<const D: usize>(&self, error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
-        let hint = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
-        match error {
-            StepError::Model { model, message } if model != SPEC.kind && !message.contains("; hint: ") => {
-                StepError::Model { model, message: format!("{message}; hint: {hint}") }
+    fn told<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
+        let helps = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
+        match &mut error {
+            StepError::Model { model, message } if *model != SPEC.kind && !message.contains("; hint: ") => {
+                message.push_str("; hint: ");
+                message.push_str(helps);
             }
-            StepError::NotConverged {
-                integrator,
-                iterations,
-                residual,
-                correction,
-                tolerance,
-                time,
-                flat_cells,
-                ..
-            } => StepError::NotConverged {
-                integrator,
-                iterations,
-                residual,
-                correction,
-                tolerance,
-                time,
-                beyond: from.map(|from| format!("{} of the load", number(from.load))),
-                flat_cells,
-                hint,
-            },
-            other => other,
+            StepError::NotConverged { beyond, hint, .. } => {
+                *beyond = from.map(|from| format!("{} of the load", number(from.load)));
+                *hint = helps;
+            }
+            _ => {}
         }
+        error
     }
 
     /// Looks for the displacement at which the forces balance under a part of the load, from that in `room.u` on.

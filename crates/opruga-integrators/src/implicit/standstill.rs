@@ -137,7 +137,7 @@ fn motion<const D: usize>(system: &mut System<D>, room: &mut Room<D>, h: f64) ->
     let (system, room) = (&*system, &*room);
     let mut mass = 0.0;
     let (mut center, mut speed, mut change) = ([0.0; D], [0.0; D], [0.0; D]);
-    let old: Vec<[f64; D]> = nodes::<D>(&room.v0).to_vec();
+    let old = nodes::<D>(&room.v0);
     for (node, old) in old.iter().enumerate() {
         let (x, v, m) = (system.state.x.at(node), system.state.v.at(node), system.mass.at(node));
         mass += m;
