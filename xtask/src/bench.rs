@@ -1,20 +1,23 @@
 //! The thesis's algorithm as a student would write it in C++, and Opruga, in one run on one machine: every figure that Opruga
 //! promises of its explicit rules, with its target.
 //!
-//! The two programs run by turns, some tenths of a second each, and the median of the ratios of neighbouring runs counts: what
-//! else the machine does meets both.
+//! The two programs run by turns, some tenths of a second each, all rows once and then all rows again: the median of the ratios
+//! of neighbouring runs counts, so that what else the machine does meets both, and what it does for a minute meets no row alone.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Pairs of runs of which a ratio is the median.
-const ROUNDS: usize = 7;
+/// How often every pair of runs is measured; a ratio is their median.
+const ROUNDS: usize = 9;
 /// Processor time of one run [s].
 const SECONDS: f64 = 0.3;
 /// Rings and vertices of the rows that are compared with the baseline.
-const ROWS: [(usize, usize); 7] =
-    [(1, 36), (1, 1_024), (1, 16_384), (1, 100_000), (1, 1_048_576), (1_000, 36), (27_778, 36)];
+const ROWS: [(usize, usize); 7] = [(1, 36), (1, 1_024), (1, 16_384), (1, 100_000), (1, 1_048_576), (1_000, 36), MANY];
+/// A million vertices.
+const MANY: (usize, usize) = (27_778, 36);
+/// The pressurised sphere of the second table.
+const SPHERE: &str = "benches/scenes/icosphere.toml";
 
 /// The two programs, and the folder of the workspace.
 struct Programs {
@@ -23,50 +26,103 @@ struct Programs {
     opruga: PathBuf,
 }
 
+/// A run that is timed: nanoseconds per vertex and step.
+type Timed<'a> = Box<dyn Fn() -> Result<f64, String> + 'a>;
+
+/// Two runs that are measured by turns, and what they gave: times, and first over second, of every round.
+struct Pair<'a> {
+    runs: [Timed<'a>; 2],
+    found: [Vec<f64>; 3],
+}
+
+impl<'a> Pair<'a> {
+    fn new(first: impl Fn() -> Result<f64, String> + 'a, second: impl Fn() -> Result<f64, String> + 'a) -> Self {
+        Self { runs: [Box::new(first), Box::new(second)], found: [const { Vec::new() }; 3] }
+    }
+
+    fn measure(&mut self) -> Result<(), String> {
+        let (first, second) = (self.runs[0]()?, self.runs[1]()?);
+        for (list, figure) in self.found.iter_mut().zip([first, second, first / second]) {
+            list.push(figure);
+        }
+        Ok(())
+    }
+
+    /// Medians of the two times, and of their ratios.
+    fn medians(&self) -> [f64; 3] {
+        self.found.each_ref().map(|list| median(list.clone()))
+    }
+}
+
 /// Compiles and runs the baseline, runs `opruga bench vertices`, and prints the ratios.
 pub(crate) fn compare() -> Result<(), String> {
     let programs = Programs::build()?;
     println!("load of the machine before: {}\n", load());
-    println!(
-        "| rings x vertices | instructions | baseline ns | Opruga ns | ratio | target | |\n|---|---|---|---|---|---|---|"
-    );
     let mut sets = Vec::new();
     for simd in ["avx512", "avx2", "sse2"] {
         if programs.row((1, 36), simd, &[])?["simd"] == simd {
             sets.push(simd);
         }
     }
-    for (bodies, vertices) in ROWS {
-        for &simd in &sets {
-            let [theirs, ours, ratio] = by_turns(
-                || programs.baseline(bodies.min(1_000), vertices),
-                || programs.nanoseconds((bodies, vertices), simd, &[]),
-            )?;
-            let target = target(bodies, vertices, simd, simd == sets[0]);
-            let (target, verdict) = match target {
-                Some(target) => (format!("{target}"), verdict(ratio / target)),
-                None => ("–".into(), String::new()),
-            };
-            println!(
-                "| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {ratio:.2} | {target} | {verdict} |"
-            );
-        }
+    let best = sets[0];
+    let rows: Vec<_> = ROWS.iter().flat_map(|&rings| sets.iter().map(move |&simd| (rings, simd))).collect();
+    let programs = &programs;
+    let mut pairs: Vec<Pair> = Vec::new();
+    for &((bodies, vertices), simd) in &rows {
+        pairs.push(Pair::new(
+            move || programs.baseline(bodies.min(1_000), vertices),
+            move || programs.nanoseconds((bodies, vertices), simd, &[]),
+        ));
+    }
+    let classical = [(1, 1_024), (1_000, 36)];
+    for rings in classical {
+        pairs.push(Pair::new(
+            move || programs.nanoseconds(rings, best, &["--integrator", "runge_kutta"]),
+            move || programs.nanoseconds(rings, best, &[]),
+        ));
+    }
+    pairs.push(Pair::new(
+        || programs.nanoseconds(MANY, best, &[]),
+        || programs.nanoseconds(MANY, best, &["--threads", "2"]),
+    ));
+    pairs.push(Pair::new(|| programs.baseline(1, 16_384), || programs.sphere(best)));
+    for round in 1..=ROUNDS {
+        eprintln!("round {round} of {ROUNDS}");
+        pairs.iter_mut().try_for_each(Pair::measure)?;
+    }
+    println!(
+        "| rings x vertices | instructions | baseline ns | Opruga ns | ratio | target | |\n|---|---|---|---|---|---|---|"
+    );
+    let mut pairs = pairs.iter().map(Pair::medians);
+    for (&((bodies, vertices), simd), [theirs, ours, ratio]) in rows.iter().zip(&mut pairs) {
+        let (target, verdict) = match target(bodies, vertices, simd, simd == best) {
+            Some(target) => (format!("{target}"), verdict(ratio / target)),
+            None => ("–".into(), String::new()),
+        };
+        println!("| {bodies} x {vertices} | {simd} | {theirs:.2} | {ours:.2} | {ratio:.2} | {target} | {verdict} |");
     }
     println!("\n| what | measured | target | |\n|---|---|---|---|");
-    for vertices in [(1, 1_024), (1_000, 36)] {
-        let [fast, slow, ratio] = by_turns(
-            || programs.nanoseconds(vertices, sets[0], &["--integrator", "runge_kutta"]),
-            || programs.nanoseconds(vertices, sets[0], &[]),
-        )?;
-        let (bodies, vertices) = vertices;
-        let what = format!("Runge–Kutta over symplectic Euler, {bodies} x {vertices} ({fast:.2} and {slow:.2} ns)");
+    for ((bodies, vertices), [slow, fast, ratio]) in classical.into_iter().zip(&mut pairs) {
+        let what = format!("Runge–Kutta over symplectic Euler, {bodies} x {vertices} ({slow:.2} and {fast:.2} ns)");
         say(&what, &format!("{ratio:.2}"), "≤ 4.4", 4.4 / ratio);
     }
-    programs.threads(sets[0])?;
-    programs.sphere(sets[0])?;
-    programs.spot(sets[0])?;
+    if let Some([one, two, ratio]) = pairs.next() {
+        let what = format!("27778 x 36 on two threads over one ({two:.2} ns by the clock, {one:.2} ns)");
+        say(&what, &format!("{ratio:.2}"), "≥ 1.8", ratio / 1.8);
+        let frames = 1e9 / (two * 16.0 * (MANY.0 * MANY.1) as f64);
+        say("27778 x 36 on two threads, frames of 16 steps a second", &format!("{frames:.0}"), "≥ 60", frames / 60.0);
+    }
+    if let Some([baseline, time, ratio]) = pairs.next() {
+        let what = format!(
+            "pressurised sphere, 1 x 10242, ns per vertex and step ({:.2} of the baseline's ring of 16384, {baseline:.2} ns)",
+            1.0 / ratio
+        );
+        say(&what, &format!("{time:.1}"), "≤ 15", 15.0 / time);
+    }
+    programs.balances()?;
+    programs.spot(best)?;
     programs.triangles()?;
-    let bytes = number(&programs.row((1, 100_000), sets[0], &[])?, "heap_bytes_per_vertex")?;
+    let bytes = number(&programs.row((1, 100_000), best, &[])?, "heap_bytes_per_vertex")?;
     say("heap of a ring of 100,000, bytes per vertex", &format!("{bytes:.0}"), "≤ 200", 200.0 / bytes);
     let start = programs.start_time()?;
     let what = "from the call to the initial state of 100,000 vertices, written, s (least of five)";
@@ -112,21 +168,6 @@ fn load() -> String {
 fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-/// Medians of two figures measured by turns, and of their ratios.
-fn by_turns(
-    mut first: impl FnMut() -> Result<f64, String>,
-    mut second: impl FnMut() -> Result<f64, String>,
-) -> Result<[f64; 3], String> {
-    let mut all = [const { Vec::new() }; 3];
-    for _ in 0..ROUNDS {
-        let (a, b) = (first()?, second()?);
-        for (list, figure) in all.iter_mut().zip([a, b, a / b]) {
-            list.push(figure);
-        }
-    }
-    Ok(all.map(median))
 }
 
 fn number(row: &Value, name: &str) -> Result<f64, String> {
@@ -195,37 +236,22 @@ impl Programs {
         number(&self.row(rings, simd, more)?, "nanoseconds_per_vertex_step")
     }
 
-    /// A million vertices on two threads: by the clock, so that whatever else runs counts too.
-    fn threads(&self, simd: &str) -> Result<(), String> {
-        let rings = (27_778, 36);
-        let [one, two, ratio] =
-            by_turns(|| self.nanoseconds(rings, simd, &[]), || self.nanoseconds(rings, simd, &["--threads", "2"]))?;
-        let what = format!("27778 x 36 on two threads over one ({two:.2} ns by the clock, {one:.2} ns)");
-        say(&what, &format!("{ratio:.2}"), "≥ 1.8", ratio / 1.8);
-        let frames = 1e9 / (two * 16.0 * (rings.0 * rings.1) as f64);
-        say("27778 x 36 on two threads, frames of 16 steps a second", &format!("{frames:.0}"), "≥ 60", frames / 60.0);
-        Ok(())
+    /// The pressurised sphere: nanoseconds per vertex and step.
+    fn sphere(&self, simd: &str) -> Result<f64, String> {
+        let scene = self.root.join(SPHERE);
+        let (nodes, steps) = (10_242.0, 100.0);
+        let mut call = Command::new(&self.opruga);
+        call.args(["bench", "scene"]).arg(&scene).args(["--frames", "8", "--json"]).env("OPRUGA_SIMD", simd);
+        let row = first_row(&mut call)?;
+        if row["nodes"].as_f64() != Some(nodes) || row["substeps"].as_f64() != Some(steps) {
+            return Err(format!("{} is another scene: {row}", scene.display()));
+        }
+        Ok(number(&row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
     }
 
-    /// The pressurised sphere: its time, and whether its volume in balance depends on its triangles.
-    fn sphere(&self, simd: &str) -> Result<(), String> {
-        let scene = self.root.join("benches/scenes/icosphere.toml");
-        let (nodes, steps) = (10_242.0, 100.0);
-        let once = || -> Result<f64, String> {
-            let mut call = Command::new(&self.opruga);
-            call.args(["bench", "scene"]).arg(&scene).args(["--frames", "8", "--json"]).env("OPRUGA_SIMD", simd);
-            let row = first_row(&mut call)?;
-            if row["nodes"].as_f64() != Some(nodes) || row["substeps"].as_f64() != Some(steps) {
-                return Err(format!("{} is another scene: {row}", scene.display()));
-            }
-            Ok(number(&row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
-        };
-        let [baseline, time, ratio] = by_turns(|| self.baseline(1, 16_384), once)?;
-        let what = format!(
-            "pressurised sphere, 1 x 10242, ns per vertex and step ({:.2} of the baseline's ring of 16384, {baseline:.2} ns)",
-            1.0 / ratio
-        );
-        say(&what, &format!("{time:.1}"), "≤ 15", 15.0 / time);
+    /// Whether the volume of the sphere in balance depends on its triangles.
+    fn balances(&self) -> Result<(), String> {
+        let scene = self.root.join(SPHERE);
         let mut ratios = Vec::new();
         for subdivisions in [2, 3, 4, 5] {
             ratios.push(self.balance(&scene, subdivisions)?);
