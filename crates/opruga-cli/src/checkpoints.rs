@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::source::{Source, argument};
 use opruga::World;
 use opruga::io::checkpoint::{Checkpoint, CheckpointError};
-use opruga::io::safe_write::{OutputFolder, WriteError};
+use opruga::io::output_folder::OutputFolder;
+use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::io::tables::{NumberTable, WarningSummary};
 use opruga::io::{Files, SceneError};
@@ -21,6 +22,8 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 
 /// The table of a run.
 const TABLE: &str = "diagnostics.csv";
+/// What a run writes at its end.
+const LAST: [&str; 6] = ["summary.json", "final.csv", "strip.png", "plots.svg", "video.mp4", "video.gif"];
 
 /// The form of the payload; another one belongs to another version of the program.
 const FORM: &str = "run 3";
@@ -175,6 +178,8 @@ pub(crate) struct Keeper<'a> {
     every: Option<Duration>,
     next: Option<Instant>,
     older: Older,
+    /// Whether this run has written a checkpoint.
+    begun: bool,
     /// Checkpoints on the way that could not be written, and why the last one could not.
     failed: Option<(u64, String)>,
 }
@@ -201,7 +206,7 @@ impl<'a> Keeper<'a> {
         };
         let every = (seconds > 0.0).then(|| Duration::from_secs_f64(seconds));
         let next = every.map(|every| Instant::now() + every);
-        Keeper { folder, source, calling, every, next, older, failed: None }
+        Keeper { folder, source, calling, every, next, older, begun: false, failed: None }
     }
 
     /// Writes the head of the table and its first row: whoever looks into the folder of a run that has begun, or was killed
@@ -228,13 +233,14 @@ impl<'a> Keeper<'a> {
         Some(error.to_string())
     }
 
-    /// Writes the table so far, then a checkpoint; the one before it is kept under its second name.
+    /// Writes the table so far and a checkpoint; the checkpoint before it is kept under its second name. Returns the names of
+    /// what is there then: the first time, what an earlier run left goes, since it would pass for this one's. All of it or,
+    /// where it fails, nothing.
     pub(crate) fn write<const D: usize>(
         &mut self,
         world: &mut World<D>,
         table: &NumberTable,
-    ) -> Result<(), WriteError> {
-        self.folder.write(TABLE, true, |out| table.write(out))?;
+    ) -> Result<Vec<String>, WriteError> {
         let saved = SavedRun {
             name: self.source.name.clone(),
             calling: self.calling.clone(),
@@ -243,19 +249,29 @@ impl<'a> Keeper<'a> {
             snapshot: world.snapshot(),
         };
         let checkpoint = Checkpoint { scene: self.source.text().into(), payload: saved.to_bytes() };
-        match std::mem::replace(&mut self.older, Older::Keep) {
-            Older::Keep => self.folder.write_keeping(NAME, PREVIOUS, |out| checkpoint.write(out))?,
-            older => {
-                let written = self.folder.write(NAME, true, |out| checkpoint.write(out));
-                if written.is_err() {
-                    self.older = older;
-                } else if older == Older::Remove {
-                    self.folder.remove(PREVIOUS)?;
-                }
-                written?
-            }
+        let folder = self.folder;
+        let previous = match self.older {
+            Older::Keep => folder.path(NAME).exists(),
+            Older::Leave => true,
+            Older::Remove => false,
         };
-        Ok(())
+        let mut together = folder.together();
+        together.write(TABLE, |out| table.write(out))?;
+        match self.older {
+            Older::Keep => together.write_keeping(NAME, PREVIOUS, |out| checkpoint.write(out))?,
+            Older::Leave | Older::Remove => together.write(NAME, |out| checkpoint.write(out))?,
+        }
+        if self.older == Older::Remove {
+            together.remove(PREVIOUS);
+        }
+        if !self.begun {
+            LAST.iter().for_each(|name| together.remove(name));
+        }
+        together.finish()?;
+        self.begun = true;
+        self.older = Older::Keep;
+        let names = [TABLE, NAME].into_iter().chain(previous.then_some(PREVIOUS));
+        Ok(names.map(String::from).collect())
     }
 
     /// What went wrong on the way, for the summary.

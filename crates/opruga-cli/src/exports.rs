@@ -4,7 +4,7 @@ use crate::arguments::Replay;
 use crate::failure::Failure;
 use opruga::World;
 use opruga::blueprint::BodyBlueprint;
-use opruga::io::safe_write::OutputFolder;
+use opruga::io::output_folder::OutputFolder;
 use opruga::io::series::{CellField, Format, Shape};
 use opruga::io::tracks::{Track, write_glb};
 use std::collections::BTreeMap;

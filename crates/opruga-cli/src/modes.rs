@@ -7,7 +7,7 @@ use crate::source::{Opened, Source, open};
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::Values;
 use opruga::draw;
-use opruga::io::safe_write::{Existing, OutputFolder};
+use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::scene;
 use opruga::math::words::{number, rounded};
 use opruga::pictures::{Scenery, rest_of};

@@ -1,11 +1,11 @@
 //! What a run leaves behind: tables, checkpoint, strip, video, plots.
 
-use crate::checkpoints::{Keeper, NAME, PREVIOUS};
+use crate::checkpoints::Keeper;
 use crate::failure::Failure;
 use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
 use opruga::draw;
-use opruga::io::safe_write::OutputFolder;
+use opruga::io::output_folder::OutputFolder;
 use opruga::io::tables::{
     CellSummary, EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
 };
@@ -38,11 +38,9 @@ impl Outputs<'_> {
         recorder: Recorder,
         keeper: &mut Keeper<'_>,
     ) -> Result<String, Failure> {
-        let mut files = vec!["diagnostics.csv".to_string(), "final.csv".into(), NAME.into()];
-        keeper.write(world, &recorder.table)?;
-        if self.folder.path(PREVIOUS).exists() {
-            files.push(PREVIOUS.into());
-        }
+        // The checkpoint first: pictures that cannot be written must not cost the run.
+        let mut files = keeper.write(world, &recorder.table)?;
+        files.push("final.csv".into());
         let numbers: Vec<usize> = world.bodies().collect();
         let nodes = |body: usize| 0..world.node_count(body) as u32;
         let of = |vector: &dyn Fn(usize, u32) -> [f64; D]| -> Vec<Vec<[f64; D]>> {
@@ -57,12 +55,6 @@ impl Outputs<'_> {
         self.folder.write("final.csv", false, |out| write_final(out, rows))?;
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
-        }
-        for ours in ["strip.png", "plots.svg", "video.mp4", "video.gif"] {
-            // What an earlier run left under a name that this one does not use would pass for its own.
-            if !files.iter().any(|file| file == ours) {
-                self.folder.remove(ours)?;
-            }
         }
         files.push("summary.json".into());
         let summary = self.summary(world, files);
@@ -217,8 +209,11 @@ impl Outputs<'_> {
 
     /// What was odd: in the call, in the scene, on the way, in the world.
     fn all_warnings<const D: usize>(&self, world: &World<D>) -> Vec<WarningSummary> {
-        let of_world = world.warnings().into_iter().chain(world.inverted_cells());
-        let of_world = of_world.map(|w| WarningSummary { code: w.code, message: w.message, count: w.count });
+        let of_world = world.warnings_at_the_end().into_iter().map(|w| WarningSummary {
+            code: w.code,
+            message: w.message,
+            count: w.count,
+        });
         self.told.iter().cloned().chain(of_world).collect()
     }
 
@@ -244,8 +239,11 @@ impl Outputs<'_> {
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
             rounded(e.closure, 2),
         );
-        let warnings = world.warnings().into_iter().chain(world.inverted_cells());
-        warnings.filter(|warning| !early.contains(warning)).for_each(|warning| crate::run::tell(&warning));
+        world
+            .warnings_at_the_end()
+            .into_iter()
+            .filter(|warning| !early.contains(warning))
+            .for_each(|warning| crate::run::tell(&warning));
         self.say_where();
     }
 

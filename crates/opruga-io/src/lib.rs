@@ -10,6 +10,7 @@ pub mod checkpoint;
 mod document;
 pub mod files;
 pub mod meshes;
+pub mod output_folder;
 pub mod overrides;
 pub mod problem;
 pub mod recording;

@@ -1,7 +1,8 @@
 //! Files that are never half written, checkpoints that are never half read, tables.
 
 use opruga_io::checkpoint::{Checkpoint, CheckpointError};
-use opruga_io::safe_write::{Existing, Failing, OutputFolder, Target, safe_write, safe_write_through};
+use opruga_io::output_folder::{Existing, OutputFolder};
+use opruga_io::safe_write::{Failing, Target, safe_write, safe_write_through};
 use opruga_io::series::{Format, Shape, write_vtk_series};
 use opruga_io::tables::{FinalBody, NumberTable, Summary, write_final};
 use opruga_io::tracks::{Track, write_glb};
@@ -225,7 +226,9 @@ fn a_second_name_keeps_the_older_file() {
     let out = OutputFolder::open(&folder.join("o"), Existing::Refuse).expect("new");
     let read = |name: &str| std::fs::read(out.path(name)).ok();
     for k in 0..4u8 {
-        out.write_keeping("checkpoint", "checkpoint.previous", |w| w.write_all(&[k])).expect("written");
+        let mut together = out.together();
+        together.write_keeping("checkpoint", "checkpoint.previous", |w| w.write_all(&[k])).expect("written");
+        together.finish().expect("named");
         assert_eq!(read("checkpoint"), Some(vec![k]));
         assert_eq!(read("checkpoint.previous"), k.checked_sub(1).map(|k| vec![k]));
     }
@@ -233,7 +236,8 @@ fn a_second_name_keeps_the_older_file() {
         w.write_all(b"half")?;
         Err(std::io::ErrorKind::StorageFull.into())
     };
-    assert_eq!(out.write_keeping("checkpoint", "checkpoint.previous", full).expect_err("full").code, "write.failed");
+    let failed = out.together().write_keeping("checkpoint", "checkpoint.previous", full).expect_err("full");
+    assert_eq!(failed.code, "write.failed");
     assert_eq!(
         (read("checkpoint"), read("checkpoint.previous")),
         (Some(vec![3]), Some(vec![2])),
@@ -242,6 +246,53 @@ fn a_second_name_keeps_the_older_file() {
     out.remove("checkpoint.previous").expect("removed");
     out.remove("checkpoint.previous").expect("it is gone already");
     assert_eq!((read("checkpoint"), read("checkpoint.previous")), (Some(vec![3]), None));
+    drop(out);
+    std::fs::remove_dir_all(folder).expect("the folder is there");
+}
+
+/// Row 83: of files that belong together all change, or none does.
+#[test]
+fn files_that_belong_together_change_together() {
+    let folder = folder("together");
+    let out = OutputFolder::open(&folder.join("o"), Existing::Refuse).expect("new");
+    let names = || {
+        let entries = std::fs::read_dir(folder.join("o")).expect("a folder").map(|e| e.expect("an entry"));
+        let mut all: Vec<(String, Vec<u8>)> = entries
+            .map(|e| (e.file_name().to_string_lossy().into_owned(), std::fs::read(e.path()).expect("a file")))
+            .filter(|(name, _)| name != ".opruga-lock")
+            .collect();
+        all.sort();
+        all
+    };
+    let pair = |name: &str, bytes: &[u8]| (name.to_string(), bytes.to_vec());
+    out.write("summary", false, |w| w.write_all(b"old")).expect("written");
+    out.write("table", false, |w| w.write_all(b"old")).expect("written");
+    let before = names();
+    let mut together = out.together();
+    together.write("table", |w| w.write_all(b"new")).expect("written");
+    together.remove("summary");
+    let full = |w: &mut dyn Write| {
+        w.write_all(b"half")?;
+        Err(std::io::ErrorKind::StorageFull.into())
+    };
+    assert_eq!(together.write("state", full).expect_err("full").code, "write.failed");
+    drop(together);
+    assert_eq!(names(), before, "nothing has changed, and nothing is left aside");
+    let mut together = out.together();
+    together.write("table", |w| w.write_all(b"newer")).expect("written");
+    together.write("table", |w| w.write_all(b"new")).expect("the last one counts");
+    together.write("state", |w| w.write_all(b"new")).expect("written");
+    together.remove("summary");
+    together.finish().expect("named");
+    assert_eq!(names(), [pair("state", b"new"), pair("table", b"new")]);
+    // A name that cannot be given: a folder has come to have it.
+    let mut together = out.together();
+    together.write("table", |w| w.write_all(b"newest")).expect("written");
+    together.write("state", |w| w.write_all(b"newest")).expect("written");
+    std::fs::remove_file(out.path("table")).expect("the file is there");
+    std::fs::create_dir(out.path("table")).expect("a folder");
+    assert_eq!(together.finish().expect_err("a folder").code, "write.failed");
+    assert_eq!(std::fs::read(out.path("state")).expect("a file"), b"new", "what comes behind it is as it was");
     drop(out);
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
