@@ -33,6 +33,17 @@ pub(crate) enum Part<const D: usize> {
     Facets(Facets<D>),
 }
 
+impl<const D: usize> Part<D> {
+    /// Whether it is a solid with edges.
+    pub(crate) fn has_edges(&self) -> bool {
+        match self {
+            Part::Cuboid(_) => true,
+            Part::Facets(facets) => facets.solid,
+            Part::HalfSpace(_) | Part::Ball(_) | Part::Capsule(_) => false,
+        }
+    }
+}
+
 /// The shape as it was described, for drawing.
 #[derive(Clone, Debug)]
 pub(crate) enum Form<const D: usize> {
@@ -138,6 +149,11 @@ impl<const D: usize> Collider<D> {
         }
         let still = motion.is_still().then(|| Frame::new(&motion, 0.0, 0.0));
         Ok(Collider { law, motion, still, form, parts, bounds })
+    }
+    /// The distance that nodes keep from it for the sake of rounding alone [m].
+    pub(crate) fn margin_of_rounding(&self) -> f64 {
+        let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
+        self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
     }
     /// Whether it stands still.
     pub(crate) fn is_static(&self) -> bool {

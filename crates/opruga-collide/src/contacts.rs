@@ -2,12 +2,13 @@
 
 use crate::bounds::Bounds;
 use crate::collider::{Collider, Law, Part};
+use crate::entries::{Found, arrays, look_for_entries, look_for_supports};
 use crate::facet_contacts::{Placed, hold_back_by_facets};
 use crate::motion::{Carry, Frame, Pose};
 use crate::picture::{Picture, picture};
-use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
-use crate::shape::{Shape, entry};
-use crate::touch::Way;
+use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
+use crate::shape::{Shape, close_to};
+use crate::touch::{Faces, Way};
 use crate::vector::{dot, subtract};
 use core::any::Any;
 use opruga_core::contacts::{Contacts, Moved, Touch};
@@ -84,9 +85,30 @@ impl<const D: usize> Colliders<D> {
         };
         self.0.iter().position(behind).unwrap_or(0)
     }
+    /// A collider by its number.
+    pub(crate) fn collider(&self, number: usize) -> &Collider<D> {
+        &self.0[number]
+    }
     /// Where the colliders are at a time [s], in order.
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
         self.0.iter().map(|collider| picture(collider, time)).collect()
+    }
+    /// Whether there are solids with edges, beside which there is something else.
+    fn has_seams(&self) -> bool {
+        let parts = || self.0.iter().flat_map(|collider| &collider.parts);
+        parts().nth(1).is_some() && parts().any(Part::has_edges)
+    }
+    /// Whether they are so near to the nodes of a tile that these may go from one to the other.
+    fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
+        let (mut count, mut edges) = (0, false);
+        for collider in self.0.iter() {
+            let sweep = collider.sweep(moved.time, moved.h, space);
+            for part in collider.parts.iter().filter(|part| collider.may_touch(part, &sweep, &space[0], &space[1])) {
+                count += 1;
+                edges |= part.has_edges();
+            }
+        }
+        count > 1 && edges
     }
     /// One plane or ball has no corners: then one look at every node is enough, and no bounds are needed first.
     fn is_simple(&self) -> bool {
@@ -96,7 +118,6 @@ impl<const D: usize> Colliders<D> {
 
 impl<const D: usize> Contacts<D> for Colliders<D> {
     fn touch(&self, from: &[f64; D], to: &[f64; D], time: f64, h: f64, reach: f64, visit: &mut dyn FnMut(Touch<D>)) {
-        let way = Way { from, to, time, h, reach };
         let (mut low, mut high) = (*from, *from);
         for d in 0..D {
             low[d] = to[d].smaller(low[d]);
@@ -104,12 +125,19 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
             low[d] -= reach.abs();
             high[d] += reach.abs();
         }
+        let near = |collider: &Collider<D>| {
+            let sweep = collider.sweep(time, h, &[low, high]);
+            collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high))
+        };
+        let mut way = Way { from, to, kept: *to, faces: Faces::NONE, time, h, reach };
+        if self.has_seams() {
+            self.0.iter().filter(|collider| near(collider)).for_each(|collider| way.keep(collider));
+        }
         let mut first = 0;
         for collider in self.0.iter() {
             let numbers = first..first + collider.parts.len();
             first = numbers.end;
-            let sweep = collider.sweep(time, h, &[low, high]);
-            if collider.parts.iter().any(|part| collider.may_touch(part, &sweep, &low, &high)) {
+            if near(collider) {
                 way.touch(collider, numbers, visit);
             }
         }
@@ -123,8 +151,11 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let (mut held, mut ever) = (Held([0; TILE / WIDTH]), false);
-        // More than once, since one collider may push a node into another.
-        for _ in 0..ROUNDS {
+        // First what nodes lay on: a node that slides from one solid onto another is held by the first one until it is on the
+        // second, and does not run into the side of that. Then more than once, since one collider may push a node into another.
+        let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
+        let first = seams.then_some(Meets::WhatItLiesOn);
+        for meets in first.into_iter().chain([Meets::Everything; ROUNDS]) {
             let mut touched = false;
             for collider in self.0.iter() {
                 let mut frame = None;
@@ -138,7 +169,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                         Some(frame) => frame,
                         None => frame.get_or_insert_with(|| Frame::new(&collider.motion, moved.time, moved.h)),
                     };
-                    if hold_back(simd, part, collider, frame, moved, &mut held, used) {
+                    if hold_back(simd, part, collider, frame, moved, &mut held, used, meets) {
                         touched = true;
                         // A node may have been pushed out of the box.
                         if !simple {
@@ -148,7 +179,7 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
                 }
             }
             ever |= touched;
-            if simple || !touched {
+            if simple || !touched && meets == Meets::Everything {
                 break;
             }
         }
@@ -158,6 +189,15 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
 
 /// How often the colliders act at most in a step.
 const ROUNDS: usize = 4;
+
+/// What a node meets in a look at a collider.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meets {
+    /// A surface on which it lay at the beginning of the step.
+    WhatItLiesOn,
+    /// Whatever it is in.
+    Everything,
+}
 
 /// Which nodes of a tile have been held back in this step: a bit each.
 pub(crate) struct Held(pub(crate) [u8; TILE / WIDTH]);
@@ -195,15 +235,20 @@ fn hold_back<const D: usize>(
     moved: &mut Moved<D>,
     held: &mut Held,
     used: usize,
+    meets: Meets,
 ) -> bool {
     let (law, Frame { pose, carry }) = (&collider.law, frame);
     match part {
-        Part::HalfSpace(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
-        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
-        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
-        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used }),
+        Part::HalfSpace(shape) => {
+            simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets })
+        }
+        // What is round pushes nowhere but away.
+        Part::Ball(_) | Part::Capsule(_) if meets == Meets::WhatItLiesOn => false,
+        Part::Ball(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
+        Part::Capsule(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
+        Part::Cuboid(shape) => simd.run(Pass { shape: shape.posed(pose), law, pose, carry, moved, held, used, meets }),
         Part::Facets(facets) => {
-            hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used)
+            hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used, meets)
         }
     }
 }
@@ -231,6 +276,7 @@ struct Pass<'a, 'm, T, const D: usize> {
     moved: &'a mut Moved<'m, D>,
     held: &'a mut Held,
     used: usize,
+    meets: Meets,
 }
 
 /// The columns of a tile.
@@ -278,8 +324,10 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
         let look =
             Look { shape, carry: self.carry, near: P::splat(law.thickness + largest_rounding(law)), far, has_far_side };
+        let lies = self.meets == Meets::WhatItLiesOn;
         let mut k = 0;
-        let mut near = false;
+        // Who lay on the surface may be beside it now.
+        let mut near = lies;
         while k + 4 * WIDTH <= used && !near {
             near = look.any_near::<4>(&tile, k, P::first(WIDTH));
             k += 4 * WIDTH;
@@ -306,17 +354,34 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             let from = lanes!(P, d => tile.before.load::<P>(d, k));
             let before = self.carry.along(&from);
             let way = subtract(&x, &before);
+            // Who goes far may come out elsewhere, and who came in by a face may be nearer to another one.
             let fast = P::both(far.less(dot(&way, &way)), nodes);
-            let any_fast = has_far_side && P::any(fast);
-            if !P::any(close) && !any_fast {
+            let mut asked = P::select(fast, P::one(), P::zero());
+            if lies {
+                let lay = P::splat(close_to(shape, law.thickness)).larger(rounding(law, &before));
+                let on = P::both((shape.gap(&before) - thickness).abs().less_or_equal(lay), nodes);
+                asked = P::select(on, P::one(), P::zero());
+            } else if T::FACES {
+                let inside = P::both((shape.gap(&x) - thickness).less_or_equal(rounding(law, &x)), nodes);
+                asked = P::select(inside, P::one(), asked);
+            }
+            let any_asked = (lies || has_far_side) && P::any(P::zero().less(asked));
+            if !any_asked && (lies || !P::any(close)) {
                 continue;
             }
             let (mut gap, mut normal) = shape.gap_and_normal(&x);
             gap -= thickness;
-            if any_fast {
+            if any_asked {
                 let mut found = Found { gap: gap.to_array(), normal: arrays(&normal) };
-                let fast = P::select(fast, P::one(), P::zero()).to_array();
-                look_for_entries(shape, law.thickness, &arrays(&x), &arrays(&before), &fast, &mut found);
+                let way = [arrays(&before), arrays(&x)];
+                let (held, asked) = (self.held.pack::<P>(k).to_array(), asked.to_array());
+                if lies {
+                    let small = rounding(law, &before).to_array();
+                    look_for_supports(shape, law.thickness, &small, &held, &way, &asked, &mut found);
+                } else {
+                    let small = rounding(law, &x).to_array();
+                    look_for_entries(shape, law.thickness, &small, &held, &way, &asked, &mut found);
+                }
                 gap = P::from_array(found.gap);
                 normal = lanes!(P, d => P::from_array(found.normal[d]));
             }
@@ -332,7 +397,11 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             }
             touched = true;
             self.held.note(k, P::select(hit, P::one(), P::zero()));
-            let parting = respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting);
+            let parting = if T::FACES {
+                respond(&Face { x, gap, normal }, law, hit, &meeting)
+            } else {
+                respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting)
+            };
             for d in 0..D {
                 tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
                 tile.v.store(d, k, P::select(hit, parting.v[d], v[d]));
@@ -375,45 +444,5 @@ impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
         }
         P::any(P::both(least.less(self.near), nodes))
             || (self.has_far_side && P::any(P::both(self.far.less(most), nodes)))
-    }
-}
-
-/// The gaps and normals of the nodes of a pack.
-struct Found<const D: usize> {
-    gap: [f64; WIDTH],
-    normal: [[f64; WIDTH]; D],
-}
-
-/// The numbers of packs.
-#[inline(always)]
-fn arrays<P: Pack, const D: usize>(packs: &[P; D]) -> [[f64; WIDTH]; D] {
-    let mut out = [[0.0; WIDTH]; D];
-    for d in 0..D {
-        out[d] = packs[d].to_array();
-    }
-    out
-}
-
-/// For nodes that went far: whether they came into the shape on their way, and where.
-#[inline(never)]
-fn look_for_entries<T: Shape<D>, const D: usize>(
-    shape: &T,
-    margin: f64,
-    x: &[[f64; WIDTH]; D],
-    before: &[[f64; WIDTH]; D],
-    fast: &[f64; WIDTH],
-    found: &mut Found<D>,
-) {
-    for l in 0..WIDTH {
-        if fast[l] == 0.0 {
-            continue;
-        }
-        let (a, b): ([f64; D], [f64; D]) = (lanes!(f64, d => before[d][l]), lanes!(f64, d => x[d][l]));
-        if let Some((gap, normal)) = entry(shape, margin, &a, &b) {
-            found.gap[l] = gap;
-            for d in 0..D {
-                found.normal[d][l] = normal[d];
-            }
-        }
     }
 }

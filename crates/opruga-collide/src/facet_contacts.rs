@@ -1,13 +1,14 @@
 //! Nodes against obstacles of many facets: one node after the other, by a tree.
 
 use crate::collider::Law;
-use crate::contacts::Held;
+use crate::contacts::{Held, Meets};
 use crate::facets::Facets;
 use crate::motion::{Carry, Pose};
-use crate::response::{Meeting, Surface, largest_rounding, meets, respond};
+use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
+use crate::shape::{entry, is_on_edge, support};
 use crate::vector::{dot, subtract};
 use opruga_core::contacts::Moved;
-use opruga_math::{WIDTH, lanes};
+use opruga_math::{Lane, WIDTH, lanes};
 
 /// Facets where they are at the end of the step.
 pub(crate) struct Placed<'a, const D: usize> {
@@ -32,7 +33,12 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
     moved: &mut Moved<D>,
     held: &mut Held,
     used: usize,
+    asked: Meets,
 ) -> bool {
+    let lies = asked == Meets::WhatItLiesOn;
+    if lies && !surface.facets.solid {
+        return false;
+    }
     let mut touched = false;
     for k in 0..used {
         let place = moved.range.start + k;
@@ -42,6 +48,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
         let force = lanes!(f64, d => moved.force[d][k]);
         let mass = moved.mass.at(place);
         let (lane, bit) = (place % WIDTH, 1u8 << (k % WIDTH));
+        let is_held = |held: &Held| held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
         // What one facet of a thin surface pushes out may be pushed through another one, which pushes then.
         let mut through = false;
         for _ in 0..if surface.facets.solid { 1 } else { PUSHES } {
@@ -51,13 +58,30 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
             if !finite || !surface.facets.near(&from, &to, surface.margin + largest_rounding(law)) {
                 break;
             }
-            let (gap, normal) = surface.find(&x, &before, largest_rounding(law));
+            let (mut gap, mut normal) = if lies {
+                match support(surface.facets, surface.margin, rounding(law, &before), [&from, &to], is_held(held)) {
+                    Some((gap, normal)) => (gap, surface.pose.direct(&normal)),
+                    None => break,
+                }
+            } else {
+                surface.find(&x, &before, largest_rounding(law))
+            };
             if gap == f64::INFINITY {
                 break;
             }
             let obstacle = surface.pose.velocity_at(&x);
-            let was_held = held.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
-            let was_held = f64::from(u8::from(was_held));
+            // As of other solids: what something else keeps on the surface passes edges, and what lies exactly where two solids
+            // meet, and is kept by nothing, is in both of them.
+            if surface.facets.solid && !lies && gap.abs() <= surface.facets.grain().larger(rounding(law, &x)) {
+                if !is_held(held) {
+                    if let Some((behind, face)) = entry(surface.facets, surface.margin, &from, &to) {
+                        (gap, normal) = (behind, surface.pose.direct(&face));
+                    }
+                } else if is_on_edge(surface.facets, surface.margin, &to) {
+                    break;
+                }
+            }
+            let was_held = f64::from(u8::from(is_held(held)));
             let meeting =
                 Meeting { x, v, before, from: start, force, mass, gap, normal, obstacle, held: was_held, h: moved.h };
             if !meets(law, &meeting) {
@@ -67,7 +91,11 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
             if let Some(bits) = held.0.get_mut(k / WIDTH) {
                 *bits |= bit;
             }
-            let parting = respond(surface, law, true, &meeting);
+            let parting = if surface.facets.solid {
+                respond(&Face { x, gap, normal }, law, true, &meeting)
+            } else {
+                respond(surface, law, true, &meeting)
+            };
             moved.x.set(place, parting.x);
             moved.v.set(place, parting.v);
             moved.loss_contact[lane] += parting.loss_contact;

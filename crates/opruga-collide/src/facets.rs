@@ -155,6 +155,10 @@ impl<const D: usize> Facets<D> {
     pub(crate) fn skin(&self) -> f64 {
         if self.solid { 0.0 } else { self.resolved() }
     }
+    /// The distance below which a node lies on a facet [m].
+    pub(crate) fn grain(&self) -> f64 {
+        self.grain
+    }
     /// Whether a segment passes the bounds, widened by a margin. The coordinates must be finite.
     pub(crate) fn near(&self, a: &[f64; D], b: &[f64; D], margin: f64) -> bool {
         for d in 0..D {
@@ -177,12 +181,13 @@ impl<const D: usize> Facets<D> {
     fn touch_solid(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
         let way = subtract(x, before);
         let far = 0.5 * self.half_width;
-        if dot(&way, &way) > far * far
+        let (gap, normal) = self.gap_and_normal(x);
+        // The face by which it came in, which need not be the nearest one.
+        if (gap - margin < -self.grain || dot(&way, &way) > far * far)
             && let Some(found) = entry(self, margin, before, x)
         {
             return found;
         }
-        let (gap, normal) = self.gap_and_normal(x);
         // From a node on the surface no direction leads to it.
         if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
@@ -232,6 +237,15 @@ impl<const D: usize> Facets<D> {
 
 /// The convex solid as the cut of the half-spaces behind its faces: exact inside, a lower bound outside.
 impl<const D: usize> Shape<D> for Facets<D> {
+    const FACES: bool = true;
+    fn visit_faces(&self, x: &[f64; D], grain: f64, visit: &mut dyn FnMut(f64, [f64; D])) {
+        for facet in &self.facets {
+            let height = dot(&subtract(x, &facet.corner), &facet.normal);
+            if height >= -grain {
+                visit(height, facet.normal);
+            }
+        }
+    }
     fn half_width(&self) -> f64 {
         self.half_width
     }

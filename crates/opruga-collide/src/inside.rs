@@ -44,6 +44,11 @@ impl<const D: usize> Colliders<D> {
             let x = add(point, shift);
             let mut inside = false;
             self.touch(&x, &x, 0.0, INSTANT, -slack, &mut |touch| {
+                // A node on a thin surface lies within the margin that keeps rounding from putting it on the other side, and that
+                // grows with the distance from the origin.
+                if -touch.gap <= 1.001 * self.collider(self.collider_of(touch.surface)).margin_of_rounding() {
+                    return;
+                }
                 inside = true;
                 if deepest.as_ref().is_none_or(|(_, other)| touch.gap < other.gap) {
                     deepest = Some((number, touch));

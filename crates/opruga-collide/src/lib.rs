@@ -55,6 +55,7 @@
 mod bounds;
 mod collider;
 mod contacts;
+mod entries;
 mod facet_contacts;
 mod facets;
 mod hull;

@@ -11,6 +11,21 @@ pub(crate) trait Surface<S: Lane, const D: usize> {
     fn find(&self, x: &[S; D], before: &[S; D], reach: S) -> (S, [S; D]);
 }
 
+/// The plane in which a flat face lies: what a node on it goes along, beyond the edges too.
+pub(crate) struct Face<S, const D: usize> {
+    pub(crate) x: [S; D],
+    /// The gap at `x`.
+    pub(crate) gap: S,
+    pub(crate) normal: [S; D],
+}
+
+impl<S: Lane, const D: usize> Surface<S, D> for Face<S, D> {
+    #[inline(always)]
+    fn find(&self, x: &[S; D], _before: &[S; D], _reach: S) -> (S, [S; D]) {
+        (self.gap + dot(&subtract(x, &self.x), &self.normal), self.normal)
+    }
+}
+
 /// A node that penetrates a collider.
 pub(crate) struct Meeting<S, const D: usize> {
     /// Position after the free motion [m].
@@ -83,7 +98,8 @@ pub(crate) fn largest_rounding(law: &Law) -> f64 {
 /// So a node that reaches the surface exactly meets it in this step and not as one at rest in the next.
 #[inline(always)]
 pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
-    let small = rounding(law, &node.x);
+    // At the origin a node has the rounding of where it came from.
+    let small = rounding(law, &node.x).larger(rounding(law, &node.before));
     let coming = -dot(&subtract(&node.v, &node.obstacle), &node.normal) * node.h;
     let inside = node.gap.less(S::select(small.less(coming), small, -small));
     // A node so far away that its distance overflows has no place on the surface.

@@ -5,13 +5,58 @@ use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
 use opruga_math::{Lane, lanes};
 
 /// A solid with a signed distance, negative inside.
-pub(crate) trait Shape<const D: usize> {
+pub(crate) trait Shape<const D: usize>: Sized {
     /// Half of the smallest width [m], above which a node in one step could come out on the far side.
     fn half_width(&self) -> f64;
     /// The signed distance [m].
     fn gap<S: Lane>(&self, x: &[S; D]) -> S;
     /// The signed distance [m] and its gradient, the unit normal.
     fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]);
+    /// Whether flat faces bound it, which meet in edges.
+    const FACES: bool = false;
+    /// Calls back with the flat faces that a point on the surface lies on, to within `grain` [m]: its height above each, and the
+    /// normal; with none where there are no flat faces.
+    fn visit_faces(&self, _x: &[f64; D], _grain: f64, _visit: &mut dyn FnMut(f64, [f64; D])) {}
+}
+
+/// A face that a node on its way comes upon: of several, that against which its way runs most.
+pub(crate) struct Met<const D: usize> {
+    /// How high over the face the node is [m].
+    pub(crate) height: f64,
+    pub(crate) normal: [f64; D],
+    /// How far the end of the way lies behind that face, of all on which the node is, of which it lies least behind [m].
+    pub(crate) behind: f64,
+    /// On how many faces the node is.
+    pub(crate) faces: usize,
+    /// Behind how many of these its way leads.
+    pub(crate) entered: usize,
+}
+
+impl<const D: usize> Met<D> {
+    /// What a node meets on its way from `x`, which keeps the distance `margin` from a shape to within `close`.
+    fn of<T: Shape<D>>(shape: &T, margin: f64, x: &[f64; D], way: &[f64; D], close: f64) -> Met<D> {
+        let (height, normal) = shape.gap_and_normal(x);
+        let nearest = Met { height: height - margin, normal, behind: f64::INFINITY, faces: 0, entered: 0 };
+        let (mut met, mut most) = (nearest, f64::INFINITY);
+        let mut add = |height: f64, normal: [f64; D]| {
+            let along = dot(way, &normal);
+            if along < most {
+                (most, met.height, met.normal) = (along, height - margin, normal);
+            }
+            met.behind = (margin - height - along).smaller(met.behind);
+            met.faces += 1;
+            met.entered += usize::from(along < 0.0);
+        };
+        // At a distance there are no edges: a margin goes round them.
+        if margin <= close {
+            shape.visit_faces(x, 2.0 * close, &mut add);
+        }
+        if met.faces == 0 {
+            met.behind = -met.height - dot(way, &met.normal);
+            (met.faces, met.entered) = (1, 1);
+        }
+        met
+    }
 }
 
 /// Solid where x·n < offset.
@@ -173,6 +218,18 @@ impl<const D: usize> Cuboid<D> {
 }
 
 impl<const D: usize> Shape<D> for Cuboid<D> {
+    const FACES: bool = true;
+    fn visit_faces(&self, x: &[f64; D], grain: f64, visit: &mut dyn FnMut(f64, [f64; D])) {
+        let local = turned(&self.axes, &subtract(x, &self.center));
+        for d in 0..D {
+            for side in [1.0, -1.0] {
+                let height = side * local[d] - self.half[d];
+                if height >= -grain {
+                    visit(height, scaled(&self.axes[d], side));
+                }
+            }
+        }
+    }
     fn half_width(&self) -> f64 {
         let mut least = f64::INFINITY;
         for d in 0..D {
@@ -223,6 +280,40 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
     }
 }
 
+/// How near to a shape [m] a node lies on its surface.
+pub(crate) fn close_to<T: Shape<D>, const D: usize>(shape: &T, margin: f64) -> f64 {
+    let width = shape.half_width();
+    if width < f64::INFINITY { 1e-9 * (width + margin) } else { 0.0 }
+}
+
+/// Whether a point on the surface lies on an edge, where more than one normal is right.
+pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x: &[f64; D]) -> bool {
+    Met::of(shape, margin, x, &[0.0; D], close_to(shape, margin)).faces > 1
+}
+
+/// What a node that lay on a surface at `a`, to within `small` [m], is held by on its way to `b`: the distance of `b` behind the
+/// tangent plane (negative) and the normal. None if it lay elsewhere or does not come in; nor on an edge, if more than one face
+/// is in its way, or if something else, which has `held` it already, leads it along one of the faces.
+#[inline(never)]
+pub(crate) fn support<T: Shape<D>, const D: usize>(
+    shape: &T,
+    margin: f64,
+    small: f64,
+    [a, b]: [&[f64; D]; 2],
+    held: bool,
+) -> Option<(f64, [f64; D])> {
+    let close = close_to(shape, margin).larger(small);
+    let gap = shape.gap(a) - margin;
+    let way = subtract(b, a);
+    if gap.abs() <= close {
+        let Met { height, normal, behind, entered, .. } = Met::of(shape, margin, a, &way, close);
+        let left = height + dot(&way, &normal);
+        let clear = if held { behind > close } else { entered == 1 };
+        return (clear && dot(&way, &normal) < 0.0 && left < 0.0).then_some((left, normal));
+    }
+    None
+}
+
 /// Where a node that moved from `a` to `b` entered a convex solid: the distance of `b` behind the tangent plane there
 /// (negative) and the normal. None if it did not come in from outside.
 ///
@@ -236,7 +327,7 @@ pub(crate) fn entry<T: Shape<D>, const D: usize>(
 ) -> Option<(f64, [f64; D])> {
     let way = subtract(b, a);
     let far = length(&way);
-    let close = 1e-9 * (shape.half_width() + margin);
+    let close = close_to(shape, margin);
     let mut gone = 0.0;
     if shape.gap(a) - margin < -close {
         return None;
@@ -246,9 +337,9 @@ pub(crate) fn entry<T: Shape<D>, const D: usize>(
         let x: [f64; D] = lanes!(f64, d => a[d] + s * way[d]);
         let gap = shape.gap(&x) - margin;
         if gap <= close {
-            let (gap, normal) = shape.gap_and_normal(&x);
             let left: [f64; D] = subtract(b, &x);
-            let behind = dot(&left, &normal) + (gap - margin);
+            let Met { height, normal, .. } = Met::of(shape, margin, &x, &left, close);
+            let behind = dot(&left, &normal) + height;
             return (dot(&way, &normal) < 0.0 && behind < 0.0).then_some((behind, normal));
         }
         gone += gap;

@@ -4,24 +4,60 @@ use crate::collider::{Collider, Law, Part};
 use crate::facet_contacts::Placed;
 use crate::motion::{Carry, Frame};
 use crate::response::{Surface, rounding};
-use crate::shape::{Shape, entry};
-use crate::vector::{dot, subtract};
+use crate::shape::{Shape, entry, support};
+use crate::vector::{dot, scaled, subtract};
 use core::ops::Range;
 use opruga_core::contacts::Touch;
+use opruga_math::Lane;
 
 /// A node on its way through a step.
 pub(crate) struct Way<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
+    /// Where it would come to if what it lay on kept it out: that says by which face it meets another solid.
+    pub(crate) kept: [f64; D],
+    /// The faces of solids on which it would lie: where two solids meet, these have faces that look at each other.
+    pub(crate) faces: Faces<D>,
     pub(crate) time: f64,
     pub(crate) h: f64,
     /// The largest gap that matters [m].
     pub(crate) reach: f64,
 }
 
+/// The normals of the faces that a point lies on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Faces<const D: usize> {
+    normals: [[f64; D]; MOST_FACES],
+    count: usize,
+}
+
+/// More faces than meet in a corner of some boxes are not looked at.
+const MOST_FACES: usize = 16;
+
+impl<const D: usize> Faces<D> {
+    pub(crate) const NONE: Faces<D> = Faces { normals: [[0.0; D]; MOST_FACES], count: 0 };
+
+    fn add(&mut self, normal: [f64; D]) {
+        if let Some(place) = self.normals.get_mut(self.count) {
+            *place = normal;
+            self.count += 1;
+        }
+    }
+    /// Whether another solid lies against a face of this normal.
+    fn covers(&self, normal: &[f64; D]) -> bool {
+        self.normals[..self.count].iter().any(|other| dot(other, normal) < 1e-6 - 1.0)
+    }
+    /// Whether any face is covered.
+    fn any_covered(&self) -> bool {
+        self.normals[..self.count].iter().any(|normal| self.covers(normal))
+    }
+}
+
 /// What the way looks like from a collider.
 struct Seen<'a, const D: usize> {
     to: &'a [f64; D],
+    kept: &'a [f64; D],
+    faces: &'a Faces<D>,
     /// Where the node began, carried along with the collider.
     carried: [f64; D],
     law: &'a Law,
@@ -29,6 +65,45 @@ struct Seen<'a, const D: usize> {
 }
 
 impl<const D: usize> Way<'_, D> {
+    /// Lets a collider on which the node lay at the beginning keep it out.
+    pub(crate) fn keep(&mut self, collider: &Collider<D>) {
+        let frame = collider.still.unwrap_or_else(|| Frame::new(&collider.motion, self.time, self.h));
+        let Frame { pose, carry } = &frame;
+        let (margin, carried) = (collider.law.thickness, Carry::along(carry, self.from));
+        let small = rounding(&collider.law, &carried);
+        let near = rounding(&collider.law, self.to);
+        let mut faces = self.faces;
+        for part in &collider.parts {
+            let held = self.kept != *self.to;
+            let found = match part {
+                Part::HalfSpace(shape) => support(&shape.posed(pose), margin, small, [&carried, &self.kept], held),
+                Part::Cuboid(shape) => {
+                    let shape = shape.posed(pose);
+                    if margin <= near {
+                        let gap = shape.gap(self.to);
+                        if gap.abs() <= near {
+                            shape.visit_faces(self.to, near, &mut |_, normal| faces.add(normal));
+                        }
+                    }
+                    support(&shape, margin, small, [&carried, &self.kept], held)
+                }
+                Part::Facets(facets) if facets.solid => {
+                    let (from, to) = (pose.unplace(&carried), pose.unplace(&self.kept));
+                    let (end, grain) = (pose.unplace(self.to), facets.grain().larger(near));
+                    if margin <= grain && facets.gap(&end).abs() <= grain {
+                        facets.visit_faces(&end, grain, &mut |_, normal| faces.add(pose.direct(&normal)));
+                    }
+                    support(facets, margin, small, [&from, &to], held).map(|(gap, normal)| (gap, pose.direct(&normal)))
+                }
+                Part::Ball(_) | Part::Capsule(_) | Part::Facets(_) => None,
+            };
+            if let Some((gap, normal)) = found {
+                self.kept = subtract(&self.kept, &scaled(&normal, gap));
+            }
+        }
+        self.faces = faces;
+    }
+
     /// Calls back with the surfaces of a collider that the node has come to; they are numbered from `first` on.
     pub(crate) fn touch(&self, collider: &Collider<D>, numbers: Range<usize>, visit: &mut dyn FnMut(Touch<D>)) {
         let still;
@@ -40,7 +115,14 @@ impl<const D: usize> Way<'_, D> {
             }
         };
         let carry: &Carry<D> = carry;
-        let seen = Seen { to: self.to, carried: carry.along(self.from), law: &collider.law, reach: self.reach };
+        let seen = Seen {
+            to: self.to,
+            kept: &self.kept,
+            faces: &self.faces,
+            carried: carry.along(self.from),
+            law: &collider.law,
+            reach: self.reach,
+        };
         for (part, number) in collider.parts.iter().zip(numbers) {
             let found = match part {
                 Part::HalfSpace(shape) => seen.solid(&shape.posed(pose)),
@@ -49,7 +131,18 @@ impl<const D: usize> Way<'_, D> {
                 Part::Cuboid(shape) => seen.solid(&shape.posed(pose)),
                 Part::Facets(facets) => {
                     let placed = Placed { facets, pose, margin: collider.law.thickness };
-                    let (gap, normal) = placed.find(self.to, &seen.carried, self.reach);
+                    let to = if facets.solid { &self.kept } else { self.to };
+                    let (mut gap, mut normal) = placed.find(to, &seen.carried, self.reach);
+                    if facets.solid && seen.faces.any_covered() {
+                        let direct = |normal: [f64; D]| pose.direct(&normal);
+                        let (from, to) = (pose.unplace(&seen.carried), pose.unplace(to));
+                        let entered =
+                            entry(facets, placed.margin, &from, &to).map(|(gap, normal)| (gap, direct(normal)));
+                        if let Some(met) = entered.or_else(|| seen.open_face(facets, &to, facets.grain(), &direct)) {
+                            (gap, normal) = met;
+                        }
+                    }
+                    let gap = gap + dot(&subtract(self.to, to), &normal);
                     // The side from which the node comes is that on which it is held.
                     let (before, _) = placed.find(&seen.carried, &seen.carried, f64::INFINITY);
                     (gap <= self.reach).then_some((gap, before, normal))
@@ -66,7 +159,7 @@ impl<const D: usize> Way<'_, D> {
                     friction: collider.law.friction,
                     restitution: collider.law.restitution,
                     rest_speed: collider.law.rest_speed,
-                    rounding: rounding(&collider.law, self.to),
+                    rounding: rounding(&collider.law, self.to).larger(rounding(&collider.law, &seen.carried)),
                 });
             }
         }
@@ -76,16 +169,45 @@ impl<const D: usize> Way<'_, D> {
 impl<const D: usize> Seen<'_, D> {
     /// Gap, gap before and normal of a solid, if it is in reach or was crossed.
     fn solid<T: Shape<D>>(&self, shape: &T) -> Option<(f64, f64, [f64; D])> {
-        let (gap, normal) = shape.gap_and_normal(self.to);
+        let (gap, normal) = shape.gap_and_normal(self.kept);
         let mut found = (gap - self.law.thickness, normal);
-        let way = subtract(self.to, &self.carried);
+        let way = subtract(self.kept, &self.carried);
         let far = 0.5 * shape.half_width();
-        if far < dot(&way, &way).sqrt()
-            && let Some(entered) = entry(shape, self.law.thickness, &self.carried, self.to)
+        // The face by which it came in, which need not be the nearest one.
+        let small = rounding(self.law, self.kept);
+        let margin = self.law.thickness;
+        // What lies exactly where two solids meet is in both of them.
+        let covered = T::FACES && found.0 <= small && self.faces.any_covered();
+        if (covered || T::FACES && found.0 < -small || far < dot(&way, &way).sqrt())
+            && let Some(entered) = entry(shape, margin, &self.carried, self.kept)
         {
             found = entered;
+        } else if covered && let Some(open) = self.open_face(shape, self.kept, small, &|normal| normal) {
+            found = open;
         }
+        found.0 += dot(&subtract(self.to, self.kept), &found.1);
         let before = shape.gap(&self.carried) - self.law.thickness;
         (found.0 <= self.reach).then_some((found.0, before, found.1))
+    }
+
+    /// Where solids meet: of the faces at a point that no other solid lies against, the height above the one which the way runs
+    /// against most, and its normal.
+    fn open_face<T: Shape<D>>(
+        &self,
+        shape: &T,
+        x: &[f64; D],
+        grain: f64,
+        direct: &dyn Fn([f64; D]) -> [f64; D],
+    ) -> Option<(f64, [f64; D])> {
+        let way = subtract(self.kept, &self.carried);
+        let mut most: Option<(f64, (f64, [f64; D]))> = None;
+        shape.visit_faces(x, grain, &mut |height, normal| {
+            let normal = direct(normal);
+            let along = dot(&way, &normal);
+            if !self.faces.covers(&normal) && most.is_none_or(|(other, _)| along < other) {
+                most = Some((along, (height - self.law.thickness, normal)));
+            }
+        });
+        most.map(|(_, face)| face)
     }
 }

@@ -151,3 +151,19 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
         }
     }
 }
+
+/// The margin of a thin surface grows with its distance from the origin: a node that begins exactly on it is not inside of it, near
+/// or far, and one beyond a margin that the scene asks for is.
+#[test]
+fn nodes_that_begin_on_a_thin_surface_are_not_buried_in_it() {
+    for far in [0.0, 3.0, 1e3, 1e6, 1e7] {
+        let line = |thickness: f64| {
+            let points = rows(&[&[-1.0, far], &[1.0, far]]);
+            colliders::<2>(&[values::<2>("polyline", &[("points", points), ("thickness", number(thickness))])])
+        };
+        let nodes = [[-0.1, far], [0.0, far], [0.1, far]];
+        assert!(line(0.0).buried(&nodes, 2e-7).is_none(), "{far} m: {:?}", line(0.0).buried(&nodes, 2e-7));
+        let buried = line(0.25).buried(&nodes, 2e-7).expect("within the margin");
+        assert!(buried.count == 3 && (buried.depth - 0.25).abs() < 1e-6, "{far} m: {buried:?}");
+    }
+}
