@@ -189,9 +189,14 @@ impl Spectrum {
         }
         let mut out = Vec::with_capacity(2 * squares.len());
         for square in squares {
-            let least = (gamma * square + self.offset[0]).larger(self.least_damping);
-            let greatest = (gamma * square + self.offset[1]).smaller(self.damping);
-            if (0.0..=most).contains(&square) && least <= greatest {
+            // By rounding alone a corner may lie beyond the edges that meet in it.
+            if !(-1e-9 * most..=(1.0 + 1e-9) * most).contains(&square) {
+                continue;
+            }
+            let square = square.larger(0.0).smaller(most);
+            let within = |offset: f64| (gamma * square + offset).larger(self.least_damping).smaller(self.damping);
+            let [least, greatest] = self.offset.map(within);
+            if least <= greatest {
                 out.extend([(square.sqrt(), least), (square.sqrt(), greatest)]);
             }
         }

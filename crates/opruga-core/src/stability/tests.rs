@@ -191,3 +191,17 @@ fn the_polygon_is_narrow_where_damping_follows_stiffness() {
         "{spectrum:?}"
     );
 }
+
+#[test]
+fn damping_in_proportion_to_stiffness_has_its_closed_form_whatever_the_rounding() {
+    for k in 0..2_000 {
+        let omega = 3.0 + 0.0137 * f64::from(k);
+        let damping = omega * (0.1 + 0.000_71 * f64::from(k % 977));
+        let spectrum = Spectrum { omega, damping, least_damping: 0.0, offset: [0.0; 2] };
+        let ratio = 0.5 * damping / omega;
+        // ω² h² + 2 c h = 4 at the limit of symplectic Euler.
+        let limit = 2.0 / omega * ((1.0 + ratio * ratio).sqrt() - ratio);
+        let found = spectrum.largest_stable_step(&SYMPLECTIC).expect("a stable step");
+        assert!((found / limit - 1.0).abs() < 1e-6, "ω = {omega}, c = {damping}: {found} {limit}");
+    }
+}
