@@ -178,12 +178,14 @@ impl<const D: usize> Motion<D> {
         let size = |vector: &[f64; D]| dot(vector, vector).sqrt();
 
         // Along the normal: what the node brings is lost, or a part of it returns; no surface pulls.
-        let impact = touch.gap_before > touch.rounding;
+        // A node that has come to the surface exactly, where nothing had to hold it, meets it now.
+        let nears = dot(&beside, &touch.normal);
+        let own = dot(&turned, &touch.normal);
+        let impact = touch.gap_before > touch.rounding || nears < 0.0 && !still(nears, own);
         let Balance { impulse, echo, .. } = ending.balance;
         let held = h * (impulse + echo) * force.normal;
         let remembered = dot(&self.memory, &touch.normal);
-        let own = dot(&turned, &touch.normal);
-        let stopped = impact || !still(dot(&beside, &touch.normal), own) || !still(MOVES_ALONG * remembered, own);
+        let stopped = impact || !still(nears, own) || !still(MOVES_ALONG * remembered, own);
         let (after, change) = if stopped {
             let bounces = came > touch.rest_speed && impact;
             let back = if bounces { touch.restitution * came } else { 0.0 };
