@@ -247,6 +247,9 @@ pub struct CellState {
     pub stress: [[f64; 3]; 3],
     /// Its volume over that at rest, J.
     pub volume_ratio: f64,
+    /// The least J at its integration points, of its shape and of what its law is asked with: a cell with a volume may be flat or
+    /// inside out at some of them.
+    pub smallest_volume_ratio: f64,
     /// Its volume at rest [m³], in the plane its area times the thickness.
     pub measure: f64,
 }

@@ -162,12 +162,27 @@ impl<const D: usize> World<D> {
         /// A body that is not there, or has none, says nothing.
         pub fn cell_states(&self, body: usize) -> Vec<CellState> = cell_states_here;
 
-        /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, which the rules of
-        /// motion allow; none where all are right side out. Looked for anew by every call.
+        /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, at one of their
+        /// integration points at least, which the rules of motion allow; none where all are right side out. Looked for anew by
+        /// every call.
         pub fn inverted_cells(&self) -> Option<Warning> = inverted_cells_here;
+
+        /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the
+        /// forces on them account for, from their own shape on: they snapped through, are folded, inside out or twisted
+        /// round. None where there is no such body. Looked for anew by every call.
+        ///
+        /// With the forces fᵢ that hold the shape [N] and the rest shape moved as a whole to where it fits the present places
+        /// xᵢ best, yᵢ, a body is told of where its energy is more than Σ |fᵢ| |xᵢ − yᵢ|: what loads, pins, obstacles or gas have
+        /// deformed holds half of that at most if it is strained a little. Bodies of the material `linear`, which has one shape in
+        /// which it holds nothing, are never told of.
+        pub fn other_balances(&self) -> Option<Warning> = other_balances_here;
 
         /// Warnings so far, with counts.
         pub fn warnings(&self) -> Vec<Warning> = warnings_here;
+
+        /// Warnings so far, and what is odd about the shapes in the present state: [`World::inverted_cells`] and
+        /// [`World::other_balances`]. For the end of a run, since shapes are looked at anew by every call.
+        pub fn warnings_at_the_end(&self) -> Vec<Warning> = warnings_at_the_end_here;
 
         /// A 64-bit hash (FNV-1a) over the little-endian bits of all positions, then velocities, body by body in node order.
         pub fn state_hash(&self) -> u64 = state_hash_here;

@@ -1,4 +1,4 @@
-//! Cells of finite elements that are inside out in the present state.
+//! Cells of finite elements that are inside out in the present state, wholly or at some of their integration points.
 
 use crate::world::{Warning, World};
 use opruga_math::words::{counted, number};
@@ -12,8 +12,8 @@ impl<const D: usize> World<D> {
         let mut first: Option<(usize, u32, f64)> = None;
         let mut count = 0;
         for body in self.bodies().filter(solid) {
-            for cell in self.cell_states(body).iter().filter(|cell| cell.volume_ratio <= 0.0) {
-                first.get_or_insert((body, cell.cell, cell.volume_ratio));
+            for cell in self.cell_states(body).iter().filter(|cell| cell.smallest_volume_ratio <= 0.0) {
+                first.get_or_insert((body, cell.cell, cell.smallest_volume_ratio));
                 count += 1;
             }
         }

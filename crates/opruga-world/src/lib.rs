@@ -17,6 +17,7 @@ pub mod ledger;
 mod loads;
 mod looks;
 pub mod modes;
+mod other_balances;
 mod plausible;
 mod population;
 mod problems;

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 5;
+const VERSION: u64 = 6;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -160,7 +160,7 @@ impl<const D: usize> World<D> {
     fn read_head(reader: &mut Reader<'_>) -> Result<(u64, Vec<Told>), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != VERSION {
-            return refuse("its version is not 4");
+            return refuse(&format!("its version is not {VERSION}"));
         }
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");

@@ -5,7 +5,14 @@
 //! stays. So bodies are looked at now and then, and where one has come to rest while cells have no volume or a negative one,
 //! or while cells are strained though nothing acts on the body, its free nodes are displaced by chance, the same chance in
 //! every run: first by 10⁻⁴ of its size, then, each time after it had time to leave, by a hundredth and a tenth. Every time is
-//! counted. What is still so after the last time stays, and is counted as such.
+//! counted. What is still so after the last time stays, and is counted as such. A cell has no volume where one of its integration
+//! points has none, whatever its mean.
+//!
+//! A body that left is one that kept a shape of its own as long as it would have had time to leave: one that goes to and fro about
+//! the limit, good at one look and flat at the next, goes on where it was, and comes to the last time.
+//!
+//! Strained bodies on which something acts, a pin, an obstacle or a load, are left alone here, as those are that were meant to
+//! snap through: that they hold more than what acts on them accounts for is told at the end (`cells.other_balance`).
 //!
 //! At rest is a body whose kinetic energy and whose forces out of balance are small against the energy U that its cells hold,
 //! ½ Σ m v² ≪ U and Σ m |a| L ≪ U, and which does not give it to damping: one that creeps against its viscosity, as slowly as it
@@ -52,9 +59,10 @@ const FLAT: f64 = 1e-3;
 /// Cells of a body on which nothing acts are strained where their volume has changed by more than this part of it.
 const STRAINED: f64 = 1e-3;
 
-/// What the state remembers: steps since the last look, how often the body was disturbed since it was seen in a shape of its
-/// own, one more where that was in vain, when it was disturbed last [s], and at how many looks all of it was flat.
-pub(crate) const NUMBERS: usize = 4;
+/// What the state remembers: steps since the last look, how often the body was disturbed since it left its last odd shape, one
+/// more where that was in vain, when it was disturbed last [s], at how many looks all of it was flat, and until when a shape of
+/// its own does not count as having left [s].
+pub(crate) const NUMBERS: usize = 5;
 
 /// Looks at a body at the end of a step of h [s], now and then; `first` is the place of what is remembered.
 pub(crate) fn look<const D: usize>(
@@ -63,24 +71,28 @@ pub(crate) fn look<const D: usize>(
     first: usize,
     h: f64,
 ) -> Result<(), StepError> {
-    let [steps, times, last, flat] = core::array::from_fn(|k| system.history.numbers[first + k]);
+    let [steps, times, last, flat, until] = core::array::from_fn(|k| system.history.numbers[first + k]);
     system.history.numbers[first] = steps + 1.0;
     if steps + 1.0 < PERIOD {
         return Ok(());
     }
     system.history.numbers[first] = 0.0;
     let Some(size) = odd_size(system, Stage::Current) else {
-        system.history.numbers[first..first + NUMBERS].copy_from_slice(&[-LEISURE, 0.0, last, 0.0]);
+        let times = if system.time > until { 0.0 } else { times };
+        system.history.numbers[first..first + NUMBERS].copy_from_slice(&[-LEISURE, times, last, 0.0, until]);
         return Ok(());
     };
     let flat = if is_flat(system) { flat + 1.0 } else { 0.0 };
     system.history.numbers[first + 3] = flat;
-    if times > SIZES.len() as f64 {
-        return Ok(());
-    }
     let energy = stored(system, &mut room.force)?;
     let Motion { kinetic, push, mass, fading } = motion(system, room, h)?;
     let patience = PATIENCE * size * (mass / energy).sqrt();
+    // Numbers of the state are finite; what holds no energy has for ever to leave.
+    let until = system.time + patience;
+    system.history.numbers[first + 4] = if until.is_finite() { until } else { f64::MAX };
+    if times > SIZES.len() as f64 {
+        return Ok(());
+    }
     let had_time = system.time - last > patience;
     let waits = times > 0.0 && !had_time;
     let rests = |part: f64| part <= REST * energy;
@@ -274,7 +286,7 @@ fn is_flat<const D: usize>(system: &System<D>) -> bool {
 /// Whether a cell of a body that stands still has no shape of its own; `alone` says that nothing acts on the body.
 fn is_odd(cell: &CellState, alone: bool) -> bool {
     // Written so that what is no number is odd.
-    let solid = cell.volume_ratio > FLAT;
+    let solid = cell.smallest_volume_ratio > FLAT;
     !solid || alone && (cell.volume_ratio - 1.0).abs() > STRAINED
 }
 

@@ -278,7 +278,12 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             for l in 0..WIDTH {
                 let (element, of) = section.item(group.first, l);
                 let Some(cell) = section.cells.get(element).filter(|_| of == body) else { continue };
+                let at = |node: u32, axis: usize| positions.columns[axis][section.layout.place(node as usize, body)];
                 let (mut measure, mut sum, mut now) = (0.0, [[0.0; 3]; 3], 0.0);
+                let mut smallest = f64::INFINITY;
+                // What is no number stays.
+                let mut look =
+                    |ratio: f64| smallest = if ratio < smallest || ratio.is_nan() { ratio } else { smallest };
                 for q in 0..section.points {
                     let weight = section.measure(group.first, q, l);
                     let f = |i: usize, j: usize| match (i < D, j < D) {
@@ -288,6 +293,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     };
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);
+                    look(ratio);
                     // The mean of a box is its points once more.
                     if q < E::POINTS {
                         measure += weight;
@@ -304,9 +310,23 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         }
                     }
                 }
+                // Laws of boxes see bending as the mean carries it along, which stays right side out where the cell does not.
+                for (q, slopes) in E::SLOPES.iter().enumerate().filter(|_| E::BOX) {
+                    let side = |i: usize, j: usize| match (i < D, j < D) {
+                        (true, true) => (0..N).map(|a| at(cell.nodes[a], i) * slopes[a][j]).sum(),
+                        _ if i == j => across.0[q * WIDTH + l],
+                        _ => 0.0,
+                    };
+                    let sides = core::array::from_fn(|i| core::array::from_fn(|j| side(i, j)));
+                    let rest = section.measure(group.first, q, l) / (E::WEIGHTS[q] * section.thickness);
+                    look(opruga_math::matrix::determinant::<f64, 3>(&sides) / rest);
+                }
                 let over = if turns { now } else { measure };
                 let stress = sum.map(|row| row.map(|s| s / over));
-                out.push(CellState { cell: cell.number, stress, volume_ratio: now / measure, measure });
+                let (cell, volume_ratio) = (cell.number, now / measure);
+                // A simplex has one J, which the mean rounds.
+                let smallest_volume_ratio = if E::SIMPLEX { volume_ratio } else { smallest };
+                out.push(CellState { cell, stress, volume_ratio, smallest_volume_ratio, measure });
             }
         }
     }

@@ -76,6 +76,8 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) damped: bool,
     /// Whether the nodes resist the volume beyond λ′.
     pub(super) nodal: bool,
+    /// Depth out of the plane [m]; 1 in space.
+    pub(super) thickness: f64,
 }
 
 /// Packs of elements that are worked on by one thread at a time.
@@ -270,6 +272,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
             uniform,
             damped,
             nodal,
+            thickness,
         };
         let mut start = 0;
         for k in 0..section.shares.len() {
