@@ -166,3 +166,54 @@ fn errors_of_tetgen_point_at_the_file_of_the_nodes_or_of_the_elements() {
         }
     }
 }
+
+/// A text without a mark at its end that stops within its last line is refused, however whole the rest of the number looks.
+#[test]
+fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
+    let mfem = MFEM.replace("1 1 1\n", "1 1 1.75\n");
+    let vtk = VTK.replace("1 2\n", "1000.0\n125.75\n");
+    let attributes =
+        ELE.replace("2 4 0", "2 4 1").replace("1 2 3 4\n", "1 2 3 4 7.5\n").replace("3 4 5\n", "3 4 5 125.5\n");
+    let coordinates = NODE.replace("1 1 1\n", "1 1 1.75\n");
+    // What is read, TetGen's other file, and the number that is cut.
+    for (name, whole, other, number) in [
+        ("a.mesh", &mfem[..], "", "1.75"),
+        ("a.mfem", &mfem, "", "1.75"),
+        ("a.vtk", &vtk, "", "125.75"),
+        ("a.node", &coordinates, ELE, "1.75"),
+        ("a.ele", ELE, NODE, "5"),
+        ("a.ele", &attributes, NODE, "125.5"),
+    ] {
+        let outcome = |text: &str| -> Outcome {
+            let mut open = |_: &str| -> Result<Arc<[u8]>, SceneError> { Ok(Arc::from(other.as_bytes())) };
+            read(name, text.as_bytes(), &mut open)?.assemble(Mending::default())
+        };
+        outcome(whole).unwrap_or_else(|e| panic!("{name}: {e}"));
+        outcome(&whole.replace('\n', "\r\n")).unwrap_or_else(|e| panic!("{name}: {e}"));
+        for kept in 1..=number.len() {
+            let text = &whole[..whole.len() - 1 - number.len() + kept];
+            let error = outcome(text).expect_err(&number[..kept]);
+            assert_eq!(
+                error.message, "the file ends in the middle of its last line, maybe of a number",
+                "{name} {kept}"
+            );
+            assert_eq!(
+                (error.line, error.value.as_deref()),
+                (Some(whole.lines().count()), Some(&number[..kept])),
+                "{name}"
+            );
+            let hint = error.hint.unwrap_or_default();
+            assert!(hint.starts_with("end the last line with a line break"), "{hint}");
+        }
+    }
+    // Marks tell that a file is whole, and so does a comment behind the last number.
+    for (name, text) in [
+        ("a.mesh", MFEM.replace("v1.0", "v1.3") + "mfem_mesh_end"),
+        ("a.mesh", MFEM.trim_end().to_string() + " # the last"),
+        ("a.mesh", MEDIT.trim_end().to_string()),
+        ("a.msh", MSH.trim_end().to_string()),
+        ("a.vtu", VTU.trim_end().to_string()),
+    ] {
+        body(name, &text).unwrap_or_else(|e| panic!("{e}"));
+    }
+}

@@ -295,6 +295,7 @@ fn bad_stl_and_ply_files_are_refused_with_their_place() {
         ("255 1 1 1", "255 1 1 x", "shape.number", Some(18)),
         ("255 1 1 1", "255 1 nan 1", "scene.not_finite", Some(18)),
         ("4 3 0 4 7\n", "4 3 0 4 7\n8\n", "ply.size", Some(25)),
+        ("4 3 0 4 7\n", "4 3 0 4 7", "ply.syntax", Some(25)),
     ] {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text, "{from}");

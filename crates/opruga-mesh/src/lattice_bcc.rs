@@ -26,7 +26,7 @@ impl Lattice {
     /// [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`] for a filling or a box of too many nodes.
     pub(crate) fn around(surface: &Mesh<3>, spacing: f64) -> Result<Lattice, MeshError> {
         crate::mesh::positive("spacing", spacing)?;
-        let estimate = surface.lattice_estimate(spacing);
+        let estimate = surface.lattice_estimate(spacing) as u64;
         if estimate > MAXIMUM_NODES {
             return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });
         }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 impl Mesh<3> {
     /// About how many nodes [`Mesh::lattice_filling`] or [`Mesh::tetrahedra_filling`] makes of this surface.
-    pub fn lattice_estimate(&self, spacing: f64) -> u64 {
+    pub fn lattice_estimate(&self, spacing: f64) -> f64 {
         let mut area = 0.0;
         for facet in &self.facets {
             let [a, b, c] = facet.map(|node| self.positions[node as usize]);
@@ -16,7 +16,7 @@ impl Mesh<3> {
         }
         let nodes =
             2.0 * self.enclosed_volume().abs() / (spacing * spacing * spacing) + 2.0 * area / (spacing * spacing);
-        if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+        crate::mesh::estimated(nodes)
     }
 
     /// The inside of this closed surface as a body of equal tetrahedra, which carries the surface as its [`Skin`].

@@ -218,6 +218,11 @@ fn belongs(element: Element, dimension: usize) -> bool {
     }
 }
 
+/// An estimate of a number of nodes as a whole number; infinite where it is no number.
+pub(crate) fn estimated(nodes: f64) -> f64 {
+    if nodes.is_nan() { f64::INFINITY } else { nodes.floor() }
+}
+
 /// Refuses more than [`MAXIMUM_NODES`] nodes.
 pub(crate) fn limit_nodes(nodes: u64) -> Result<(), MeshError> {
     if nodes > MAXIMUM_NODES { Err(MeshError::TooManyNodes { nodes, most: MAXIMUM_NODES }) } else { Ok(()) }

@@ -72,7 +72,7 @@ impl Mesh<3> {
     pub fn remeshed(&self, length: f64) -> Result<Mesh<3>, MeshError> {
         positive("length of edges", length)?;
         self.components()?;
-        limit_nodes(self.remesh_estimate(length))?;
+        limit_nodes(self.remesh_estimate(length) as u64)?;
         let surface = Nearest::to(self);
         let mut work = Work::of(self);
         // One that crosses itself as it is given may go on so.
@@ -87,14 +87,13 @@ impl Mesh<3> {
     }
 
     /// About how many nodes [`Mesh::remeshed`] makes: one for every two equilateral triangles.
-    pub fn remesh_estimate(&self, length: f64) -> u64 {
+    pub fn remesh_estimate(&self, length: f64) -> f64 {
         let mut area = 0.0;
         for facet in &self.facets {
             let [a, b, c] = facet.map(|node| self.positions[node as usize]);
             area += crate::geometry::triangle_area(a, b, c);
         }
-        let nodes = 1.155 * area / (length * length) + 4.0;
-        if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+        crate::mesh::estimated(1.155 * area / (length * length) + 4.0)
     }
 }
 

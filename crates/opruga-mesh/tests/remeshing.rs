@@ -74,7 +74,7 @@ fn remeshed_surfaces_are_closed_outward_and_of_good_triangles() {
             assert!(made.crossing_facets().pairs.is_empty(), "{name}, {length}");
             assert!((volume - 1.0).abs() < drift, "{name}, {length}: {volume}");
             assert!(angle > sharpest && fits > 0.85, "{name}, {length}: {angle}, {fits}");
-            let estimate = mesh.remesh_estimate(length) as f64 / made.nodes() as f64;
+            let estimate = mesh.remesh_estimate(length) / made.nodes() as f64;
             assert!((0.5..2.0).contains(&estimate), "{name}, {length}: {estimate}");
             assert_eq!(mesh.remeshed(length), Ok(made), "the same bits");
         }

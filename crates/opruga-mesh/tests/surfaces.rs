@@ -132,7 +132,7 @@ fn a_lattice_fills_its_surface_and_carries_it() {
             // It reaches beyond the surface, less and less with finer cells.
             assert!(own / volume > 0.95 && own / volume < last, "{own} of {volume} at {spacing}");
             last = own / volume;
-            let estimate = surface.lattice_estimate(spacing) as f64;
+            let estimate = surface.lattice_estimate(spacing);
             let n = body.nodes() as f64;
             assert!(n < 1.5 * estimate + 50.0 && n > 0.4 * estimate, "{n} nodes, {estimate} estimated");
             // All tetrahedra are alike: a volume of a³/12.

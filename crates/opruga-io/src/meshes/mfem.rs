@@ -88,6 +88,9 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     if version != "v1.0" && !ended {
         return Err(scanner.ends(SYNTAX, "`mfem_mesh_end`"));
     }
+    if !ended {
+        scanner.last_line_ends(SYNTAX)?;
+    }
     for (number, draft) in drafts.iter().enumerate() {
         let mut nodes = [0; 10];
         for (slot, &(node, at)) in nodes.iter_mut().zip(&draft.nodes) {

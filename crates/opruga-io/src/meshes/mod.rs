@@ -25,6 +25,7 @@ mod write;
 
 pub use assemble::Mending;
 pub(crate) use found::{Found, Kind};
+pub(crate) use scanner::{MIDDLE_OF_LINE, middle_of_line};
 pub use write::{WRITTEN, Written, write};
 
 use crate::problem::{SceneError, visible};

@@ -3,6 +3,15 @@
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
+/// What is said where the last line of a text may be cut off.
+pub(crate) const MIDDLE_OF_LINE: &str = "the file ends in the middle of its last line, maybe of a number";
+
+/// Adds the word that the file ends with, and what helps.
+pub(crate) fn middle_of_line(error: SceneError, word: &[u8]) -> SceneError {
+    let error = error.value(visible(&String::from_utf8_lossy(word))).allowed("a line break behind the last word");
+    error.hint("end the last line with a line break if the file is whole; if not, it is cut off")
+}
+
 /// Bytes that are read from front to back. What follows may be text or binary, in one file.
 #[derive(Clone, Debug)]
 pub(super) struct Scanner<'a> {
@@ -69,6 +78,19 @@ impl<'a> Scanner<'a> {
     pub(super) fn is_done(&mut self) -> bool {
         self.skip(true);
         self.at == self.bytes.len()
+    }
+
+    /// Refuses a text of a format without a mark at its end whose last line has no end: of a number that is cut off, such as the
+    /// `1` of `1.75`, what is left looks whole. Behind a comment nothing is missing.
+    pub(super) fn last_line_ends(&self, code: &'static str) -> Result<(), SceneError> {
+        let from = self.bytes.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
+        let last = &self.bytes[from..];
+        let commented = self.comment.is_some_and(|mark| last.contains(&mark));
+        if commented || last.last().is_none_or(u8::is_ascii_whitespace) {
+            return Ok(());
+        }
+        let from = last.iter().rposition(|b| b.is_ascii_whitespace()).map_or(from, |at| from + at + 1);
+        Err(middle_of_line(self.error(code, MIDDLE_OF_LINE, from), &self.bytes[from..]))
     }
 
     /// The next word and where it begins, without taking it; none at the end of the file.

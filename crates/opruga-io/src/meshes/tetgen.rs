@@ -113,7 +113,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &N
 
 fn nothing_behind(scanner: &mut Scanner<'_>) -> Result<(), SceneError> {
     if scanner.is_done() {
-        return Ok(());
+        return scanner.last_line_ends(SYNTAX);
     }
     let at = scanner.at;
     let error = scanner.error(SIZE, "the file goes on behind what its head promises", at);

@@ -169,7 +169,8 @@ impl Reader<'_, '_> {
             let wanted = if self.found.positions.is_empty() { "`POINTS`" } else { "`CELLS` and `CELL_TYPES`" };
             return Err(self.scanner.ends(SYNTAX, wanted));
         }
-        Ok(())
+        // Binary numbers have their length.
+        if self.binary { Ok(()) } else { self.scanner.last_line_ends(SYNTAX) }
     }
 
     fn number_type(&mut self) -> Result<Number, SceneError> {

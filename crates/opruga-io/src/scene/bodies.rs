@@ -327,7 +327,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let nodes = match (&draft.loaded, &draft.shape) {
             (Some(loaded), _) => loaded.node_count(),
             (None, Some(shape)) => shapes::node_count(shape, D),
-            (None, None) => 0,
+            (None, None) => 0.0,
         };
         // At most one node for every point of a grid of half the spacing.
         let filling = draft.shape.as_ref().and_then(|shape| shape.text("filling"));
@@ -335,8 +335,8 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
         let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
         let simplices = draft.values.flag("simplices") || filled || of_mesh;
         let quadratic = draft.values.integer("order").map_or(simplices && draft.is_of_elements(), |order| order == 2);
-        let nodes = if quadratic { nodes.saturating_mul(1 << D) } else { nodes };
-        let (copies, models) = (draft.copies.map_or(1, |c| c.total()), draft.models.len() as u64);
+        let nodes = if quadratic { nodes * f64::from(1 << D) } else { nodes };
+        let (copies, models) = (draft.copies.map_or(1, |c| c.total()) as f64, draft.models.len() as f64);
         if let Err(error) = cost.add::<D>(copies, nodes, models, &reader.options.limits) {
             let key = if draft.copies.is_some() { "copies" } else { "shape" };
             reader.report(place_of(draft.node, key), error.path(join(&draft.path, key)));

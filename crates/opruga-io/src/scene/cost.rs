@@ -6,9 +6,9 @@ use crate::problem::SceneError;
 /// How much there is of what is limited. Bodies that commands take away count too: the world remembers them.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Cost {
-    bodies: u64,
-    nodes: u64,
-    bytes: u64,
+    bodies: f64,
+    nodes: f64,
+    bytes: f64,
 }
 
 impl Cost {
@@ -18,32 +18,44 @@ impl Cost {
     /// `limit.bodies`, `limit.nodes` or `limit.memory`.
     pub(crate) fn add<const D: usize>(
         &mut self,
-        copies: u64,
-        nodes: u64,
-        models: u64,
+        copies: f64,
+        nodes: f64,
+        models: f64,
         limits: &Limits,
     ) -> Result<(), SceneError> {
-        self.bodies = self.bodies.saturating_add(copies);
-        self.nodes = self.nodes.saturating_add(nodes.saturating_mul(copies));
+        self.bodies += copies;
+        self.nodes += nodes * copies;
         // A mesh once, and state, models and description for every copy.
-        let each = nodes.saturating_mul(120 + 60 * D as u64 * models).saturating_add(1000 + 600 * models);
-        let mesh = nodes.saturating_mul(250 * D as u64);
-        self.bytes = self.bytes.saturating_add(mesh).saturating_add(each.saturating_mul(copies));
+        let each = nodes * (120.0 + 60.0 * D as f64 * models) + 1000.0 + 600.0 * models;
+        self.bytes += nodes * 250.0 * D as f64 + each * copies;
         let Cost { bodies, nodes: all, bytes } = *self;
-        let over = |code, message: String, value: u64, most: u64, what: &str| {
-            Err(SceneError::new(code, message).value(value.to_string()).allowed(format!("at most {most} {what}")))
+        let over = |code, message: String, value: f64, most: u64, what: &str| {
+            Err(SceneError::new(code, message).value(shown(value)).allowed(format!("at most {most} {what}")))
         };
-        if bodies > limits.bodies {
-            let message = format!("the scene has {bodies} bodies or more");
+        // What is no number is above every limit.
+        let within = |count: f64, most: u64| count <= most as f64;
+        if !within(bodies, limits.bodies) {
+            let message = format!("the scene has {} bodies or more", shown(bodies));
             return over("limit.bodies", message, bodies, limits.bodies, "bodies");
         }
-        if all > limits.nodes || nodes > u64::from(u32::MAX) {
-            return over("limit.nodes", format!("the scene has {all} nodes or more"), all, limits.nodes, "nodes");
+        if !within(all, limits.nodes) || !within(nodes, u64::from(u32::MAX)) {
+            return over(
+                "limit.nodes",
+                format!("the scene has {} nodes or more", shown(all)),
+                all,
+                limits.nodes,
+                "nodes",
+            );
         }
-        if bytes > limits.memory_bytes {
-            let message = format!("the scene would take about {bytes} bytes or more");
+        if !within(bytes, limits.memory_bytes) {
+            let message = format!("the scene would take about {} bytes or more", shown(bytes));
             return over("limit.memory", message, bytes, limits.memory_bytes, "bytes");
         }
         Ok(())
     }
+}
+
+/// A count as a whole number; beyond those of 64 bits by its power of ten.
+fn shown(count: f64) -> String {
+    if count < u64::MAX as f64 { format!("{count:.0}") } else { format!("{count:.0e}") }
 }

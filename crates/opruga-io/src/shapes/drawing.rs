@@ -61,9 +61,9 @@ pub(super) struct Outline {
 
 impl Outline {
     /// About how many nodes the body will have.
-    pub(super) fn node_count(&self) -> u64 {
+    pub(super) fn node_count(&self) -> f64 {
         match self.inside {
-            Inside::Nothing => self.rings.iter().map(|ring| ring.points.len() as u64).sum(),
+            Inside::Nothing => self.rings.iter().map(|ring| ring.points.len() as f64).sum(),
             Inside::Triangles(spacing) => outline::node_estimate(&self.rings, spacing),
             Inside::Squares(spacing) => outline::squares_estimate(&self.rings, spacing),
         }

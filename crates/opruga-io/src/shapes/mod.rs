@@ -128,7 +128,7 @@ pub fn body<const D: usize>(
 ) -> Result<(Mesh<D>, Vec<SceneError>), Problem> {
     let loaded = load(shape, D, &mut |name| files.read(name, limits.shape_bytes))?;
     let dense = if shape.get("spacing").is_some() { "spacing" } else { "file" };
-    Cost::default().add::<D>(1, loaded.node_count(), 0, limits).map_err(|about| Problem::new(dense, about))?;
+    Cost::default().add::<D>(1.0, loaded.node_count(), 0.0, limits).map_err(|about| Problem::new(dense, about))?;
     let (mesh, made) =
         loaded.mesh::<D>(&Transform { scale: 1.0, rotation: &[] }).map_err(|about| Problem::new(dense, about))?;
     Ok((mesh, [loaded.notices, made].concat()))
@@ -202,13 +202,13 @@ fn text_of<'a>(name: &'a str, bytes: &'a [u8]) -> Result<Source<'a>, SceneError>
 
 impl Loaded {
     /// About how many nodes the body will have.
-    pub(crate) fn node_count(&self) -> u64 {
+    pub(crate) fn node_count(&self) -> f64 {
         match &self.content {
             Content::Outline(outline) => outline.node_count(),
             Content::Surface { mesh, filling: Some(filling), .. } => mesh.lattice_estimate(filling.spacing()),
             Content::Surface { mesh, remesh: Some(length), .. } => mesh.remesh_estimate(*length),
-            Content::Surface { mesh, .. } | Content::Space(mesh) => mesh.nodes() as u64,
-            Content::Plane(mesh) => mesh.nodes() as u64,
+            Content::Surface { mesh, .. } | Content::Space(mesh) => mesh.nodes() as f64,
+            Content::Plane(mesh) => mesh.nodes() as f64,
         }
     }
 

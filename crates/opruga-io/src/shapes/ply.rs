@@ -7,6 +7,7 @@
 //! G. Turk, The PLY Polygon File Format (1994).
 
 use super::triangles::{CORNERS, Places, Triangles};
+use crate::meshes::{MIDDLE_OF_LINE, middle_of_line};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 
@@ -187,6 +188,11 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     if format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
         let error = values.error("ply.size", format!("{} bytes follow the last element", rest.len()));
         return Err(error.value(rest.len().to_string()).allowed("0 bytes"));
+    }
+    // Of an index that is cut off, what is left looks whole.
+    if format == Format::Text && bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
+        let from = bytes.iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
+        return Err(middle_of_line(values.error("ply.syntax", MIDDLE_OF_LINE.into()), &bytes[from..]));
     }
     found.places = match format {
         Format::Text => Places::Lines(starts.into_iter().map(|start| start as u32).collect()),

@@ -11,7 +11,7 @@ const SHORTER: f64 = 0.9;
 /// The most lengths that are tried.
 const TRIED: usize = 30;
 /// The most nodes that a surface may have for which a length is tried: an answer shall not take longer than the body.
-const LARGEST_TRIED: u64 = 20_000;
+const LARGEST_TRIED: f64 = 20_000.0;
 
 /// Why a length is refused.
 enum TooCoarse {

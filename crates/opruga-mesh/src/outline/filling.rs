@@ -23,10 +23,10 @@ const CLEARANCE: f64 = 0.6;
 const SMALLEST_AREA: f64 = 0.1;
 
 /// About how many nodes a filling has: those of the rings, and one for every two triangles inside.
-pub fn node_estimate(rings: &[Ring], spacing: f64) -> u64 {
+pub fn node_estimate(rings: &[Ring], spacing: f64) -> f64 {
     let inside: f64 = rings.iter().map(Ring::area).sum::<f64>() / (HEIGHT * spacing * spacing);
-    let border: u64 = rings.iter().map(|ring| ring.points.len() as u64).sum();
-    if inside.is_finite() && inside < 1e18 { border.saturating_add(inside.abs() as u64) } else { u64::MAX }
+    let border: usize = rings.iter().map(|ring| ring.points.len()).sum();
+    crate::mesh::estimated(border as f64 + inside.abs())
 }
 
 /// The inside of rings that [`super::nest`] has turned, as a lattice of nearly equilateral triangles of side `spacing` [m].
@@ -41,7 +41,7 @@ pub fn node_estimate(rings: &[Ring], spacing: f64) -> u64 {
 /// # Source
 /// J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", J. Algorithms 18 (1995); library spade.
 pub fn filled(rings: &[Ring], spacing: f64) -> Result<(Mesh<2>, Option<Thin>), OutlineError> {
-    let estimate = node_estimate(rings, spacing);
+    let estimate = node_estimate(rings, spacing) as u64;
     if estimate > MAXIMUM_NODES {
         return Err(OutlineError::TooFine { spacing, nodes: estimate });
     }

@@ -8,11 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 type Square = (i64, i64);
 
 /// About how many nodes [`squares`] makes: one for each square inside, and those along the rings.
-pub fn squares_estimate(rings: &[Ring], spacing: f64) -> u64 {
+pub fn squares_estimate(rings: &[Ring], spacing: f64) -> f64 {
     let inside = rings.iter().map(Ring::area).sum::<f64>().abs() / (spacing * spacing);
     let border = 2.0 * rings.iter().map(Ring::length).sum::<f64>() / spacing;
-    let nodes = inside + border + 4.0;
-    if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+    crate::mesh::estimated(inside + border + 4.0)
 }
 
 /// The inside of rings that [`super::nest`] has turned as equal squares of side `spacing` [m], which reach a little beyond the rings: those are kept
@@ -26,7 +25,7 @@ pub fn squares_estimate(rings: &[Ring], spacing: f64) -> u64 {
 pub fn squares(rings: &[Ring], spacing: f64) -> Result<Mesh<2>, OutlineError> {
     crate::mesh::positive("spacing", spacing)?;
     let (low, high) = bounds(rings).ok_or(OutlineError::Empty)?;
-    let nodes = squares_estimate(rings, spacing);
+    let nodes = squares_estimate(rings, spacing) as u64;
     if nodes > MAXIMUM_NODES {
         return Err(OutlineError::TooFine { spacing, nodes });
     }

@@ -13,6 +13,15 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("the file ends where `{}` should follow", "datoteka završava, a slijediti treba: `{}`"),
     ("the file ends where {~} should follow", "datoteka završava, a slijediti treba: {~}"),
     ("the file ends where  should follow", "datoteka završava prerano"),
+    (
+        "the file ends in the middle of its last line, maybe of a number",
+        "datoteka završava usred zadnjeg retka, možda usred broja",
+    ),
+    ("a line break behind the last word", "prijelom retka iza zadnje riječi"),
+    (
+        "end the last line with a line break if the file is whole; if not, it is cut off",
+        "zadnji redak treba završiti prijelomom retka ako je datoteka cijela; inače je odrezana",
+    ),
     ("{~} has something behind it", "iza ovoga stoji još nešto: {~}"),
     ("the end of the line", "kraj retka"),
     ("`{}` stands where `{}` should", "`{}` stoji umjesto ovoga: `{}`"),
