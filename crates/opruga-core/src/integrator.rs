@@ -40,6 +40,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn readings(&self, _system: &System<D>) -> Vec<Reading> {
         Vec::new()
     }
+    /// The part of the loads that is on, where an integrator puts them on by and by.
+    fn part_of_load(&self, _system: &System<D>) -> Option<f64> {
+        None
+    }
     /// Whether the same bits come out on every processor, and not only on those of one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
@@ -118,8 +122,17 @@ impl Amplification {
     }
     /// The largest absolute eigenvalue.
     pub fn spectral_radius(&self) -> f64 {
-        let m = &self.rows;
-        if self.size == 2 { radius_of_two([[m[0][0], m[0][1]], [m[1][0], m[1][1]]]) } else { self.radius_by_squaring() }
+        let (m, mut size, mut apart) = (&self.rows, self.size, 0.0);
+        // What nothing else depends on is an eigenvalue of its own. Where it meets others, rounding would move them all.
+        while size > 2 && m[..size - 1].iter().all(|row| row[size - 1] == 0.0) {
+            size -= 1;
+            apart = m[size][size].abs().larger(apart);
+        }
+        let radius = match size {
+            2 => radius_of_two([[m[0][0], m[0][1]], [m[1][0], m[1][1]]]),
+            _ => Amplification { size, rows: *m }.radius_by_squaring(),
+        };
+        if radius.is_finite() { radius.larger(apart) } else { radius }
     }
     /// The same eigenvalues in units in which rows are as large as columns: positions, velocities and accelerations differ by powers
     /// of the step, beside which rounding would be more than the distance of an eigenvalue from 1. Powers of two round nothing.
@@ -219,5 +232,10 @@ mod tests {
         assert!((four.spectral_radius() - 1.0).abs() < 1e-14, "{}", four.spectral_radius());
         let free = Amplification::new([[1.0, 7.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.3]]);
         assert!((free.spectral_radius() - 1.0).abs() < 1e-14, "{}", free.spectral_radius());
+        // Three eigenvalues of −1 but for rounding: what nothing depends on is apart from the others.
+        let apart = Amplification::new([[-1.0, 4e-4, 0.0], [-4e-4, -1.0, 0.0], [7.0, 5.0, -1.0]]);
+        assert!((apart.spectral_radius() - 1.0).abs() < 1e-7, "{}", apart.spectral_radius());
+        let lonely = Amplification::new([[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0, 1.0, -3.0]]);
+        assert_eq!(lonely.spectral_radius(), 3.0);
     }
 }

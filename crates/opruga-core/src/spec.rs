@@ -231,6 +231,17 @@ impl Values {
         }
         Ok(())
     }
+    /// Sets a field as [`Values::set`] does; of those of which exactly one is given, the others are put aside.
+    ///
+    /// # Errors
+    /// A [`ValueError`] says what is allowed; the values stay as they were.
+    pub fn set_instead(&mut self, spec: &Spec, name: &str, value: Value, dimension: usize) -> Result<(), ValueError> {
+        self.set(spec, name, value, dimension)?;
+        for set in spec.choices().filter(|set| set.contains(&name)) {
+            self.entries.retain(|(other, _)| *other == name || !set.contains(other));
+        }
+        Ok(())
+    }
     /// The value of a field, if it has one.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.entries.iter().find(|(n, _)| *n == name).map(|(_, v)| v)

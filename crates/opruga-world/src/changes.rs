@@ -108,7 +108,7 @@ impl<const D: usize> World<D> {
                             kinds.join(", ")
                         )));
                     };
-                    models[number].set(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    models[number].set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
                     changed.push((body, models));
                 }
                 for (body, models) in &mut changed {
@@ -127,7 +127,7 @@ impl<const D: usize> World<D> {
                     };
                     let spec = self.registry.integrator(values.kind()).map(|i| i.spec());
                     let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
-                    values.set(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
+                    values.set_instead(spec, field, value.clone(), D).map_err(|e| refuse(e.to_string()))?;
                     changed.push((body, Some(values)));
                 }
                 for (body, values) in &mut changed {
@@ -140,7 +140,7 @@ impl<const D: usize> World<D> {
                 let spec = self.registry.integrator(self.blueprint.integrator.kind()).map(|i| i.spec());
                 let spec = spec.ok_or_else(|| refuse("there is no such integrator".into()))?;
                 let before = self.blueprint.integrator.clone();
-                self.blueprint.integrator.set(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
+                self.blueprint.integrator.set_instead(spec, field, value, D).map_err(|e| refuse(e.to_string()))?;
                 let follow = |b: &usize| self.blueprint.bodies[*b].integrator.is_none();
                 let touched = self.bodies().filter(follow).collect();
                 Ok((Before::Integrator(before), Touched::Bodies(touched)))
@@ -163,7 +163,7 @@ impl<const D: usize> World<D> {
                 let spec = spec.ok_or_else(|| refuse("there is no such kind of collider".into()))?;
                 self.blueprint.colliders[number]
                     .values
-                    .set(spec, field, value, D)
+                    .set_instead(spec, field, value, D)
                     .map_err(|e| refuse(e.to_string()))?;
                 match build_colliders(&self.blueprint) {
                     Ok(colliders) => self.colliders = colliders,

@@ -334,6 +334,8 @@ impl<const D: usize> World<D> {
             solver.disturbed,
         );
         count("step.odd_rest", &self.odd_rest(), solver.odd_rests);
+        let (unloaded, left) = self.load_left();
+        count("statics.load_left", &left, unloaded);
         let mut counts: Vec<Count> = Vec::new();
         for island in &self.islands {
             for member in &island.system.members {
@@ -350,6 +352,32 @@ impl<const D: usize> World<D> {
         }
         out
     }
+    /// At the end: how many bodies stand in balance under a part of their load only, and which of them under the least.
+    fn load_left(&self) -> (u64, String) {
+        let time = &self.blueprint.time;
+        if self.frames == 0 || self.time() < time.seconds - 0.5 * time.frame {
+            return (0, String::new());
+        }
+        let (mut bodies, mut least): (u64, Option<(f64, usize)>) = (0, None);
+        for island in &self.islands {
+            let Some(part) = island.integrator.part_of_load(&island.system).filter(|part| *part < 1.0) else {
+                continue;
+            };
+            bodies += 1;
+            if least.is_none_or(|(other, _)| part < other) {
+                least = Some((part, island.bodies[0]));
+            }
+        }
+        let told = least.map_or_else(String::new, |(part, body)| {
+            format!(
+                "the run ends before the whole load is on: body `{}` is in balance under {} of it (`load_factor`), and that is what \
+                 the last state shows; hint: more frames, or a longer `arc_length`",
+                self.blueprint.bodies[body].name,
+                number(part)
+            )
+        });
+        (bodies, told)
+    }
     /// Which body stands still in a shape that is not its own, by its worst cell.
     fn odd_rest(&self) -> String {
         if self.flows.solver.odd_rests == 0 {
@@ -358,12 +386,12 @@ impl<const D: usize> World<D> {
         let mut worst: Option<(f64, String)> = None;
         for body in (0..self.alive.len()).filter(|body| self.alive[*body]) {
             for cell in self.cell_states_here(body) {
-                let odd = (cell.volume_ratio - 1.0).abs();
+                let odd = (cell.smallest_volume_ratio - 1.0).abs();
                 if worst.as_ref().is_none_or(|(most, _)| odd > *most) {
                     let name = &self.blueprint.bodies[body].name;
                     let text = format!(
                         "; now the cell farthest from its volume is {} of body `{name}`, J = {:.4}",
-                        cell.cell, cell.volume_ratio
+                        cell.cell, cell.smallest_volume_ratio
                     );
                     worst = Some((odd, text));
                 }

@@ -225,8 +225,8 @@ pub fn all() -> Vec<&'static Spec> {
     made.into_iter().chain(from_files::all()).collect()
 }
 
-/// How many nodes a shape will have, before it is made; too many are [`u64::MAX`].
-pub fn node_count(shape: &Values, dimension: usize) -> u64 {
+/// How many nodes a shape will have, before it is made: exactly as far as whole numbers go.
+pub fn node_count(shape: &Values, dimension: usize) -> f64 {
     match (shape.text("filling"), shape.number("spacing")) {
         (Some("lattice" | "tetrahedra"), Some(spacing)) => filling_estimate(shape, spacing),
         _ => surface_node_count(shape, dimension),
@@ -234,7 +234,7 @@ pub fn node_count(shape: &Values, dimension: usize) -> u64 {
 }
 
 /// About how many nodes a filling of a generated surface has: two in every cube of the lattice, and a layer about the surface.
-fn filling_estimate(shape: &Values, spacing: f64) -> u64 {
+fn filling_estimate(shape: &Values, spacing: f64) -> f64 {
     let pi = core::f64::consts::PI;
     let (radius, tube) = (shape.number("radius").unwrap_or(0.0), shape.number("tube_radius").unwrap_or(0.0));
     let (volume, area) = match shape.kind() {
@@ -245,35 +245,28 @@ fn filling_estimate(shape: &Values, spacing: f64) -> u64 {
             (a * b * c, 2.0 * (a * b + b * c + c * a))
         }
     };
-    let nodes = 2.0 * volume.abs() / (spacing * spacing * spacing) + 2.0 * area.abs() / (spacing * spacing);
-    if nodes < 1e18 { nodes as u64 } else { u64::MAX }
+    (2.0 * volume.abs() / (spacing * spacing * spacing) + 2.0 * area.abs() / (spacing * spacing)).floor()
 }
 
-fn surface_node_count(shape: &Values, dimension: usize) -> u64 {
-    let whole = |name: &str| shape.integer(name).and_then(|n| u64::try_from(n).ok()).unwrap_or(0);
-    let product = |cells: &[u32], more: u64| cells.iter().fold(1u64, |n, c| n.saturating_mul(u64::from(*c) + more));
+fn surface_node_count(shape: &Values, dimension: usize) -> f64 {
+    let whole = |name: &str| shape.integer(name).and_then(|n| u32::try_from(n).ok()).map_or(0.0, f64::from);
+    let product = |cells: &[u32]| cells.iter().fold(1.0, |n, c| n * (f64::from(*c) + 1.0));
     match shape.kind() {
         "ring" => whole("vertices"),
-        "rings" => whole("vertices").saturating_mul(shape.rows("centers").len() as u64),
-        "regular_polygon" => whole("sides").saturating_mul(whole("vertices_per_side")),
-        "polygon" | "polyline" => shape.rows("points").len() as u64,
-        "line" => whole("segments").saturating_add(1),
+        "rings" => whole("vertices") * shape.rows("centers").len() as f64,
+        "regular_polygon" => whole("sides") * whole("vertices_per_side"),
+        "polygon" | "polyline" => shape.rows("points").len() as f64,
+        "line" => whole("segments") + 1.0,
         "grid" | "quadrilateral" | "sheet" => {
-            product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)], 1)
+            product(&shape.integers("cells")[..shape.integers("cells").len().min(dimension)])
         }
         "box" => {
-            let n = |a: usize| shape.integers("cells").get(a).map_or(0, |c| u64::from(*c));
-            let pair = |a: usize, b: usize| n(a).saturating_mul(n(b));
-            pair(0, 1).saturating_add(pair(1, 2)).saturating_add(pair(2, 0)).saturating_mul(2).saturating_add(2)
+            let n = |a: usize| shape.integers("cells").get(a).map_or(0.0, |c| f64::from(*c));
+            2.0 * (n(0) * n(1) + n(1) * n(2) + n(2) * n(0)) + 2.0
         }
-        "icosphere" => u32::try_from(whole("subdivisions"))
-            .ok()
-            .and_then(|s| 4u64.checked_pow(s))
-            .unwrap_or(u64::MAX)
-            .saturating_mul(10)
-            .saturating_add(2),
-        "torus" => whole("nodes_around").saturating_mul(whole("nodes_of_tube")),
-        _ => 0,
+        "icosphere" => 10.0 * libm::exp2(2.0 * whole("subdivisions")) + 2.0,
+        "torus" => whole("nodes_around") * whole("nodes_of_tube"),
+        _ => 0.0,
     }
 }
 

@@ -162,3 +162,41 @@ fn a_winding_curve_of_equilibria_is_never_gone_back_on_however_long_the_steps() 
         assert!((end - ends[2]).abs() < 1e-6, "{ends:?}");
     }
 }
+
+/// A run that ends on the way along the curve says so, with the part of the load that is on; one that comes to its end does not.
+#[test]
+fn a_run_that_ends_before_the_whole_load_is_on_is_warned_of() {
+    let half = (1.0f64 - 0.04).sqrt();
+    let roof = |fields: &str| {
+        statics(fields)
+            + &format!(
+                "[[body]]\nname = \"roof\"\nmass = 1.0\nshape = {{ kind = \"polyline\", points = [[{:?}, 0.0], [0.0, 0.2], \
+                 [{half:?}, 0.0]] }}\nmodels = [{{ kind = \"mass_spring\", stiffness = 1000.0 }}]\n\
+                 pin = [{{ select = {{ nodes = [0, 2] }} }}, {{ select = {{ node = 1 }}, axes = \"x\" }}]\n\
+                 [[load]]\nkind = \"force\"\nbody = \"roof\"\nselect = {{ node = 1 }}\nvalue = [0.0, -30.0]\n",
+                -half
+            )
+    };
+    let text = |arc: f64| {
+        let whole = roof(&format!("arc_length = {arc:?}\n"));
+        whole.replace("seconds = 1\nframe = 1.0\n", "seconds = 1\nframe = 0.125\n")
+    };
+    let warned = |world: &World<2>| {
+        world.warnings().into_iter().find(|w| w.code == "statics.load_left").map(|w| (w.count, w.message))
+    };
+    let mut short = built(plane(&text(0.007)));
+    frames(&mut short, 7);
+    assert_eq!(warned(&short), None, "it may still come to its end");
+    frames(&mut short, 1);
+    let part = load(&mut short);
+    let (count, message) = warned(&short).expect("a part of the load is left");
+    assert!(part < 1.0 && count == 1, "{part}");
+    let said = format!("body `roof` is in balance under {} of it", opruga::math::words::number(part));
+    assert!(message.contains(&said) && message.contains("more frames, or a longer `arc_length`"), "{message}");
+    let mut whole = built(plane(&text(0.2)));
+    frames(&mut whole, 8);
+    assert!(load(&mut whole) >= 1.0 && warned(&whole).is_none(), "{:?}", warned(&whole));
+    let mut plain = built(plane(&roof("")));
+    frames(&mut plain, 1);
+    assert_eq!(warned(&plain), None);
+}

@@ -178,3 +178,42 @@ fn a_mesh_file_gives_every_cell_its_density() {
         assert_eq!(errors[0].path, "body.0.density_of_cells");
     }
 }
+
+/// A linear law knows no pendulum: pinned at one node, or in space along one edge, a block turns without end, whatever its weight.
+/// The same block of another law hangs, and a linear one is held by a second pin.
+#[test]
+fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() {
+    let body = |material: &str, size: &str, cells: &str, pins: &str| {
+        format!(
+            "[[body]]\nname = \"block\"\nshape = {{ kind = \"grid\", size = {size}, cells = {cells} }}\ndensity = 10\n\
+             models = [{{ kind = \"fem\", material = \"{material}\", youngs_modulus = 1e5, poissons_ratio = 0.3 }}]\npin = [{pins}]\n"
+        )
+    };
+    let flat =
+        |material: &str, pins: &str| head(1.0, 1, -1.0, "equilibrium") + &body(material, "[1.0, 2.0]", "[1, 2]", pins);
+    let solid = |material: &str, pins: &str| {
+        let head =
+            head(1.0, 1, -1.0, "equilibrium").replace("dimension = 2", "dimension = 3").replace("-1.0]", "-1.0, 0]");
+        head + &body(material, "[1.0, 2.0, 3.0]", "[1, 2, 2]", pins)
+    };
+    let (node, edge) = ("{ select = { nodes = [0] } }", "{ select = { nodes = [0, 1] } }");
+    let told = "since its forces are linear: what turns it turns it without end";
+    for (error, what) in [
+        (refused(&flat("linear", node)), "against rotation: 1 rigid mode, "),
+        (
+            World::new(space(&solid("linear", edge)), Options::default()).expect_err("it turns about its edge"),
+            "against rotation about an axis along x: 1 rigid mode, ",
+        ),
+    ] {
+        let message = error.to_string();
+        assert!(message.contains(what) && message.contains(told) && message.contains("`neo_hookean`"), "{message}");
+    }
+    for material in ["neo_hookean", "st_venant_kirchhoff"] {
+        assert!(World::new(plane(&flat(material, node)), Options::default()).is_ok(), "{material}");
+        assert!(World::new(space(&solid(material, edge)), Options::default()).is_ok(), "{material}");
+    }
+    let mut held =
+        built(plane(&flat("linear", "{ select = { nodes = [0] } }, { select = { nodes = [1] }, axes = \"y\" }")));
+    frames(&mut held, 1);
+    assert!(mean_at(&held, 1, 2.0, 1) < 0.0);
+}

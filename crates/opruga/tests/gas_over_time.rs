@@ -143,3 +143,31 @@ fn the_energy_that_comes_with_a_parameter_is_entered_as_work() {
         assert!(energy.loss_integrator.abs() < 1e-9, "{field}: {energy:?}");
     }
 }
+
+/// What a gas is given by, amount or pressure, gives way to the other when that is set: the chamber is filled anew, whatever had
+/// leaked, by a program and by a command; a snapshot of before restores what was.
+#[test]
+fn a_gas_given_by_its_amount_can_be_set_by_its_pressure() {
+    let mut world = held("nRT = 80.0, leak = 1.5");
+    frames(&mut world, 20);
+    assert!(reading(&mut world, "nRT") < 50.0);
+    let before = world.snapshot();
+    world.set("body.ring.models.pressure.pressure", Value::Number(200.0)).expect("the amount gives way");
+    assert!((reading(&mut world, "pressure") - 200.0).abs() < 1e-9, "{}", reading(&mut world, "pressure"));
+    world.set("body.ring.models.pressure.nRT", Value::Number(30.0)).expect("the pressure gives way");
+    assert!((reading(&mut world, "nRT") - 30.0).abs() < 1e-9);
+    world.set("body.ring.models.pressure.nRT", Value::Number(-1.0)).expect_err("no amount");
+    assert!((reading(&mut world, "nRT") - 30.0).abs() < 1e-9);
+    world.restore(&before).expect("a snapshot of this world");
+    assert!(reading(&mut world, "nRT") < 50.0);
+    let command = "[[command]]\ndo = \"set\"\nat = 0.2\npath = \"body.ring.models.pressure.pressure\"\nvalue = 200.0\n";
+    let mut world = built(plane(&format!(
+        "{}[[body]]\nname = \"ring\"\nfixed = true\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 36 }}\n\
+         models = [{{ kind = \"pressure\", nRT = 80.0 }}]\n{command}",
+        head(0.02, 20, 0.0, "symplectic_euler")
+    )));
+    frames(&mut world, 9);
+    assert!((reading(&mut world, "nRT") - 80.0).abs() < 1e-9);
+    frames(&mut world, 3);
+    assert!((reading(&mut world, "pressure") - 200.0).abs() < 1e-9);
+}

@@ -34,6 +34,7 @@ mod arc;
 mod pieces;
 mod restraint;
 pub mod rigid;
+mod slack;
 #[cfg(test)]
 mod tests;
 
@@ -340,6 +341,9 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     }
     fn readings(&self, system: &System<D>) -> Vec<Reading> {
         vec![("load_factor".into(), system.history.numbers[LOAD])]
+    }
+    fn part_of_load(&self, system: &System<D>) -> Option<f64> {
+        self.arc_length.is_some().then(|| system.history.numbers[LOAD])
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)

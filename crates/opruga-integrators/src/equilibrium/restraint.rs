@@ -25,13 +25,36 @@ const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 const NOTHING: f64 = 1e-14;
 
 /// How far the body is turned to look at it in another pose [rad], with its sine and cosine.
-const TURN: f64 = 0.9;
+pub(super) const TURN: f64 = 0.9;
 const SINE: f64 = 0.783_326_909_627_483_4;
 const COSINE: f64 = 0.621_609_968_270_664_4;
 
 /// The motions of the whole, or of a piece, that neither pins nor loads nor the weight of a pendulum hold, nor obstacles that
 /// hold nodes along the given directions, with the nodes at the given places; translations first.
 pub(super) fn free_motions<const D: usize>(
+    system: &System<D>,
+    x: &Columns<D>,
+    piece: &[usize],
+    touched: &[(usize, [f64; D])],
+) -> Vec<Motion<D>> {
+    let free = unstiffened_motions(system, x, piece, touched);
+    if !free.iter().all(Motion::turns) {
+        return free;
+    }
+    let center = center(x, piece);
+    // The others and the weight, which may hold what only turns.
+    let mut restraint = Restraint::new(&free, piece, center);
+    let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
+    for x in poses(x, piece, &free, &center) {
+        for time in times {
+            restraint.add(system, &x, Source::Dead, system.time + time);
+        }
+    }
+    restraint.left()
+}
+
+/// The motions that neither pins nor loads with a stiffness hold, nor obstacles along the given directions.
+pub(super) fn unstiffened_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
     piece: &[usize],
@@ -47,18 +70,7 @@ pub(super) fn free_motions<const D: usize>(
         }
         free = restraint.left();
     }
-    if !free.iter().all(Motion::turns) {
-        return free;
-    }
-    // The others and the weight, which may hold what only turns.
-    let mut restraint = Restraint::new(&free, piece, center);
-    let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
-    for x in poses(x, piece, &free, &center) {
-        for time in times {
-            restraint.add(system, &x, Source::Dead, system.time + time);
-        }
-    }
-    restraint.left()
+    free
 }
 
 /// The loads.
@@ -172,6 +184,17 @@ impl<'a, const D: usize> Restraint<'a, D> {
 
 /// Adds the forces of a load in a state.
 fn add_forces<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>, out: &mut [[f64; D]]) {
+    add_forces_of(system, member, &member.scratch, view, out);
+}
+
+/// Adds the forces of a member in a state for which it has worked out the given numbers.
+pub(super) fn add_forces_of<const D: usize>(
+    system: &System<D>,
+    member: &Member<D>,
+    scratch: &[f64],
+    view: &View<'_, D>,
+    out: &mut [[f64; D]],
+) {
     let places = system.places();
     let mut columns: [Column; D] = core::array::from_fn(|_| Column::zeros(places + WIDTH));
     let mut slots = Column::default();
@@ -182,7 +205,7 @@ fn add_forces<const D: usize>(system: &System<D>, member: &Member<D>, view: &Vie
         weight: None,
         slots: &mut slots,
     };
-    member.potential.add_force(system.simd, view, &member.scratch, &mut tile);
+    member.potential.add_force(system.simd, view, scratch, &mut tile);
     for (node, force) in out.iter_mut().enumerate() {
         for d in 0..D {
             force[d] += columns[d][node];
@@ -211,7 +234,12 @@ fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>],
 }
 
 /// The body after a motion of a piece was gone on with until it had turned by [`TURN`].
-fn pose<const D: usize>(x: &Columns<D>, piece: &[usize], motion: &Motion<D>, center: &[f64; D]) -> Columns<D> {
+pub(super) fn pose<const D: usize>(
+    x: &Columns<D>,
+    piece: &[usize],
+    motion: &Motion<D>,
+    center: &[f64; D],
+) -> Columns<D> {
     let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
     let mut out = x.clone();
     if speed == 0.0 {

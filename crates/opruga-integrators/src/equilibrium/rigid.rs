@@ -2,6 +2,7 @@
 
 use super::pieces::{pieces, whole};
 use super::restraint::free_motions;
+use super::slack::endless_turns;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::state::Columns;
@@ -22,10 +23,22 @@ pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<
             counted(&free)
         ));
     }
+    let endless = endless_turns(system, &whole(system));
+    if !endless.is_empty() {
+        return refused(format!(
+            "nothing holds the body against {}, since its forces are linear: what turns it turns it without end, and no weight \
+             brings it back as it does a pendulum; an equilibrium needs a body that is held; hint: pin as many axes of nodes as \
+             there are rigid modes, or take a material for large rotations, such as `neo_hookean`",
+            counted(&endless)
+        ));
+    }
     let pieces = pieces(system);
     if pieces.len() > 1 {
         for piece in &pieces {
-            let free = free_motions(system, x, piece, &[]);
+            let mut free = free_motions(system, x, piece, &[]);
+            if free.is_empty() {
+                free = endless_turns(system, piece);
+            }
             if !free.is_empty() {
                 return refused(format!(
                     "the body is in {} pieces, and nothing holds that of {} about {} against {}; an equilibrium needs every \

@@ -117,11 +117,10 @@ impl<const D: usize> Rule<D> for Newmark {
         let (square, theta) = (omega * omega, 1.0 - alpha_f);
         let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
         let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
-        let a = [
-            -square * factor,
-            -(square * theta * h + c) * factor,
-            -(alpha_m + square * theta * early + c * theta * kick) * factor,
-        ];
+        // At ρ = 1 the mean of both accelerations is what the equation gives: the next motion depends on none that went before.
+        let keeps = alpha_m == 0.5 && alpha_f == 0.5;
+        let kept = (alpha_m + square * theta * early + c * theta * kick) * factor;
+        let a = [-square * factor, -(square * theta * h + c) * factor, if keeps { -1.0 } else { -kept }];
         let (x, v) = (h * h * beta, h * gamma);
         Amplification::new([
             [1.0 + x * a[0], h + x * a[1], early + x * a[2]],

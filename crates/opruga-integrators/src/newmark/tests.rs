@@ -5,6 +5,7 @@ use crate::implicit::step::Implicit;
 use crate::testing;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
+use opruga_core::stability::Spectrum;
 
 fn rule(spectral_radius: Option<f64>) -> Implicit<Newmark> {
     let mut values = Values::defaults(&SPEC, 2);
@@ -30,7 +31,7 @@ fn order_is_two() {
 }
 #[test]
 fn there_is_no_limit() {
-    for rho in [None, Some(0.3), Some(0.8)] {
+    for rho in [None, Some(0.3), Some(0.8), Some(1.0)] {
         testing::check_no_limit(&rule(rho));
     }
 }
@@ -53,5 +54,23 @@ fn the_spectral_radius_is_the_one_that_was_asked_for() {
     for z in [0.1, 1.0, 10.0, 1e4] {
         let radius = Integrator::<2>::amplification(&rule(None), 1.0, 0.0, z).spectral_radius();
         assert!((radius - 1.0).abs() < 1e-12, "{z}: {radius}");
+        let radius = Integrator::<2>::amplification(&rule(Some(1.0)), 1.0, 0.0, z).spectral_radius();
+        assert!((radius - 1.0).abs() < 1e-12, "{z}: {radius}");
+    }
+}
+
+/// The rule that keeps every oscillation has no limit and lets none grow, damped or not: rounding is no growth.
+#[test]
+fn a_radius_of_one_lets_nothing_grow() {
+    for rho in [0.0, 0.5, 0.9, 0.99, 0.999, 1.0] {
+        for (omega, damping) in [(80.0, 0.0), (3.0e4, 0.0), (1.7, 0.0), (80.0, 12.0), (0.0, 5.0)] {
+            let spectrum = Spectrum::uniform(omega, damping);
+            let rule: &dyn Integrator<2> = &rule(Some(rho));
+            assert_eq!(spectrum.largest_stable_step(rule), Some(f64::INFINITY), "{rho} {omega} {damping}");
+        }
+    }
+    for h in [1e-4, 1e-2, 0.1] {
+        let rule: &dyn Integrator<2> = &rule(Some(1.0));
+        assert_eq!(Spectrum::uniform(80.0, 0.0).growth_per_second(rule, h), 0.0, "{h}");
     }
 }

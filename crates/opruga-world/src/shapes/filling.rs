@@ -10,7 +10,7 @@ const REFUSED: f64 = 0.25;
 /// Spacings that are tried for a hint, each this part of the one before, and how many.
 const FINER: (f64, usize) = (0.85, 6);
 /// The most nodes that a filling may have that is tried for a hint: an answer shall not take much longer than the body.
-const LARGEST_TRIED: u64 = 10_000;
+const LARGEST_TRIED: f64 = 10_000.0;
 
 /// What fills a closed surface: how, and with cubes of which side [m].
 #[derive(Clone, Copy, Debug, PartialEq)]

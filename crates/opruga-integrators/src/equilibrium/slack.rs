@@ -1,0 +1,67 @@
+//! Turns that meet no resistance however far they go: those of linear laws.
+//!
+//! A law that knows large rotations turns with the body, and a weight brings the body back as it does a pendulum. To a linear law a
+//! turn is the motion ω × r, straight on: its forces do not change along that way, and what turns the body at its start turns it
+//! without end.
+
+use super::restraint::{TURN, add_forces_of, pose, unstiffened_motions};
+use super::rigid::{Motion, center, shape_at};
+use opruga_core::potential::Account;
+use opruga_core::state::{Columns, View};
+use opruga_core::system::System;
+use opruga_math::Column;
+
+/// Forces below this part of those of a stretch of the same length are rounding.
+const NOTHING: f64 = 1e-6;
+
+/// The turns of a piece that neither pins nor loads with a stiffness hold, if its own forces do not resist them however far they go
+/// straight on; else none.
+pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize]) -> Vec<Motion<D>> {
+    let x = &system.state.x;
+    let free = unstiffened_motions(system, x, piece, &[]);
+    let endless = |motion: &Motion<D>| motion.turns() && goes_on(system, piece, motion);
+    if free.iter().all(endless) { free } else { Vec::new() }
+}
+
+/// Whether a body that moves straight on in a turn feels nothing of it, though it does where its nodes go on circles.
+fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<D>) -> bool {
+    let x = &system.state.x;
+    let center = center(x, piece);
+    let shape = shape_at(x, system.nodes, piece, motion, &center);
+    let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let mut ahead = x.clone();
+    for node in piece {
+        let from = x.at(*node);
+        ahead.set(*node, core::array::from_fn(|d| from[d] + TURN / speed * shape[node * D + d]));
+    }
+    let around = pose(x, piece, motion, &center);
+    let [Some(here), Some(ahead), Some(around)] = [x, &ahead, &around].map(|x| own_forces(system, x)) else {
+        return false;
+    };
+    let apart = |other: &[[f64; D]]| {
+        let differences = other.iter().flatten().zip(here.iter().flatten());
+        differences.map(|(a, b)| (a - b).abs()).sum::<f64>()
+    };
+    let (straight, round) = (apart(&ahead), apart(&around));
+    round > 0.0 && round.is_finite() && straight <= NOTHING * round
+}
+
+/// The forces of the body's own models with its nodes at the given places, at rest; none where a model refuses them.
+fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<[f64; D]>> {
+    let rest = Columns::zeros(system.places());
+    let view = View {
+        x: x.slices(),
+        v: rest.slices(),
+        nodes: system.nodes,
+        layout: system.layout,
+        time: system.time,
+        threads: system.threads,
+    };
+    let mut force = vec![[0.0; D]; system.nodes];
+    for member in system.members.iter().filter(|member| member.potential.account() != Account::User) {
+        let mut scratch = Column::zeros(member.potential.scratch_len());
+        member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;
+        add_forces_of(system, member, &scratch, &view, &mut force);
+    }
+    Some(force)
+}
