@@ -7,7 +7,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// How long a program that was asked to end may take to save what was done.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How long it may take to answer to Ctrl-C itself.
+const ANSWER: Duration = Duration::from_secs(3);
 
 /// The exit code of a studio that found no screen.
 const NO_WINDOW: i32 = 5;
@@ -93,19 +98,40 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     }
 }
 
-/// Waits for the end of a program, which is ended too where this one is asked to end. The window of the studio ends by itself with
-/// the program that watches over it.
+/// Waits for the end of a program, which is asked to end too where this one is: it saves what was done. Where it does not end then,
+/// it is ended. The window of the studio ends by itself with the program that watches over it.
 fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
+    let (mut since, mut asked): (Option<Instant>, bool) = (None, false);
     loop {
         if let Some(status) = child.try_wait()? {
             return Ok(status);
         }
         if stop.load(Ordering::SeqCst) {
-            child.kill()?;
-            return child.wait();
+            let waited = since.get_or_insert_with(Instant::now).elapsed();
+            if waited > PATIENCE {
+                child.kill()?;
+                return child.wait();
+            }
+            // Ctrl-C has asked it already, and asked twice it ends at once: it gets time to answer to the first.
+            if waited > ANSWER && !std::mem::replace(&mut asked, true) {
+                ask_to_end(&mut child)?;
+            }
         }
         std::thread::sleep(Duration::from_millis(30));
     }
+}
+
+/// Asks a program to end.
+#[cfg(unix)]
+fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
+    let number = rustix::process::Pid::from_child(child);
+    Ok(rustix::process::kill_process(number, rustix::process::Signal::TERM)?)
+}
+
+/// Ends a program where there is no way to ask it.
+#[cfg(not(unix))]
+fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
+    child.kill()
 }
 
 /// The cargo that runs this program and the root of the source tree, where it is one of the studio too.

@@ -1,5 +1,6 @@
 //! The window: what is where, shortcuts, messages.
 
+mod help;
 mod message;
 
 use crate::canvas::{Canvas, Tool};
@@ -14,7 +15,7 @@ use crate::said::Said;
 use crate::session::{Edit, Placed, Request, Session};
 use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, RichText, Ui};
+use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -49,8 +50,12 @@ pub struct Studio {
     /// A difference of the right side that waits until the hand lets go: both sides are computed anew for it.
     difference: Option<Request>,
     help_open: bool,
+    /// How often the pointer was pressed.
+    presses: u64,
     /// The message that was closed.
     closed: u64,
+    /// Who spoke last.
+    heard: message::Heard,
     /// What was told last, and since when: it goes by itself.
     told: (String, f64),
     /// Pictures of the interface in a second.
@@ -87,7 +92,9 @@ impl Studio {
             right_only: false,
             difference: None,
             help_open: false,
+            presses: 0,
             closed: 0,
+            heard: Default::default(),
             told: (String::new(), 0.0),
             rate: 60.0,
             played: false,
@@ -208,7 +215,17 @@ impl Studio {
         if let Some(rescue) = &mut self.rescue {
             rescue.poll(&self.link);
         }
+        let (pressed, held) = ui.input(|i| {
+            let begins = i.pointer.any_pressed();
+            (begins, begins || i.pointer.any_down() || i.pointer.any_released())
+        });
+        self.presses += u64::from(pressed);
         for ask in asks {
+            // What a hand that is down sets is undone as one.
+            let ask = match ask {
+                Request::Set(path, value) if held => Request::Draw(self.presses, path, value),
+                ask => ask,
+            };
             if let Request::Show(show) = &ask {
                 if show.quantity != self.show.quantity {
                     self.canvas.forget_colours();
@@ -336,28 +353,7 @@ impl Studio {
             let files = opruga::scenes::files();
             asks.push(Request::Open { name: name.into(), text: text.into(), files });
         }
-        let mut open = self.help_open;
-        egui::Window::new(words.help())
-            .open(&mut open)
-            .resizable(false)
-            .collapsible(false)
-            .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
-            .show(ui.ctx(), |ui| {
-                let room = (ui.ctx().content_rect().width() - 60.0).clamp(120.0, 560.0);
-                ui.set_max_width(room);
-                egui::Grid::new("shortcuts").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
-                    for (keys, what) in words.shortcuts().lines().filter_map(|line| line.split_once('\t')) {
-                        for (text, share) in [(RichText::new(keys).strong(), 0.36), (RichText::new(what), 0.58)] {
-                            ui.scope(|ui| {
-                                ui.set_max_width(share * room);
-                                ui.add(egui::Label::new(text.size(13.5)).wrap());
-                            });
-                        }
-                        ui.end_row();
-                    }
-                });
-            });
-        self.help_open = open;
+        self.help(ui);
     }
 
     fn shortcuts(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
@@ -472,6 +468,7 @@ fn difference(ask: &Request, shown: &Shown) -> Option<Difference> {
         Request::Set(path, value) => Difference::Set(path.clone(), value.clone()),
         Request::Integrator(None, values) => Difference::Integrator(None, values.clone()),
         Request::Integrator(Some(body), values) => Difference::Integrator(Some(name(*body)?), values.clone()),
+        Request::AsTheScene(body) => Difference::Integrator(Some(name(*body)?), shown.integrator.clone()?),
         Request::Models(body, models) => Difference::Models(name(*body)?, models.clone()),
         Request::Edit(Edit::Shape(body, field, value)) => Difference::Shape(body.clone(), field, value.clone()),
         _ => return None,

@@ -5,7 +5,7 @@ mod overrides;
 
 use opruga::blueprint::{Action, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, scene};
+use opruga::io::{Files, SceneError, scene};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
 /// A scene's text with its comments, and where it came from.
@@ -28,15 +28,19 @@ impl Document {
         Ok(Document { name: name.into(), text: text.parse::<DocumentMut>().map_err(|e| e.to_string())? })
     }
 
-    /// Takes a text that nobody has read yet.
+    /// Takes a text that nobody has read yet: that of a file, whose lines are told, or one that was made around the file of this
+    /// name and has none that anybody knows.
     ///
     /// # Errors
     /// Everything that is wrong with it, as one text.
-    pub fn unread(name: &str, text: &str, files: &Files) -> Result<Document, String> {
+    pub fn unread(name: &str, text: &str, files: &Files, around: Option<&str>) -> Result<Document, String> {
         // The reader of scenes knows more of what can be wrong than the parser of documents.
         let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
         let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &opruga::catalogue(), &reading);
-        read.map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
+        read.map_err(|errors| match around {
+            Some(file) => without_lines(errors, name, file),
+            None => errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+        })?;
         Document::new(name, text)
     }
 
@@ -332,6 +336,17 @@ impl Document {
         }
         self.text.insert("integrator", Item::Table(table));
     }
+}
+
+/// What is wrong with the text of a scene that nobody sees, as one text: its lines say nothing to anybody. In their place stands
+/// what it is about, where there is a file; the lines of other files stay.
+pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> String {
+    let own = format!("{scene}.toml");
+    let told = |error: SceneError| match error.file == own {
+        true => SceneError { file: file.into(), line: None, column: None, excerpt: None, ..error },
+        false => error,
+    };
+    errors.into_iter().map(|error| told(error).to_string()).collect::<Vec<_>>().join("\n")
 }
 
 /// Gives the nodes of a selection other numbers; several that come to the same one are named once.

@@ -29,6 +29,8 @@ pub mod runner;
 pub mod share;
 pub mod theme;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod wanted;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod watch;
 pub mod words;
 pub mod work;

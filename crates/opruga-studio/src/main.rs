@@ -1,33 +1,54 @@
 //! The program `opruga-studio [SCENE]`: the window of Opruga.
 
 use opruga::Options;
-use opruga::io::recording::{MAGIC, Recording};
-use opruga::io::{Files, scene};
+use opruga::io::problem::visible;
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
 use opruga_studio::rescue::{self, Rescue};
 use opruga_studio::said::Said;
-use opruga_studio::session::{Request, Session};
+use opruga_studio::session::Request;
 use opruga_studio::shown::Severity;
-use opruga_studio::watch;
-use std::path::{Path, PathBuf};
+use opruga_studio::{wanted, watch};
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// How the program is called.
+const USAGE: &str = "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, a recorded run, \
+                     or the file of a shape (.svg, .obj, .stl, .ply, .gltf, .glb).";
+
+/// The arguments as texts. One that is none is told.
+fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
+    let text = |argument: OsString| {
+        argument.into_string().map_err(|argument| {
+            let shown = argument.to_string_lossy();
+            eprintln!("error[studio.call]: `{}` is no text in UTF-8\n\n{USAGE}", visible(&shown));
+        })
+    };
+    arguments.map(text).collect()
+}
+
 fn main() -> ExitCode {
-    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Ok(mut arguments) = texts(std::env::args_os().skip(1)) else { return ExitCode::from(2) };
     // Not for every day: how long frames of the window take.
     let measured = arguments.iter().position(|word| word == "--measure-frames").map(|place| {
         let count = arguments.get(place + 1).and_then(|word| word.parse::<usize>().ok());
         arguments.drain(place..(place + 2).min(arguments.len()));
         count.unwrap_or(600)
     });
-    if arguments.len() > 1 || arguments.iter().any(|word| word.starts_with('-')) {
-        println!(
-            "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, or a recorded run."
-        );
+    if arguments.iter().any(|word| matches!(word.as_str(), "-h" | "--help")) {
+        println!("{USAGE}");
         return ExitCode::SUCCESS;
+    }
+    if let Some(option) = arguments.iter().find(|word| word.starts_with('-')) {
+        eprintln!("error[studio.call]: there is no option `{}`\n\n{USAGE}", visible(option));
+        return ExitCode::from(2);
+    }
+    if arguments.len() > 1 {
+        eprintln!("error[studio.call]: {} scenes are named; allowed: at most one\n\n{USAGE}", arguments.len());
+        return ExitCode::from(2);
     }
     let kept = std::env::var_os(watch::KEPT);
     if kept.is_none() && measured.is_none() {
@@ -40,7 +61,7 @@ fn main() -> ExitCode {
     let wanted = arguments.pop().unwrap_or_else(|| FIRST_SCENE.into());
     let opened = match kept.as_ref().filter(|kept| kept.exists()).map(|kept| rescue::read(kept)) {
         Some(shared) => shared.and_then(|shared| rescue::resume(&shared, options())).map_err(|said| said.to_string()),
-        None => open(&wanted),
+        None => wanted::open(&wanted, options()),
     };
     let lost = std::env::var(watch::SAVED).ok();
     let session = match opened {
@@ -102,32 +123,6 @@ fn main() -> ExitCode {
             ExitCode::from(watch::NO_WINDOW)
         }
     }
-}
-
-/// Opens a scene file, a scene that comes with the program, or a recorded run.
-fn open(wanted: &str) -> Result<Session, String> {
-    let path = Path::new(wanted);
-    let options = options();
-    if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
-        return Session::open(wanted, text, opruga::scenes::files(), options).map_err(|said| said.to_string());
-    }
-    if is_recording(path) {
-        let refused = |error: String| format!("{wanted}: {error}");
-        let file = std::fs::File::open(path).map_err(|error| refused(error.to_string()))?;
-        let recording = Recording::open(std::io::BufReader::new(file)).map_err(|error| refused(error.to_string()))?;
-        return Session::view(recording, options).map_err(refused);
-    }
-    let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| format!("{wanted}: {error}"))?;
-    let text = String::from_utf8(bytes).map_err(|_| format!("{wanted} is no text in UTF-8"))?;
-    let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    Session::open(&name, &text, Files::beside(path), options).map_err(|said| said.to_string())
-}
-
-/// Whether a file begins as recordings do.
-fn is_recording(path: &Path) -> bool {
-    use std::io::Read as _;
-    let mut head = [0; MAGIC.len()];
-    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *MAGIC
 }
 
 /// One processor is for the interface.

@@ -1,14 +1,14 @@
 //! A scene under two configurations in lock step: what is done to the one on the left is done to the one on the right.
 
 use crate::differences::{Difference, Twins, right_of};
-use crate::document::Document;
+use crate::document::{Document, without_lines};
 use crate::engine::{self, Common, Engine, Given};
 use crate::said::Said;
 use crate::samples::Sample;
 use crate::shown::{Beside, Show, Shown};
 use opruga::blueprint::AnyBlueprint;
 use opruga::core::spec::{Value, Values};
-use opruga::io::{Files, Notice, SceneError, scene};
+use opruga::io::{Files, Notice, scene};
 use opruga::{Options, Warning, WorldError};
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ pub fn read(document: &Document, files: &Files) -> Result<(AnyBlueprint, Vec<War
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
     let read = scene::read(document.text().as_bytes(), &file, &opruga::catalogue(), &reading);
-    let together = |errors: Vec<SceneError>| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
-    let (blueprint, notices) = read.map_err(together)?;
+    // The text has changed since anybody has seen it.
+    let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
     // Time goes on behind the end that the scene states for a run: every command comes about here.
     let told = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
     let odd = notices.into_iter().filter(|notice| told(notice.about.code));

@@ -16,8 +16,12 @@ pub enum Step {
     Add,
     /// A body was copied.
     Duplicate,
-    /// A body was moved, turned or scaled.
+    /// A body was moved.
     Move,
+    /// A body was turned.
+    Turn,
+    /// A body was scaled.
+    Scale,
     /// A field of a body's shape was changed.
     Shape(&'static str),
     /// A body was taken away.

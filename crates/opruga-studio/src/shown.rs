@@ -265,6 +265,9 @@ pub struct Shown {
     pub message: Option<Message>,
     /// How many scenes were opened or built anew: a view is fitted once for each.
     pub opened: u64,
+    /// How often another state took the place of the one before at once, as by undo, reset or a way through time: what was
+    /// fitted to the states before is fitted anew.
+    pub replaced: u64,
     /// The same scene under another configuration.
     pub beside: Option<Beside>,
     /// Bodies that were set down anew under another name: old and new.

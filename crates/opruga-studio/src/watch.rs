@@ -1,12 +1,13 @@
 //! A program that watches over the window. OpenGL has no way to ask for another device in the same window, and where a driver
 //! fails it takes the program with it. So the window is a program of its own that this one starts: where it is lost, what was done
-//! is saved and said, and another window goes on from there.
+//! is saved and said, and another window goes on from there. Where it is asked to end, what was done is saved and said too.
 
 use crate::handing::Folder;
 use crate::rescue;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Names the file in which the window keeps what is done.
@@ -20,6 +21,16 @@ pub const LOST: u8 = 70;
 /// So many windows may be lost within so long; then no other is opened.
 const MOST_LOST: usize = 3;
 const WITHIN: Duration = Duration::from_secs(60);
+
+/// The exit code of a program that was asked to end.
+const ENDED: u8 = 130;
+/// How often the window is looked at.
+const EVERY: Duration = Duration::from_millis(30);
+/// How long a window may take to end after it was asked to.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Whether Ctrl-C or a signal has asked the program to end.
+static END: AtomicBool = AtomicBool::new(false);
 
 /// What follows the end of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +49,12 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         // A window that nobody watches over is better than none.
         return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
     };
+    // Where the system gives us no handler, a signal ends the program as it always did. Asked once more it ends at once.
+    let _ = ctrlc::set_handler(|| {
+        if END.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(ENDED));
+        }
+    });
     let mut lost: Vec<Instant> = Vec::new();
     let mut saved: Option<String> = None;
     loop {
@@ -48,6 +65,11 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
                 return ExitCode::from(NO_WINDOW);
             }
         };
+        if END.load(Ordering::SeqCst) {
+            eprintln!("the studio was asked to end");
+            hint(saved_and_told(&kept.file()).as_deref());
+            return ExitCode::from(ENDED);
+        }
         let next = next(status.code(), signal(&status));
         if let Next::End(code) = next {
             if code == NO_WINDOW && saved.is_some() {
@@ -58,11 +80,7 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         let why = signal(&status)
             .map_or_else(|| format!("exit code {}", status.code().unwrap_or(-1)), |number| format!("signal {number}"));
         eprintln!("error[studio.lost]: the window was lost ({why})");
-        saved = save(&kept.file());
-        match &saved {
-            Some(path) => eprintln!("  = what was done is saved: {path}"),
-            None => eprintln!("  = nothing was kept of it"),
-        }
+        saved = saved_and_told(&kept.file());
         lost.retain(|at| at.elapsed() < WITHIN);
         lost.push(Instant::now());
         if next == Next::Ended || lost.len() >= MOST_LOST {
@@ -71,6 +89,16 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         }
         eprintln!("  = another window goes on from there");
     }
+}
+
+/// Saves what was kept, and says where.
+fn saved_and_told(kept: &Path) -> Option<String> {
+    let saved = save(kept);
+    match &saved {
+        Some(path) => eprintln!("  = what was done is saved: {path}"),
+        None => eprintln!("  = nothing was kept of it"),
+    }
+    saved
 }
 
 fn hint(saved: Option<&str>) {
@@ -112,12 +140,27 @@ fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> s
         Some(path) => command.env(SAVED, path),
         None => command.env_remove(SAVED),
     };
-    let mut child = command.spawn()?;
-    // Waiting would close the input.
-    let input = child.stdin.take();
-    let status = child.wait();
-    drop(input);
-    status
+    wait(command.spawn()?, &END)
+}
+
+/// Waits for the end of a window. One that does not end where it is asked to is ended.
+fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
+    // Waiting with the child itself would close its input, and so end it.
+    let mut input = child.stdin.take();
+    let mut asked: Option<Instant> = None;
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
+        }
+        if end.load(Ordering::SeqCst) {
+            drop(input.take());
+            if asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+                child.kill()?;
+                return child.wait();
+            }
+        }
+        std::thread::sleep(EVERY);
+    }
 }
 
 /// Saves what was kept among the files of the studio, or where that is refused, leaves it beside; where it is.
@@ -185,6 +228,22 @@ mod tests {
         ] {
             assert_eq!(next(code, signal), wanted, "{code:?} {signal:?}");
         }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_window_ends_where_the_program_is_asked_to_end_by_itself_or_not() {
+        let begun =
+            |words: &[&str]| Command::new(words[0]).args(&words[1..]).stdin(Stdio::piped()).spawn().expect("a program");
+        let end = AtomicBool::new(false);
+        let status = wait(begun(&["true"]), &end).expect("its end");
+        assert_eq!((status.code(), signal(&status)), (Some(0), None));
+        end.store(true, Ordering::SeqCst);
+        // This one ends with its input, as windows do; the other one does not care.
+        let status = wait(begun(&["cat"]), &end).expect("its end");
+        assert_eq!((status.code(), signal(&status)), (Some(0), None));
+        let status = wait(begun(&["sleep", "600"]), &end).expect("its end");
+        assert_eq!(signal(&status), Some(9));
     }
 
     #[test]

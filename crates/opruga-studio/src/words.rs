@@ -2,8 +2,10 @@
 
 mod croatian;
 mod details;
+mod ends;
 mod messages;
 mod named;
+mod parts;
 mod readers;
 #[cfg(test)]
 mod said_in_sources;
@@ -148,6 +150,8 @@ words! {
     of_the_scene: "that of the scene", "kao u prizoru";
     add_model: "Add a model", "Dodaj model";
     remove_model: "Remove this model", "Ukloni ovaj model";
+    remove_value: "Give this no longer", "Ne zadaj više";
+    instead: "{} instead of {}", "{} (umjesto: {})";
     shape: "Shape", "Oblik";
     turn: "Turn", "Zakreni";
     scale: "Larger", "Povećaj";
@@ -197,6 +201,8 @@ words! {
     step_add: "new body", "novo tijelo";
     step_duplicate: "copy", "kopija";
     step_move: "move", "pomak";
+    step_turn: "turn", "zakret";
+    step_scale: "scaling", "promjena veličine";
     step_delete: "delete", "brisanje";
     step_pin: "pin a point", "pribadanje točke";
     step_unpin: "free a point", "oslobađanje točke";

@@ -69,6 +69,23 @@ fn row_94_without_a_display_the_program_says_what_is_missing_and_what_works_inst
 }
 
 #[test]
+fn a_call_that_names_two_scenes_or_no_text_or_no_scene_is_told_what_is_allowed() {
+    let said = |arguments: &[&std::ffi::OsStr]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_opruga-studio"));
+        let output = command.args(arguments).output().expect("it starts");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!said.contains("panicked"), "{said}");
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        said
+    };
+    assert!(said(&["ball".as_ref(), "heart".as_ref()]).contains("opruga-studio [SCENE]"));
+    assert!(said(&["--fast".as_ref()]).contains("`--fast`"));
+    assert!(said(&["presures".as_ref()]).contains("did you mean `pressures`?"));
+    #[cfg(unix)]
+    assert!(said(&[std::os::unix::ffi::OsStrExt::from_bytes(b"\xff")]).contains("UTF-8"));
+}
+
+#[test]
 fn row_95_ten_hidden_minutes_are_neither_a_giant_step_nor_a_spiral() {
     let mut session = open("ball");
     session.handle(Request::Play(true));

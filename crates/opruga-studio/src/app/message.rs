@@ -11,34 +11,90 @@ use opruga::draw::format_value;
 /// How long it stays on the screen that something was done [s].
 const TOLD_FOR: f64 = 6.0;
 
+/// Who speaks to the person, in the order in which they are heard where they speak at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Speaker {
+    /// The session, of what becomes of the scene.
+    Session,
+    /// The window, of files.
+    Window,
+    /// The pen, of an outline.
+    Pen,
+}
+
+/// What was heard: of each speaker the number of what it says, if it says anything, and who spoke before whom.
+#[derive(Debug)]
+pub(super) struct Heard {
+    numbers: [Option<u64>; 3],
+    order: [Speaker; 3],
+}
+
+impl Default for Heard {
+    fn default() -> Heard {
+        Heard { numbers: [None; 3], order: [Speaker::Session, Speaker::Window, Speaker::Pen] }
+    }
+}
+
+impl Heard {
+    /// Who of those that say something now spoke last.
+    fn last(&mut self, now: [Option<u64>; 3]) -> Option<Speaker> {
+        for speaker in [Speaker::Session, Speaker::Window, Speaker::Pen] {
+            let place = speaker as usize;
+            if now[place].is_some() && now[place] != self.numbers[place] {
+                // To the end of the row, the others in their order before it.
+                self.order.sort_by_key(|other| *other == speaker);
+            }
+        }
+        self.numbers = now;
+        self.order.into_iter().rev().find(|speaker| now[*speaker as usize].is_some())
+    }
+}
+
 impl Studio {
     /// The last message, at the bottom of the scene, with what would help.
     pub(super) fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
         let words = self.language;
-        let own = self.canvas.refused.map(|why| match why {
+        let pen = self.canvas.refused.map(|why| match why {
             "crossing" => words.crossing(),
             "only_plane" => words.only_plane(),
             _ => words.too_small(),
         });
         let message = shown.message.as_ref().filter(|message| message.number != self.closed);
-        let (text, severity, offer) = match (own, message, self.keeping.message()) {
-            (Some(text), ..) => (text.to_string(), Severity::Refused, None),
-            (None, Some(message), _) => (words.said(&message.said), message.severity, message.offer.clone()),
-            (None, None, Some((said, severity))) => (words.said(said), *severity, None),
+        let of_window = self.keeping.message().map(|_| self.keeping.told());
+        let now = [message.map(|message| message.number), of_window, pen.map(|_| 0)];
+        let Some(speaker) = self.heard.last(now) else { return };
+        // What was only told, and was not read to its end when something else was said, is over.
+        let told = |severity: Severity, offer: bool| severity == Severity::Told && !offer;
+        if speaker != Speaker::Session
+            && let Some(message) = message.filter(|message| told(message.severity, message.offer.is_some()))
+        {
+            self.closed = message.number;
+        }
+        if speaker != Speaker::Window && self.keeping.message().is_some_and(|(_, severity)| told(*severity, false)) {
+            self.keeping.forget_message();
+        }
+        let message = message.filter(|_| speaker == Speaker::Session);
+        let (text, severity, offer) = match (speaker, pen, message, self.keeping.message()) {
+            (Speaker::Pen, Some(text), ..) => (text.to_string(), Severity::Refused, None),
+            (Speaker::Session, _, Some(message), _) => {
+                (words.said(&message.said), message.severity, message.offer.clone())
+            }
+            (Speaker::Window, _, _, Some((said, severity))) => (words.said(said), *severity, None),
             _ => return,
         };
-        let takes = message.filter(|_| own.is_none()).and_then(|message| message.frame_seconds);
+        let takes = message.and_then(|message| message.frame_seconds);
         let text = match takes {
             Some(seconds) => format!("{text}. {}", words.frame_would_take().replace("{}", &format_value(seconds))),
             None => text,
         };
         let refused = severity == Severity::Refused;
-        let now = ui.input(|i| i.time);
-        let told = format!("{}: {text}", message.map_or(0, |m| m.number));
+        let time = ui.input(|i| i.time);
+        let told = format!("{speaker:?} {:?}: {text}", now[speaker as usize]);
         if self.told.0 != told {
-            self.told = (told, now);
+            self.told = (told, time);
         }
-        if !refused && offer.is_none() && now - self.told.1 > TOLD_FOR {
+        if !refused && offer.is_none() && time - self.told.1 > TOLD_FOR {
+            self.forget(speaker, message.map(|message| message.number));
             return;
         }
         egui::Area::new(egui::Id::unique("message"))
@@ -84,18 +140,21 @@ impl Studio {
                                 self.closed = message.map_or(self.closed, |m| m.number);
                             }
                             if ui.button(words.close()).clicked() {
-                                if own.is_some() {
-                                    self.canvas.refused = None;
-                                } else if let Some(message) = message {
-                                    self.closed = message.number;
-                                } else {
-                                    self.keeping.forget_message();
-                                }
+                                self.forget(speaker, message.map(|message| message.number));
                             }
                         });
                     },
                 );
             });
+    }
+
+    /// What this one said is read, or has been there for long enough.
+    fn forget(&mut self, speaker: Speaker, number: Option<u64>) {
+        match speaker {
+            Speaker::Session => self.closed = number.unwrap_or(self.closed),
+            Speaker::Window => self.keeping.forget_message(),
+            Speaker::Pen => self.canvas.refused = None,
+        }
     }
 }
 
@@ -121,7 +180,22 @@ fn unbroken(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::unbroken;
+    use super::*;
+
+    #[test]
+    fn whoever_spoke_last_is_heard_and_whoever_has_nothing_to_say_any_more_is_not() {
+        let mut heard = Heard::default();
+        assert_eq!(heard.last([None; 3]), None);
+        assert_eq!(heard.last([Some(1), None, None]), Some(Speaker::Session));
+        // A file was written.
+        assert_eq!(heard.last([Some(1), Some(1), None]), Some(Speaker::Window));
+        assert_eq!(heard.last([Some(1), Some(1), None]), Some(Speaker::Window));
+        assert_eq!(heard.last([Some(2), Some(1), None]), Some(Speaker::Session));
+        assert_eq!(heard.last([Some(2), Some(2), Some(0)]), Some(Speaker::Pen));
+        assert_eq!(heard.last([Some(2), Some(2), None]), Some(Speaker::Window));
+        assert_eq!(heard.last([Some(2), None, None]), Some(Speaker::Session));
+        assert_eq!(heard.last([None, None, Some(0)]), Some(Speaker::Pen), "another outline");
+    }
 
     #[test]
     fn a_number_stays_with_its_letter_and_its_unit() {

@@ -16,12 +16,14 @@ mod pressing;
 mod space;
 mod tool;
 
+use crate::said::Said;
 use crate::session::Request;
 use crate::shown::Shown;
 use crate::words::Language;
 use camera::Flat;
 use egui::{Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
+use opruga::WorldError;
 use opruga::draw::View;
 use pick::Under;
 use std::sync::Arc;
@@ -71,6 +73,12 @@ pub struct Canvas {
     /// Whether two scenes were shown.
     two: bool,
     fitted: u64,
+    /// How often the state was replaced when it was seen last.
+    replaced: u64,
+    /// The number of the message of the last motion that has failed.
+    failed: Option<u64>,
+    /// Whether the view was fitted to what such a motion has left far away.
+    far: bool,
     /// The size of the window for which the scene was fitted; none once somebody has moved the view.
     fitted_size: Option<Vec2>,
     doing: Doing,
@@ -264,7 +272,47 @@ impl Canvas {
         }
     }
 
+    /// Forgets what was fitted to states that are gone: the ends of the colours, and how far the view was widened where nobody has
+    /// moved it.
+    fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
+        if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
+            return;
+        }
+        self.range = None;
+        if std::mem::take(&mut self.far) {
+            self.fit();
+        } else if let (Some(_), Some(view)) = (self.fitted_size, &mut self.scales) {
+            [view.low, view.high] = self.first;
+            self.flat.fit(view, rect, self.tools);
+        }
+    }
+
+    /// Shows everything where a motion has just failed and its last good frame has left nothing in sight.
+    fn fit_if_lost(&mut self, shown: &Shown, rect: Rect) {
+        let failed = shown.message.as_ref().filter(|message| {
+            matches!(
+                message.said,
+                Said::World(WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. })
+            )
+        });
+        let Some(number) = failed.map(|message| message.number).filter(|number| self.failed != Some(*number)) else {
+            return;
+        };
+        self.failed = Some(number);
+        let in_sight = |point: [f64; 3]| self.on_screen(shown, point).is_some_and(|at| rect.contains(at));
+        let seen = shown.extents.iter().map(|extent| extent.corners).any(|[low, high]| {
+            let middle = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
+            in_sight(low) || in_sight(high) || in_sight(middle)
+        });
+        if !seen {
+            self.far = true;
+            self.fit();
+        }
+    }
+
     fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
+        self.fit_if_replaced(shown, rect);
+        self.fit_if_lost(shown, rect);
         if self.fitted == shown.opened && self.scales.is_some() {
             // The view follows the window until somebody moves it.
             if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
@@ -385,4 +433,65 @@ fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
         whole.split_top_bottom_at_fraction(0.5)
     };
     (first, Some(second))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shown::{Extent, Message, Severity};
+
+    const RECT: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(600.0, 500.0) };
+
+    /// A ball of a metre at this place, in colours up to this.
+    fn ball(x: f64, most: f64) -> Shown {
+        let body = opruga::draw::BodyPicture {
+            positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
+            ..Default::default()
+        };
+        let extent = Extent { colours: [0.0, most], ..Extent::of(&body) };
+        let picture = opruga::draw::Picture { dimension: 2, bodies: vec![body], ..Default::default() };
+        Shown { dimension: 2, opened: 1, extents: vec![extent], picture, ..Default::default() }
+    }
+
+    fn seen(canvas: &mut Canvas, shown: &Shown) {
+        canvas.rect = Some(RECT);
+        canvas.fit_if_new(shown, RECT);
+        canvas.fit_colours(shown);
+    }
+
+    #[test]
+    fn what_was_fitted_to_states_that_are_gone_is_fitted_anew_at_once() {
+        let mut canvas = Canvas::default();
+        seen(&mut canvas, &ball(0.0, 20.0));
+        let first = (canvas.flat.scale, canvas.range);
+        for _ in 0..3 {
+            seen(&mut canvas, &ball(1.5, 15_000.0));
+        }
+        assert!(canvas.flat.scale < first.0 && canvas.range > first.1);
+        seen(&mut canvas, &ball(0.0, 20.0));
+        assert!(canvas.range > first.1, "slowly, while nothing is replaced");
+        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
+        assert_eq!((canvas.flat.scale, canvas.range), first);
+        // A view that somebody has moved stays.
+        (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
+        seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
+        assert_eq!(canvas.flat.scale, 7.0);
+    }
+
+    #[test]
+    fn the_last_good_frame_of_a_motion_that_failed_is_in_sight_and_so_is_what_is_undone_to() {
+        let mut canvas = Canvas::default();
+        seen(&mut canvas, &ball(0.0, 20.0));
+        let first = canvas.flat.scale;
+        let error = WorldError::Diverged { body: "ball".into(), node: 0, time: 0.2, last: 0.1, range: None };
+        let said = Said::World(error);
+        let text = said.to_string();
+        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
+        let lost = Shown { message: Some(message), ..ball(5e5, 20.0) };
+        seen(&mut canvas, &lost);
+        assert!(RECT.contains(canvas.on_screen(&lost, [5e5, 0.5, 0.0]).expect("a place")));
+        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
+        assert!((canvas.flat.scale / first - 1.0).abs() < 1e-9);
+        assert!(RECT.contains(canvas.on_screen(&ball(0.0, 20.0), [0.0, 0.5, 0.0]).expect("a place")));
+    }
 }

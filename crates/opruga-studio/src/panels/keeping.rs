@@ -75,6 +75,8 @@ enum Stage {
 pub struct Keeping {
     making: Vec<Making>,
     message: Option<(Said, Severity)>,
+    /// How much was said so far.
+    told: u64,
 }
 
 impl Keeping {
@@ -96,7 +98,7 @@ impl Keeping {
 
     /// Looks whether something is done.
     pub fn poll(&mut self) {
-        let message = &mut self.message;
+        let (message, told) = (&mut self.message, &mut self.told);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
             Stage::Asked(show, copied) => {
                 if let Ok(copied) = copied.try_recv() {
@@ -107,6 +109,7 @@ impl Keeping {
             }
             Stage::Made(file) => {
                 let Ok(outcome) = file.try_recv() else { return true };
+                *told += 1;
                 *message = Some(match outcome {
                     Ok(written) => (written, Severity::Told),
                     Err(refused) => (refused, Severity::Refused),
@@ -121,8 +124,14 @@ impl Keeping {
         self.message.as_ref()
     }
 
+    /// How much was said so far: the number of the message.
+    pub fn told(&self) -> u64 {
+        self.told
+    }
+
     /// Says something else in its place.
     pub fn tell(&mut self, severity: Severity, said: Said) {
+        self.told += 1;
         self.message = Some((said, severity));
     }
 

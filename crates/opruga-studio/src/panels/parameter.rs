@@ -2,7 +2,7 @@
 
 use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
-use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Value, Values};
+use opruga::core::spec::{Allowed, Bound, Default as Unset, Field, Spec, Value, Values};
 use std::collections::BTreeMap;
 
 /// A field of a kind in the panel of a scene of so many dimensions, in a language.
@@ -22,6 +22,17 @@ pub struct Place<'a> {
     pub words: Language,
     /// The values of all fields of the kind: some have no say among the others.
     pub values: Option<&'a Values>,
+    /// What the kind says of itself, where all of its values can be given at once.
+    pub whole: Option<&'static Spec>,
+}
+
+/// What is asked for where a parameter is changed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Another value of the field.
+    Value(Value),
+    /// Other values of its kind: the field takes the place of another one, or is given no longer.
+    Whole(Values),
 }
 
 /// What is being set: while a slider is held it shows what the hand wants and not what came back.
@@ -32,12 +43,63 @@ pub struct Hand {
     ends: BTreeMap<String, f64>,
 }
 
+/// The values with which a kind can begin: its defaults, what must be given, and of fields of which exactly one is given
+/// the first.
+pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
+    let mut values = Values::defaults(spec, dimension);
+    let chosen = |field: &&Field| match field.default {
+        Unset::Required => true,
+        Unset::OneOf(set) => set.first() == Some(&field.name),
+        _ => false,
+    };
+    for field in spec.fields.iter().filter(chosen) {
+        if let Some(value) = starting(spec.kind, field) {
+            // A starting value is an allowed one: a test goes through all of them.
+            let _ = values.set(spec, field.name, value, dimension);
+        }
+    }
+    values
+}
+
+/// The same values without those of some fields, which are silent or have their defaults again.
+fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usize) -> Values {
+    let mut rest = Values::defaults(spec, dimension);
+    for (name, value) in values.iter().filter(|(name, _)| !names.contains(name)) {
+        // It was allowed before.
+        let _ = rest.set(spec, name, value.clone(), dimension);
+    }
+    rest
+}
+
+/// Fields that are given together with a field or not at all.
+fn companions(kind: &str, name: &str) -> &'static [&'static str] {
+    match (kind, name) {
+        ("bending", "modulus") => &["thickness"],
+        _ => &[],
+    }
+}
+
+/// The values with this field instead of the other ones of which exactly one is given; none where no value is known with which it
+/// could begin, or where it is no such field.
+pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: usize) -> Option<Values> {
+    let Unset::OneOf(set) = field.default else { return None };
+    let leave: Vec<&str> = set.iter().chain(set.iter().flat_map(|name| companions(spec.kind, name))).copied().collect();
+    let mut new = without(spec, values, &leave, dimension);
+    let with = companions(spec.kind, field.name);
+    for field in std::iter::once(field).chain(spec.fields.iter().filter(|other| with.contains(&other.name))) {
+        let kept = values.get(field.name).cloned().or_else(|| starting(spec.kind, field))?;
+        new.set(spec, field.name, kept, dimension).ok()?;
+    }
+    Some(new)
+}
+
 /// A starting value for a field that the scene leaves silent.
 pub fn starting(kind: &str, field: &Field) -> Option<Value> {
     let known = match (kind, field.name) {
         ("mass_spring", "stiffness") => 400.0,
         ("mass_spring", "modulus") => 300.0,
         ("bending", "stiffness") => 0.02,
+        ("bending", "thickness") => 0.02,
         ("pressure", "nRT") => 20.0,
         ("pressure", "pressure") => 50.0,
         _ => match field.range {
@@ -73,8 +135,8 @@ fn usual(unit: &str) -> f64 {
     }
 }
 
-/// Shows a parameter; its new value if it was changed. Values that no slider can hold are shown and not changed.
-pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>) -> Option<Value> {
+/// Shows a parameter; what is asked for if it was changed. Values that no slider can hold are shown and not changed.
+pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>) -> Option<Change> {
     let Place { path, part, kind, field, words, .. } = place;
     let held = hand.held.as_ref().filter(|(held, _)| held == path).map(|(_, value)| value.clone());
     let now = held.or_else(|| now.cloned());
@@ -86,16 +148,31 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, place: Place<'_>, now: Option<&Value>)
     if let Some(condition) = silent {
         about = format!("{about}\n{}", words.effect_only(part, kind, condition));
     }
+    // What was added can be taken away again.
+    let removed = |ui: &mut Ui| {
+        let (spec, values) = (place.whole?, place.values?);
+        let optional = field.default == Unset::Absent && companion_is_silent(spec, values, field.name);
+        let pressed = optional && ui.small_button("×").on_hover_text(words.remove_value()).clicked();
+        pressed.then(|| Change::Whole(without(spec, values, &[field.name], place.dimension)))
+    };
     let shown = |ui: &mut Ui| match (&field.range, now) {
         (_, None) => ui.horizontal(|ui| absent(ui, place, &name, &unit, &about)).inner,
-        (_, Some(Value::Number(x))) => number(ui, hand, path, field, label, &about, x, false).map(Value::Number),
-        (_, Some(Value::Integer(x))) => {
-            number(ui, hand, path, field, label, &about, x as f64, true).map(|x| Value::Integer(x.round() as i64))
+        (_, Some(now @ (Value::Number(_) | Value::Integer(_)))) => {
+            let (name, removed) = ui.horizontal(|ui| (tell(ui.label(label), &about).id, removed(ui))).inner;
+            let value = match now {
+                Value::Integer(x) => {
+                    number(ui, hand, path, field, name, x as f64, true).map(|x| Value::Integer(x.round() as i64))
+                }
+                Value::Number(x) => number(ui, hand, path, field, name, x, false).map(Value::Number),
+                _ => None,
+            };
+            removed.or(value.map(Change::Value))
         }
         (range, Some(now)) => {
             ui.horizontal(|ui| {
                 let name = tell(ui.label(label), &about).id;
-                other(ui, words, name, range, &now)
+                let value = other(ui, words, name, range, &now);
+                removed(ui).or(value.map(Change::Value))
             })
             .inner
         }
@@ -109,31 +186,46 @@ fn tell(response: Response, about: &str) -> Response {
     response.on_hover_text(about).on_disabled_hover_text(about)
 }
 
-/// A field about which the scene is silent: a button that gives it a value, or its name where a scene alone can.
-fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) -> Option<Value> {
-    let start = starting(place.kind, place.field);
+/// Whether nothing that is given needs this field beside it.
+fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
+    let needs = |field: &Field| companions(spec.kind, field.name).contains(&name) && values.get(field.name).is_some();
+    !spec.fields.iter().any(needs)
+}
+
+/// A field about which the scene is silent: a button that gives it a value, instead of another one where only one of them is
+/// given, or its name where a scene alone can.
+fn absent(ui: &mut Ui, place: Place<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
+    let Place { part, kind, field, words, .. } = place;
+    let start = starting(kind, field).map(Change::Value);
+    let (start, text) = match (field.default, place.whole.zip(place.values)) {
+        (Unset::OneOf(set), Some((spec, values))) => {
+            let other =
+                set.iter().find(|other| values.get(other).is_some()).map(|other| words.field(part, kind, other));
+            let text = words.instead().replacen("{}", &format!("{name}{unit}"), 1);
+            let text = other.map_or(format!("+ {name}{unit}"), |other| text.replacen("{}", &other, 1));
+            (instead(spec, values, field, place.dimension).map(Change::Whole), text)
+        }
+        _ => (start, format!("+ {name}{unit}")),
+    };
     if start.is_none() {
-        let about = format!("{about}\n{}", place.words.in_the_scene());
+        let about = format!("{about}\n{}", words.in_the_scene());
         tell(ui.label(RichText::new(format!("{name}{unit}")).size(12.0).weak()), &about);
         return None;
     }
-    let button = egui::Button::new(RichText::new(format!("+ {name}{unit}")).size(12.0)).small();
+    let button = egui::Button::new(RichText::new(text).size(12.0)).small();
     if tell(ui.add(button), about).clicked() { start } else { None }
 }
 
 /// A slider below its name.
-#[allow(clippy::too_many_arguments, reason = "all of them describe one slider")]
 fn number(
     ui: &mut Ui,
     hand: &mut Hand,
     path: &str,
     field: &Field,
-    label: RichText,
-    about: &str,
+    name: egui::Id,
     now: f64,
     whole: bool,
 ) -> Option<f64> {
-    let name = tell(ui.label(label), about).id;
     let (low, high, open) = ends(field, now, whole);
     // An open end stays where it was when the slider was first seen, unless the value has gone beyond it.
     let high = if open {
@@ -257,16 +349,75 @@ mod tests {
         assert!(low == 3.0 && (200.0..1e6).contains(&high));
     }
 
+    /// A body of every sort: an outline with gas in it, one that has cells, and the same of space.
+    const BODIES: [(usize, &str); 4] = [
+        (2, "kind = \"ring\", radius = 0.5, vertices = 16, center = [0.0, 2.0]"),
+        (2, "kind = \"grid\", corner = [0.0, 1.0], size = [1.0, 1.0], cells = [2, 2]"),
+        (3, "kind = \"icosphere\", radius = 0.5, subdivisions = 1"),
+        (3, "kind = \"grid\", corner = [0.0, 1.0, 0.0], size = [1.0, 1.0, 1.0], cells = [2, 2, 2]"),
+    ];
+
+    /// A scene with such a body.
+    fn scene(dimension: usize, shape: &str) -> String {
+        format!(
+            "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1.0\nframe = 0.02\nsubsteps = 4000\n\
+             [integrator]\nkind = \"symplectic_euler\"\n[[body]]\nname = \"it\"\nshape = {{ {shape} }}\nmass = 1.0\n"
+        )
+    }
+
+    /// Why a body of this scene cannot have these models; none where it can.
+    fn refused(text: &str, models: Vec<Values>) -> Option<String> {
+        use crate::session::{Request, Session};
+        let opened = Session::open("it", text, opruga::io::Files::default(), opruga::Options::default());
+        let mut session = opened.unwrap_or_else(|said| panic!("{said}\n{text}"));
+        session.handle(Request::Models(0, models));
+        let message = session.shown().message.filter(|m| m.severity == crate::shown::Severity::Refused);
+        message.map(|message| message.text)
+    }
+
     #[test]
-    fn every_model_of_the_program_has_starting_values_with_which_it_can_be_built() {
-        let registry = opruga::Registry::<2>::default();
-        for spec in registry.models() {
-            let mut values = opruga::core::spec::Values::defaults(spec, 2);
-            for field in spec.fields.iter().filter(|f| f.default == Unset::Required) {
-                let start = starting(spec.kind, field).expect("a starting value");
-                values.set(spec, field.name, start, 2).expect("an allowed one");
+    fn every_model_of_the_program_can_be_chosen_and_built_as_it_begins() {
+        let models = opruga::Registry::<2>::default().models();
+        assert!(models.len() >= 6);
+        for spec in models {
+            for dimension in spec.dimensions {
+                let values = begin(spec, *dimension);
+                assert!(values.missing(spec).is_empty() && values.check_choices(spec).is_ok(), "{}", spec.kind);
+                let bodies = BODIES.iter().filter(|(of, _)| of == dimension);
+                let why: Vec<Option<String>> =
+                    bodies.map(|(_, shape)| refused(&scene(*dimension, shape), vec![values.clone()])).collect();
+                assert!(why.iter().any(Option::is_none), "{} in {dimension}D: {why:?}", spec.kind);
             }
-            assert!(values.missing(spec).is_empty(), "{}", spec.kind);
         }
+    }
+
+    #[test]
+    fn every_field_of_a_choice_takes_the_place_of_the_others_in_one_edit_and_can_be_given_back() {
+        let mut count = 0;
+        for spec in opruga::Registry::<2>::default().models() {
+            for field in spec.fields.iter().filter(|field| matches!(field.default, Unset::OneOf(_))) {
+                let values = begin(spec, 2);
+                let Some(new) = instead(spec, &values, field, 2) else { continue };
+                count += 1;
+                assert!(new.get(field.name).is_some() && new.check_choices(spec).is_ok(), "{}: {new:?}", field.name);
+                let bodies = BODIES.iter().filter(|(of, _)| *of == 2);
+                let why: Vec<Option<String>> =
+                    bodies.map(|(_, shape)| refused(&scene(2, shape), vec![new.clone()])).collect();
+                assert!(why.iter().any(Option::is_none), "{} {}: {why:?}", spec.kind, field.name);
+                let first = spec.fields.iter().find(|f| values.get(f.name).is_some() && f.default == field.default);
+                let back = instead(spec, &new, first.expect("the first of them"), 2).expect("known");
+                assert!(back.check_choices(spec).is_ok());
+                assert_eq!(back.iter().count(), values.iter().count(), "{back:?}");
+            }
+        }
+        assert!(count >= 6, "mass_spring, bending and pressure: {count}");
+    }
+
+    #[test]
+    fn a_field_that_was_added_is_taken_away_and_the_others_stay() {
+        let spec = opruga::Registry::<2>::default().models().into_iter().find(|spec| spec.kind == "fem").expect("it");
+        let mut values = begin(spec, 2);
+        values.set(spec, "cells", Value::Text("soft".into()), 2).expect("allowed");
+        assert_eq!(without(spec, &values, &["cells"], 2), begin(spec, 2));
     }
 }

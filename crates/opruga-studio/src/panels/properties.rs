@@ -1,13 +1,13 @@
 //! The panel at the side: the body that was pressed, the world, the obstacles. All of it is made from what models,
 //! integrators, shapes and obstacles say of themselves, so that those that come later appear in it too.
 
-use super::parameter::{self, Hand, Place};
+use super::parameter::{self, Change, Hand, Place};
 use crate::session::{Edit, Placed, Request};
 use crate::shown::{BodyShown, Shown};
 use crate::words::{Language, Part};
 use egui::{Button, CollapsingHeader, Color32, ComboBox, Pos2, RichText, ScrollArea, Sense, Slider, Stroke, Ui, Vec2};
 use opruga::Registry;
-use opruga::core::spec::{Allowed, Default as Unset, Spec, Value, Values};
+use opruga::core::spec::{Allowed, Spec, Value, Values};
 use opruga::world::schema::MOST_SUBSTEPS;
 
 /// The largest gravity of the arrow [m/s²].
@@ -41,21 +41,6 @@ impl Kinds {
             obstacles: opruga::collide::all(dimension),
             dimension,
         }
-    }
-
-    /// The values of a kind with which it can begin.
-    fn begin(&self, spec: &'static Spec) -> Values {
-        let mut values = Values::defaults(spec, self.dimension);
-        let silent: Vec<_> = spec.fields.iter().filter(|f| f.default == Unset::Required).collect();
-        // Models whose law needs one of several fields take the first.
-        let first = spec.fields.first().filter(|f| f.default == Unset::Absent);
-        for field in silent.into_iter().chain(first) {
-            if let Some(value) = parameter::starting(spec.kind, field) {
-                // A starting value is an allowed one: a test goes through all of them.
-                let _ = values.set(spec, field.name, value, self.dimension);
-            }
-        }
-        values
     }
 }
 
@@ -106,18 +91,29 @@ impl Properties {
                             dimension,
                             words,
                             values: Some(&obstacle.values),
+                            whole: None,
                         };
-                        self.set(ui, place, obstacle.values.get(field.name), asks);
+                        self.set(ui, place, obstacle.values.get(field.name), asks, |_| None);
                     }
                 });
             }
         });
     }
 
-    fn set(&mut self, ui: &mut Ui, place: Place<'_>, now: Option<&Value>, asks: &mut Vec<Request>) {
-        if let Some(value) = parameter::show(ui, &mut self.hand, place, now) {
-            asks.push(Request::Set(place.path.into(), value));
-        }
+    /// Shows a parameter; `whole` is what to ask for where its kind gets other values.
+    fn set(
+        &mut self,
+        ui: &mut Ui,
+        place: Place<'_>,
+        now: Option<&Value>,
+        asks: &mut Vec<Request>,
+        whole: impl FnOnce(Values) -> Option<Request>,
+    ) {
+        asks.extend(match parameter::show(ui, &mut self.hand, place, now) {
+            Some(Change::Value(value)) => Some(Request::Set(place.path.into(), value)),
+            Some(Change::Whole(values)) => whole(values),
+            None => None,
+        });
     }
 
     fn body(&mut self, ui: &mut Ui, body: &BodyShown, kinds: &Kinds, words: Language, asks: &mut Vec<Request>) {
@@ -161,8 +157,13 @@ impl Properties {
                         dimension,
                         words,
                         values: Some(model),
+                        whole: Some(spec),
                     };
-                    self.set(ui, place, model.get(field.name), asks);
+                    self.set(ui, place, model.get(field.name), asks, |values| {
+                        let mut models = body.models.clone();
+                        models[number] = values;
+                        Some(Request::Models(body.number, models))
+                    });
                 }
                 self.another_model(ui, words, body, number, kinds, asks);
             });
@@ -173,7 +174,7 @@ impl Properties {
                 let button = ui.button(words.kind(Part::Model, spec.kind));
                 if button.on_hover_text(words.summary(Part::Model, spec)).clicked() {
                     let mut models = body.models.clone();
-                    models.push(kinds.begin(spec));
+                    models.push(parameter::begin(spec, kinds.dimension));
                     asks.push(Request::Models(body.number, models));
                     ui.close();
                 }
@@ -221,7 +222,7 @@ impl Properties {
                     let choice = choice.on_hover_text(words.summary(Part::Model, spec));
                     if choice.clicked() && !here {
                         let mut models = body.models.clone();
-                        models[number] = kinds.begin(spec);
+                        models[number] = parameter::begin(spec, kinds.dimension);
                         asks.push(Request::Models(body.number, models));
                     }
                 }
@@ -251,12 +252,21 @@ impl Properties {
             let label = ui.label(words.integrator());
             let salt = ("integrator", body.map(|body| body.title.as_str()));
             let menu = ComboBox::from_id_salt(salt).selected_text(name).show_ui(ui, |ui| {
+                if let Some(body) = body
+                    && ui.selectable_label(now.is_empty(), words.of_the_scene()).clicked()
+                    && !now.is_empty()
+                {
+                    asks.push(Request::AsTheScene(body.number));
+                }
                 for spec in &kinds.integrators {
                     let here = spec.kind == now;
                     let choice = ui.selectable_label(here, words.kind(Part::Integrator, spec.kind));
                     let choice = choice.on_hover_text(words.summary(Part::Integrator, spec));
                     if choice.clicked() && !here {
-                        asks.push(Request::Integrator(body.map(|body| body.number), kinds.begin(spec)));
+                        asks.push(Request::Integrator(
+                            body.map(|body| body.number),
+                            parameter::begin(spec, kinds.dimension),
+                        ));
                     }
                 }
             });
@@ -270,9 +280,18 @@ impl Properties {
                 None => format!("integrator.{}", field.name),
             };
             let dimension = kinds.dimension;
-            let place =
-                Place { path, part: Part::Integrator, kind: spec.kind, field, dimension, words, values: Some(values) };
-            self.set(ui, place, values.get(field.name), asks);
+            let place = Place {
+                path,
+                part: Part::Integrator,
+                kind: spec.kind,
+                field,
+                dimension,
+                words,
+                values: Some(values),
+                whole: Some(spec),
+            };
+            let whole = |values| Some(Request::Integrator(body.map(|body| body.number), values));
+            self.set(ui, place, values.get(field.name), asks, whole);
         }
     }
 
@@ -286,10 +305,18 @@ impl Properties {
                 // It is another body with every value, and the same one for the person.
                 let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
-                let place =
-                    Place { path, part: Part::Shape, kind: spec.kind, field, dimension, words, values: Some(shape) };
+                let place = Place {
+                    path,
+                    part: Part::Shape,
+                    kind: spec.kind,
+                    field,
+                    dimension,
+                    words,
+                    values: Some(shape),
+                    whole: None,
+                };
                 let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
-                let Some(value) = parameter::show(ui, &mut self.hand, place, now) else { continue };
+                let Some(Change::Value(value)) = parameter::show(ui, &mut self.hand, place, now) else { continue };
                 if slider && ui.input(|i| i.pointer.any_down()) {
                     // A new mesh for every step of the hand would be too much: the last one counts.
                     self.pending = Some((body.name.clone(), field.name, value));

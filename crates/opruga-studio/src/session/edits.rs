@@ -5,6 +5,7 @@
 //! taken away and set down anew at rest in its new form.
 
 use super::Session;
+use super::travel::Past;
 use crate::document::{add_table, kind_table, numbers, toml};
 use crate::pair::read;
 use crate::said::{Said, Step};
@@ -53,9 +54,10 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn set(&mut self, path: &str, value: Value) -> Result<(), Said> {
+    /// Sets a parameter; one that is drawn by a hand in a press of a number of its own.
+    pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Said> {
         self.branch()?;
-        let past = self.past(Step::Set(path.into()));
+        let past = Past { press, ..self.past(Step::Set(path.into())) };
         if self.at_start() && self.document.commands() == self.own_commands {
             let mut document = self.document.clone();
             if document.set(path, &value) {
@@ -106,6 +108,29 @@ impl Session {
         self.remember(past);
         self.tell(Severity::Told, Said::GoesOn(name), None);
         Ok(())
+    }
+
+    /// Gives a body the integrator of the scene again. At the start it has none of its own then; a body that moves goes on with
+    /// one of its own that is the same.
+    pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Said> {
+        self.branch()?;
+        let past = self.past(Step::Integrator);
+        let name = self.engine.name(body).unwrap_or_default();
+        if self.at_start() && self.document.commands() == self.own_commands {
+            let mut document = self.document.clone();
+            if let Some(mut table) = document.body(&name)
+                && table.remove("integrator").is_some()
+                && document.replace_body(&name, &table)
+            {
+                self.begin_with(document, self.own_commands)?;
+                self.remember(past);
+                return Ok(());
+            }
+        }
+        match self.engine.shown(&self.show).integrator {
+            Some(values) => self.change(body, None, Some(values)),
+            None => Ok(()),
+        }
     }
 
     /// Another integrator for all bodies that have none of their own.
@@ -163,7 +188,13 @@ impl Session {
             Edit::Place(name, placed) => {
                 let mut table = self.table_of(name)?;
                 self.place(name, &mut table, placed)?;
-                self.exchange(Step::Move, Some(name), Some(table))
+                // Handles turn and scale about the other side or the middle: what was meant is not the way of the middle.
+                let step = match placed {
+                    Placed { scaled, .. } if *scaled != 1.0 => Step::Scale,
+                    Placed { turned, .. } if *turned != 0.0 => Step::Turn,
+                    _ => Step::Move,
+                };
+                self.exchange(step, Some(name), Some(table))
             }
             Edit::Shape(name, field, value) => {
                 let mut table = self.table_of(name)?;
@@ -308,7 +339,7 @@ impl Session {
     }
 
     /// Undoes the first half of what was refused in its second.
-    fn back_to(&mut self, past: super::travel::Past) -> Result<(), Said> {
+    fn back_to(&mut self, past: Past) -> Result<(), Said> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, frame)?;
         self.pins = past.pins;

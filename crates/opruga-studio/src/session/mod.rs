@@ -85,10 +85,14 @@ pub enum Request {
     Unpin(usize, u32),
     /// Set a parameter.
     Set(String, Value),
+    /// Set a parameter by a hand that is down since the press of this number: all that it sets is undone as one.
+    Draw(u64, String, Value),
     /// Give a body other models.
     Models(usize, Vec<Values>),
     /// Give the scene (none) or a body another integrator.
     Integrator(Option<usize>, Values),
+    /// Give a body the integrator of the scene again.
+    AsTheScene(usize),
     /// Change which bodies there are, and where.
     Edit(Edit),
     /// Undo.
@@ -108,11 +112,9 @@ pub enum Request {
 impl Request {
     /// Whether it changes the scene.
     fn is_edit(&self) -> bool {
-        use Request::{Compare, Differ, Edit, Integrator, Models, Redo, Set, Take, Undo};
-        matches!(
-            self,
-            Take(..) | Set(..) | Models(..) | Integrator(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..)
-        )
+        use Request::{AsTheScene, Compare, Differ, Draw, Edit, Integrator, Models, Redo, Set, Take, Undo};
+        let sets = matches!(self, Set(..) | Draw(..) | Models(..) | Integrator(..) | AsTheScene(..));
+        sets || matches!(self, Take(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..))
     }
 }
 
@@ -153,6 +155,8 @@ pub struct Session {
     message: Option<Message>,
     messages: u64,
     opened: u64,
+    /// How often another state took the place of the one before at once.
+    replaced: u64,
     /// What was refused because its step was too long.
     refused: Option<Request>,
     /// The recording that it was opened from.
@@ -173,7 +177,12 @@ impl Session {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn open(name: &str, text: &str, files: Files, options: Options) -> Result<Session, Said> {
-        let document = Document::unread(name, text, &files)?;
+        let document = Document::unread(name, text, &files, None)?;
+        Session::begin(document, files, options)
+    }
+
+    /// A session of a text that was read.
+    fn begin(document: Document, files: Files, options: Options) -> Result<Session, Said> {
         let engine = pair::build(&document, None, &files, &options)?;
         let mut session = Session {
             own_commands: document.commands(),
@@ -201,6 +210,7 @@ impl Session {
             message: None,
             messages: 0,
             opened: 1,
+            replaced: 0,
             refused: None,
             recording: None,
             before: None,
@@ -253,10 +263,12 @@ impl Session {
                 Ok(())
             }
             Request::Unpin(body, node) => self.let_go(body, node),
-            Request::Set(path, value) => self.set(&path, value),
+            Request::Set(path, value) => self.set(&path, value, None),
+            Request::Draw(press, path, value) => self.set(&path, value, Some(press)),
             Request::Models(body, models) => self.change(body, Some(models), None),
             Request::Integrator(Some(body), values) => self.change(body, None, Some(values)),
             Request::Integrator(None, values) => self.integrator(&values),
+            Request::AsTheScene(body) => self.as_the_scene(body),
             Request::Edit(edit) => self.edit(&edit),
             Request::Undo => self.step_back(),
             Request::Redo => self.step_forward(),

@@ -30,7 +30,7 @@ impl Session {
             Offer::HalveStep => {
                 self.go_back_a_second()?;
                 let substeps = self.engine.shown(&self.show).substeps;
-                self.set("time.substeps", Value::Integer(i64::from(substeps) * 2))?;
+                self.set("time.substeps", Value::Integer(i64::from(substeps) * 2), None)?;
                 self.playing = true;
                 Ok(())
             }
@@ -49,7 +49,7 @@ impl Session {
                             if substeps <= MOST_SUBSTEPS
                                 && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
                         {
-                            self.set("time.substeps", Value::Integer(i64::from(with_a_margin(substeps))))?;
+                            self.set("time.substeps", Value::Integer(i64::from(with_a_margin(substeps))), None)?;
                             take(self, &values)?;
                         }
                         outcome => outcome?,
@@ -64,7 +64,7 @@ impl Session {
                 if let Some(Request::Open { name, text, files }) = refused {
                     return self.open_with(&name, &text, files, *substeps);
                 }
-                self.set("time.substeps", Value::Integer(i64::from(*substeps)))?;
+                self.set("time.substeps", Value::Integer(i64::from(*substeps)), None)?;
                 if let Some(request) = refused {
                     self.handle(request);
                 }

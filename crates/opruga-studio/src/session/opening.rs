@@ -7,9 +7,10 @@ use crate::dropping::Shape;
 use crate::handing::named_files;
 use crate::said::{Said, Step};
 use crate::shown::Severity;
-use opruga::WorldError;
 use opruga::core::spec::Value;
 use opruga::io::Files;
+use opruga::{Options, WorldError};
+use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
@@ -53,16 +54,26 @@ impl Session {
             false => Vec::new(),
         };
         // Where it cannot be read, or is of several files, the scene around it tells or shows so.
-        let [(_, bytes)] = &files[..] else { return self.open_around(&shape.name, &shape.text, shape.files.clone()) };
+        let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
         let Some(body) = shape.body(&file, middle, size) else { return Err(Said::NameOfFile(shape.file.clone())) };
         let before = self.files.clone();
         self.files = before.clone().with([(file, Arc::clone(bytes))]);
         let outcome = self.edit(&Edit::Add(body));
-        if outcome.is_err() {
+        outcome.map_err(|said| {
             self.files = before;
-        }
-        outcome
+            match said {
+                // What is said of no other file is said of this one.
+                Said::Because(text) => {
+                    let of_file = |line: &str| match line.starts_with("error[") {
+                        true => format!("{}: {line}", shape.file),
+                        false => line.into(),
+                    };
+                    Said::Because(text.lines().map(of_file).collect::<Vec<_>>().join("\n"))
+                }
+                said => said,
+            }
+        })
     }
 
     /// A name under which the scene can hold a file of these bytes: its own, or one with a number.
@@ -71,25 +82,45 @@ impl Session {
         let numbered = |number: u32| if number == 1 { file.to_string() } else { format!("{stem}-{number}.{ending}") };
         let free = |name: &String| match self.files.held_file(name) {
             Some(held) => held == bytes,
-            None => self.files.path_of(name).is_none_or(|path| !path.exists()),
+            // The same file may lie beside the scene already.
+            None => self.files.path_of(name).is_none_or(|path| !path.exists() || holds(&path, bytes)),
         };
         (1..=u32::MAX).map(numbered).find(free).unwrap_or_else(|| file.to_string())
     }
 
-    /// The scene around a shape, with as many substeps as it needs.
-    fn open_around(&mut self, name: &str, text: &str, files: Files) -> Result<(), Said> {
-        match self.open_another(name, text, files.clone()) {
+    /// A session of the scene around a shape, with as many substeps as it needs.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn around(shape: &Shape, options: &Options) -> Result<Session, Said> {
+        let document = Document::unread(&shape.name, &shape.text, &shape.files, Some(&shape.file))?;
+        match Session::begin(document.clone(), shape.files.clone(), options.clone()) {
             Err(Said::World(WorldError::UnstableStep { substeps, .. })) => {
-                self.open_with(name, text, files, with_a_margin(substeps))
+                let mut finer = document;
+                finer.set("time.substeps", &Value::Integer(i64::from(with_a_margin(substeps))));
+                Session::begin(finer, shape.files.clone(), options.clone())
             }
             outcome => outcome,
         }
     }
 
-    /// The same with so many substeps.
+    /// Opens the scene around a shape.
+    fn open_around(&mut self, shape: &Shape) -> Result<(), Said> {
+        let next = Session::around(shape, &self.options)?;
+        self.go_over_to(next, true);
+        Ok(())
+    }
+
+    /// Opens a scene with so many substeps.
     pub(super) fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Said> {
         let mut document = Document::new(name, text)?;
         document.set("time.substeps", &Value::Integer(i64::from(substeps)));
         self.open_another(name, &document.text(), files)
     }
+}
+
+/// Whether a file holds these bytes and no others.
+fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let long = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() == bytes.len() as u64);
+    long && std::fs::read(path).is_ok_and(|held| held == bytes)
 }

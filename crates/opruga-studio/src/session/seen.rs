@@ -21,6 +21,7 @@ impl Session {
         shown.redo = self.redo.last().map(|past| past.label.clone());
         shown.message.clone_from(&self.message);
         shown.opened = self.opened;
+        shown.replaced = self.replaced;
         shown.recorded = self.document.commands().saturating_sub(self.own_commands);
         shown.recorded_until = self.recorded_until();
         shown.samples = Arc::clone(&self.samples);

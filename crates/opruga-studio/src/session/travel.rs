@@ -21,6 +21,8 @@ pub(super) struct Past {
     pub(super) frame: u64,
     pub(super) pins: Vec<Pinned>,
     pub(super) differences: Option<Vec<Difference>>,
+    /// The press of the hand that drew a parameter, where one did.
+    pub(super) press: Option<u64>,
 }
 
 impl Session {
@@ -40,6 +42,7 @@ impl Session {
 
     /// Makes a frame the one to go on to in the coming ticks, or stays there.
     fn head_for(&mut self, frame: u64) {
+        self.replaced += 1;
         self.goal = (frame > self.engine.frames()).then_some(frame);
         self.sample();
         if self.goal.is_none() {
@@ -51,6 +54,7 @@ impl Session {
     /// Ends the way to a moment. At the end of what is known, what was done there while time stood still is seen at once;
     /// earlier it is not, since what is done anew there takes the place of all that followed.
     pub(super) fn arrive(&mut self) {
+        self.replaced += 1;
         self.goal = None;
         self.pacing.rest();
         if self.engine.frames() >= self.latest
@@ -98,14 +102,19 @@ impl Session {
             frame: self.engine.frames(),
             pins: self.pins.clone(),
             differences: self.differences.clone(),
+            press: None,
         }
     }
 
     /// Remembers the moment before something was done.
     pub(super) fn remember(&mut self, past: Past) {
-        // A slider that is drawn is one edit; two bodies that are added at one moment are two.
-        let same =
-            |last: &Past| matches!(past.label, Step::Set(_)) && last.label == past.label && last.frame == past.frame;
+        // A slider that is drawn is one edit, from the press to where it is let go, however much time passes meanwhile; two
+        // bodies that are added at one moment are two.
+        let together = |last: &Past| match (last.press, past.press) {
+            (Some(one), Some(other)) => one == other,
+            _ => last.frame == past.frame,
+        };
+        let same = |last: &Past| matches!(past.label, Step::Set(_)) && last.label == past.label && together(last);
         if !self.undo.last().is_some_and(same) {
             self.undo.push(past);
         }

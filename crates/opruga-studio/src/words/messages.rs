@@ -30,6 +30,8 @@ impl Language {
             Step::Add => self.step_add().into(),
             Step::Duplicate => self.step_duplicate().into(),
             Step::Move => self.step_move().into(),
+            Step::Turn => self.step_turn().into(),
+            Step::Scale => self.step_scale().into(),
             Step::Delete => self.step_delete().into(),
             Step::Open(name) => format!("{} {name}", self.step_open()),
             Step::Pin => self.step_pin().into(),

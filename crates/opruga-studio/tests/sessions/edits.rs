@@ -2,6 +2,7 @@
 
 use super::{arrive, assert_replays, integrator, no_refusal, open, pass};
 use opruga::core::spec::Value;
+use opruga_studio::said::Step;
 use opruga_studio::session::{Edit, Placed, Request, Session};
 
 #[test]
@@ -115,4 +116,83 @@ fn a_body_that_is_set_down_anew_keeps_the_name_by_which_it_is_known() {
         session.handle(Request::Undo);
     }
     assert_eq!(titles(&mut session), ["ball"]);
+}
+
+#[test]
+fn what_a_hand_draws_from_its_press_on_is_undone_as_one_however_many_frames_pass_meanwhile() {
+    let mut session = open("ball");
+    pass(&mut session, 5);
+    let before = session.hash();
+    let stiffness = "body.ball.models.mass_spring.stiffness";
+    for k in 0..20 {
+        session.handle(Request::Draw(7, stiffness.into(), Value::Number(1600.0 - 10.0 * f64::from(k))));
+        pass(&mut session, 1);
+    }
+    let drawn = session.hash();
+    // Another press is another edit, also of the same field and at the same moment.
+    for k in 0..2 {
+        session.handle(Request::Draw(8 + k, stiffness.into(), Value::Number(900.0 + k as f64)));
+    }
+    assert_replays(&session);
+    for (hash, frame) in [(drawn, 25), (drawn, 25), (before, 5)] {
+        assert_eq!(session.shown().undo, Some(Step::Set(stiffness.into())));
+        session.handle(Request::Undo);
+        arrive(&mut session);
+        assert_eq!(session.frames(), frame);
+        if frame == 5 {
+            assert_eq!(session.hash(), hash);
+        }
+    }
+    assert_eq!(session.shown().undo, None);
+    assert_eq!(session.shown().bodies[0].models[0].number("stiffness"), Some(1600.0));
+}
+
+#[test]
+fn an_arrow_of_gravity_that_is_drawn_is_one_edit_too() {
+    let mut session = open("ball");
+    for k in 0..10 {
+        session.handle(Request::Draw(1, "world.gravity".into(), Value::Numbers(vec![0.1 * f64::from(k), -9.81])));
+        pass(&mut session, 2);
+    }
+    assert_replays(&session);
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert_eq!((session.frames(), session.shown().undo, session.shown().gravity), (0, None, [0.0, -9.81, 0.0]));
+}
+
+#[test]
+fn a_body_goes_back_to_the_integrator_of_the_scene() {
+    let mut session = open("ball");
+    let of_scene = session.shown().integrator;
+    session.handle(Request::Integrator(Some(0), integrator("symplectic_euler")));
+    assert_eq!(session.shown().bodies[0].integrator.as_ref().map(|values| values.kind()), Some("symplectic_euler"));
+    session.handle(Request::AsTheScene(0));
+    no_refusal(&mut session);
+    assert_eq!((session.shown().bodies[0].integrator.clone(), session.shown().recorded), (None, 0));
+    session.handle(Request::Undo);
+    arrive(&mut session);
+    assert!(session.shown().bodies[0].integrator.is_some());
+    // On the way it is a command, and the body has an integrator of its own that is the same.
+    pass(&mut session, 3);
+    session.handle(Request::AsTheScene(0));
+    no_refusal(&mut session);
+    assert_eq!(session.shown().bodies[0].integrator, of_scene);
+    pass(&mut session, 3);
+    assert_replays(&session);
+}
+
+#[test]
+fn a_turn_and_a_scaling_are_undone_by_their_names() {
+    let mut session = open("ball");
+    let place = |moved: [f64; 3], turned: f64, scaled: f64| {
+        Request::Edit(Edit::Place("ball".into(), Placed { moved, turned, scaled }))
+    };
+    for (request, step) in [
+        (place([0.1, 0.0, 0.0], 0.0, 1.0), Step::Move),
+        (place([0.0; 3], 0.3, 1.0), Step::Turn),
+        (place([0.1, 0.0, 0.0], 0.0, 1.1), Step::Scale),
+    ] {
+        session.handle(request);
+        assert_eq!(session.shown().undo, Some(step));
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::{arrive, no_refusal, open, pass, pull, refusal, replayed};
 use opruga::Options;
+use opruga::io::Files;
 use opruga_studio::panels::keeping::{What, content};
 use opruga_studio::session::{Request, Session};
 use opruga_studio::shown::Show;
@@ -69,6 +70,36 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     assert_eq!(session.shown().dimension, 3);
     session.handle(Request::Undo);
     assert_eq!((session.shown().bodies.len(), session.name()), (3, name.as_str()));
+    std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+/// There is no scene around such a file that anybody has seen, nor another file of its name.
+#[test]
+fn what_is_wrong_with_a_file_that_is_dropped_is_said_of_that_file_and_it_keeps_its_name() {
+    use opruga_studio::dropping::take;
+    let folder = std::env::temp_dir().join(format!("opruga-dropped-names-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("dir.obj")).expect("a folder");
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    };
+    let ball = opruga::scenes::find("ball").expect("it");
+    let beside = Files::beside(&folder.join("ball.toml"));
+    let mut session = Session::open("ball", ball, beside, Options::default()).expect("it opens");
+    for (path, name) in [
+        (put("cut.obj", b"v 0 0"), "cut.obj"),
+        (folder.join("dir.obj"), "dir.obj"),
+        (put("cut.svg", b"<svg"), "cut.svg"),
+    ] {
+        session.handle(take(&path).expect("a shape by its name"));
+        let said = refusal(&mut session);
+        assert!(said.starts_with(&format!("{name}:")) && !said.contains(".toml"), "{said}");
+    }
+    let svg = b"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\"><path d=\"M0 0 H10 V10 H0 Z\"/></svg>";
+    session.handle(take(&put("square.svg", svg)).expect("a shape"));
+    no_refusal(&mut session);
+    assert!(session.saved().contains("\"square.svg\""), "{}", session.saved());
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 

@@ -31,6 +31,8 @@ fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
         arrive(&mut session);
         let said = refusal(&mut session);
         assert!(said.contains(word), "{asked}: {said}");
+        // Nobody has seen the text that the studio writes: its lines say nothing.
+        assert!(!said.contains("ball.toml"), "{asked}: {said}");
         assert_eq!((session.hash(), session.text()), (hash, text.clone()), "{asked}");
     }
     // The step that would do is offered, and taken.

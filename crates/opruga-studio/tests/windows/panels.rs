@@ -4,6 +4,7 @@ use super::screen::window::{SIZE, Window, top_of};
 use egui::{Key, Modifiers, PointerButton, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use opruga::core::spec::Value;
+use opruga_studio::said::Said;
 use opruga_studio::session::{Edit, Request};
 use opruga_studio::shown::Severity;
 
@@ -100,4 +101,72 @@ fn the_time_in_which_nothing_was_drawn_is_not_counted_in_the_rate_of_pictures() 
         assert!(!rate(3.0), "nobody knows");
         assert!(rate(1.0 / 60.0) && rate(1.0 / 60.0));
     }
+}
+
+#[test]
+fn models_whose_law_needs_one_of_two_fields_are_added_and_the_fields_take_each_others_place() {
+    let mut window = Window::open("ball", TALL);
+    window.click("pressure [Pa] instead of nRT");
+    window.until("a pressure", |shown| {
+        let gas = &shown.bodies[0].models[1];
+        gas.number("pressure").is_some() && gas.number("nRT").is_none()
+    });
+    window.frames(10);
+    window.click("nRT [J] instead of pressure");
+    window.until("a quantity", |shown| shown.bodies[0].models[1].number("nRT").is_some());
+    assert!(window.shown().message.as_ref().is_none_or(|message| message.severity == Severity::Told));
+}
+
+#[test]
+fn a_slider_that_is_drawn_while_time_passes_is_one_edit() {
+    let mut window = Window::open("ball", TALL);
+    window.studio().ask(Request::Play(true));
+    window.until("time passes", |shown| shown.frames > 2);
+    let rect = window.harness.get_by_role_and_label(Role::Slider, "stiffness [N/m]").rect();
+    let at = |x: f32| egui::pos2(rect.left() + x, rect.center().y);
+    window.pointer(at(100.0));
+    window.button(at(100.0), PointerButton::Primary, true, Modifiers::NONE);
+    for k in 1..8u8 {
+        let frame = window.shown().frames;
+        window.pointer(at(100.0 - 3.0 * f32::from(k)));
+        window.until("a frame passes", |shown| shown.frames > frame + 1);
+    }
+    window.button(at(79.0), PointerButton::Primary, false, Modifiers::NONE);
+    window.studio().ask(Request::Play(false));
+    window.until("it was set", |shown| !shown.playing && shown.undo.is_some());
+    assert_ne!(window.shown().bodies[0].models[0].number("stiffness"), Some(1600.0));
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("undone", |shown| shown.undo.is_none());
+    window.until("as it was", |shown| shown.bodies[0].models[0].number("stiffness") == Some(1600.0));
+}
+
+#[test]
+fn what_the_window_says_is_seen_after_what_the_session_has_said() {
+    let mut window = Window::open("ball", SIZE);
+    window.studio().ask(Request::Set("world.gravity".into(), Value::Number(1.0)));
+    window.until("a refusal", |shown| shown.message.is_some());
+    let says = |window: &Window| window.harness.query_by_label_contains("The link is copied").is_some();
+    assert!(!says(&window));
+    window.harness.state_mut().as_mut().expect("a window").tell(Severity::Told, Said::LinkCopied);
+    window.frames(3);
+    assert!(says(&window));
+    // What is said by the session then is newer.
+    window.studio().ask(Request::Set("world.gravity".into(), Value::Number(2.0)));
+    let first = window.shown().message.as_ref().map(|message| message.number);
+    window.until("another refusal", |shown| shown.message.as_ref().map(|message| message.number) != first);
+    window.frames(3);
+    assert!(!says(&window));
+}
+
+#[test]
+fn the_keys_fit_into_a_low_window() {
+    let mut window = Window::open("ball", [640.0, 400.0]);
+    window.key(Modifiers::NONE, Key::Questionmark);
+    window.frames(30);
+    let first = window.harness.get_by_label_contains("play or pause").rect();
+    assert!(first.top() > 0.0 && first.bottom() < 400.0, "{first:?}");
+    window.harness.get_by_label("this help").scroll_to_me();
+    window.frames(60);
+    let last = window.harness.get_by_label("this help").rect();
+    assert!(last.top() > 0.0 && last.bottom() < 400.0, "{last:?}");
 }
