@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// How often every pair of runs is measured; a ratio is their median.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 7;
 /// Processor time of one run [s].
 const SECONDS: f64 = 0.3;
 /// Rings and vertices of the rows that are compared with the baseline.
