@@ -151,8 +151,8 @@ fn what_the_window_says_is_seen_after_what_the_session_has_said() {
     window.frames(3);
     assert!(says(&window));
     // What is said by the session then is newer.
-    window.studio().ask(Request::Set("world.gravity".into(), Value::Number(2.0)));
     let first = window.shown().message.as_ref().map(|message| message.number);
+    window.studio().ask(Request::Set("world.gravity".into(), Value::Number(2.0)));
     window.until("another refusal", |shown| shown.message.as_ref().map(|message| message.number) != first);
     window.frames(3);
     assert!(!says(&window));
