@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::collider::{Collider, Law, Part};
-use crate::entries::{Found, arrays, look_for_entries, look_for_supports};
+use crate::entries::{Found, Ways, arrays};
 use crate::facet_contacts::{Placed, hold_back_by_facets};
 use crate::motion::{Carry, Frame, Pose};
 use crate::picture::{Picture, picture};
@@ -373,14 +373,16 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             gap -= thickness;
             if any_asked {
                 let mut found = Found { gap: gap.to_array(), normal: arrays(&normal) };
-                let way = [arrays(&before), arrays(&x)];
-                let (held, asked) = (self.held.pack::<P>(k).to_array(), asked.to_array());
+                let ways = Ways {
+                    ends: [arrays(&before), arrays(&x)],
+                    asked: asked.to_array(),
+                    held: self.held.pack::<P>(k).to_array(),
+                    small: rounding(law, if lies { &before } else { &x }).to_array(),
+                };
                 if lies {
-                    let small = rounding(law, &before).to_array();
-                    look_for_supports(shape, law.thickness, &small, &held, &way, &asked, &mut found);
+                    ways.look_for_supports(shape, law.thickness, &mut found);
                 } else {
-                    let small = rounding(law, &x).to_array();
-                    look_for_entries(shape, law.thickness, &small, &held, &way, &asked, &mut found);
+                    ways.look_for_entries(shape, law.thickness, &mut found);
                 }
                 gap = P::from_array(found.gap);
                 normal = lanes!(P, d => P::from_array(found.normal[d]));

@@ -28,44 +28,48 @@ pub(crate) fn arrays<P: Pack, const D: usize>(packs: &[P; D]) -> [[f64; WIDTH]; 
     out
 }
 
-/// For the nodes that are asked for: whether they came into the shape on their way, and where.
-#[inline(never)]
-pub(crate) fn look_for_entries<T: Shape<D>, const D: usize>(
-    shape: &T,
-    margin: f64,
-    small: &[f64; WIDTH],
-    held: &[f64; WIDTH],
-    way: &[[[f64; WIDTH]; D]; 2],
-    asked: &[f64; WIDTH],
-    found: &mut Found<D>,
-) {
-    for l in (0..WIDTH).filter(|l| asked[*l] != 0.0) {
-        let [a, b]: [[f64; D]; 2] = [0, 1].map(|end: usize| lanes!(f64, d => way[end][d][l]));
-        // What something else keeps on the surface passes edges, on which no face is in its way. What lies exactly where two
-        // solids meet, and is kept by nothing, is in both of them.
-        let kept = T::FACES && held[l] > 0.0 && found.gap[l] >= -small[l];
-        if kept && is_on_edge(shape, margin, &b) {
-            found.set(l, (f64::INFINITY, [0.0; D]));
-        } else if !kept && let Some(entered) = entry(shape, margin, &a, &b) {
-            found.set(l, entered);
-        }
-    }
+/// The nodes of a pack on their ways.
+pub(crate) struct Ways<const D: usize> {
+    /// Where they began, carried along with the shape, and where they are [m].
+    pub(crate) ends: [[[f64; WIDTH]; D]; 2],
+    /// Whether a node is looked at, and whether something has held it already in this step: above 0.
+    pub(crate) asked: [f64; WIDTH],
+    pub(crate) held: [f64; WIDTH],
+    /// What counts as rounding there [m].
+    pub(crate) small: [f64; WIDTH],
 }
 
-/// For the nodes that are asked for: whether they lay on the shape and go into it. Others are far away.
-#[inline(never)]
-pub(crate) fn look_for_supports<T: Shape<D>, const D: usize>(
-    shape: &T,
-    margin: f64,
-    small: &[f64; WIDTH],
-    held: &[f64; WIDTH],
-    way: &[[[f64; WIDTH]; D]; 2],
-    asked: &[f64; WIDTH],
-    found: &mut Found<D>,
-) {
-    for l in 0..WIDTH {
-        let [a, b]: [[f64; D]; 2] = [0, 1].map(|end: usize| lanes!(f64, d => way[end][d][l]));
-        let supported = if asked[l] == 0.0 { None } else { support(shape, margin, small[l], [&a, &b], held[l] > 0.0) };
-        found.set(l, supported.unwrap_or((f64::INFINITY, [0.0; D])));
+impl<const D: usize> Ways<D> {
+    /// The ends of the way of a node.
+    fn of(&self, lane: usize) -> [[f64; D]; 2] {
+        self.ends.each_ref().map(|end| lanes!(f64, d => end[d][lane]))
+    }
+
+    /// Finds whether nodes came into a shape on their way, and where; what is found of the others stays.
+    #[inline(never)]
+    pub(crate) fn look_for_entries<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
+        for l in (0..WIDTH).filter(|l| self.asked[*l] != 0.0) {
+            let [a, b] = self.of(l);
+            // What something else keeps on the surface passes edges, on which no face is in its way. What lies exactly where
+            // two solids meet, and is kept by nothing, is in both of them.
+            let kept = T::FACES && self.held[l] > 0.0 && found.gap[l] >= -self.small[l];
+            if kept && is_on_edge(shape, margin, &b) {
+                found.set(l, (f64::INFINITY, [0.0; D]));
+            } else if !kept && let Some(entered) = entry(shape, margin, &a, &b) {
+                found.set(l, entered);
+            }
+        }
+    }
+
+    /// Finds whether nodes lay on a shape and go into it. Others are far away.
+    #[inline(never)]
+    pub(crate) fn look_for_supports<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
+        for l in 0..WIDTH {
+            let [a, b] = self.of(l);
+            let asked = self.asked[l] != 0.0;
+            let supported =
+                if asked { support(shape, margin, self.small[l], [&a, &b], self.held[l] > 0.0) } else { None };
+            found.set(l, supported.unwrap_or((f64::INFINITY, [0.0; D])));
+        }
     }
 }

@@ -72,36 +72,35 @@ impl<const D: usize> Way<'_, D> {
         let (margin, carried) = (collider.law.thickness, Carry::along(carry, self.from));
         let small = rounding(&collider.law, &carried);
         let near = rounding(&collider.law, self.to);
-        let mut faces = self.faces;
+        let Way { to, kept, faces, .. } = self;
         for part in &collider.parts {
-            let held = self.kept != *self.to;
+            let held = *kept != **to;
             let found = match part {
-                Part::HalfSpace(shape) => support(&shape.posed(pose), margin, small, [&carried, &self.kept], held),
+                Part::HalfSpace(shape) => support(&shape.posed(pose), margin, small, [&carried, kept], held),
                 Part::Cuboid(shape) => {
                     let shape = shape.posed(pose);
                     if margin <= near {
-                        let gap = shape.gap(self.to);
+                        let gap = shape.gap(to);
                         if gap.abs() <= near {
-                            shape.visit_faces(self.to, near, &mut |_, normal| faces.add(normal));
+                            shape.visit_faces(to, near, &mut |_, normal| faces.add(normal));
                         }
                     }
-                    support(&shape, margin, small, [&carried, &self.kept], held)
+                    support(&shape, margin, small, [&carried, kept], held)
                 }
                 Part::Facets(facets) if facets.solid => {
-                    let (from, to) = (pose.unplace(&carried), pose.unplace(&self.kept));
-                    let (end, grain) = (pose.unplace(self.to), facets.grain().larger(near));
+                    let (end, grain) = (pose.unplace(to), facets.grain().larger(near));
                     if margin <= grain && facets.gap(&end).abs() <= grain {
                         facets.visit_faces(&end, grain, &mut |_, normal| faces.add(pose.direct(&normal)));
                     }
-                    support(facets, margin, small, [&from, &to], held).map(|(gap, normal)| (gap, pose.direct(&normal)))
+                    let way = [&pose.unplace(&carried), &pose.unplace(kept)];
+                    support(facets, margin, small, way, held).map(|(gap, normal)| (gap, pose.direct(&normal)))
                 }
                 Part::Ball(_) | Part::Capsule(_) | Part::Facets(_) => None,
             };
             if let Some((gap, normal)) = found {
-                self.kept = subtract(&self.kept, &scaled(&normal, gap));
+                *kept = subtract(kept, &scaled(&normal, gap));
             }
         }
-        self.faces = faces;
     }
 
     /// Calls back with the surfaces of a collider that the node has come to; they are numbered from `first` on.

@@ -13,7 +13,7 @@
 use super::rigid::{Motion, Projection, center, displacement, of_weights, shape_at, unpinned_motions};
 use opruga_core::potential::{Account, Definiteness};
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{Member, System};
+use opruga_core::system::{Member, Stage, System};
 use opruga_core::tile::Tile;
 use opruga_math::{Column, WIDTH};
 use opruga_solve::dense::symmetric_eigen;
@@ -106,14 +106,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
         let shape = |motion| shape_at(x, system.nodes, self.piece, motion, &self.center);
         let shapes: Vec<Vec<f64>> = self.motions.iter().map(shape).collect();
         let rest = Columns::zeros(system.places());
-        let view = View {
-            x: x.slices(),
-            v: rest.slices(),
-            nodes: system.nodes,
-            layout: system.layout,
-            time,
-            threads: system.threads,
-        };
+        let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, time) };
         let mut force = vec![[0.0; D]; system.nodes];
         let mut part = vec![0.0; n * n];
         let mut size = 0.0;

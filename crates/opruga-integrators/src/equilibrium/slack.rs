@@ -8,7 +8,7 @@ use super::restraint::{TURN, add_forces_of, pose, unstiffened_motions};
 use super::rigid::{Motion, center, shape_at};
 use opruga_core::potential::Account;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::System;
+use opruga_core::system::{Stage, System};
 use opruga_math::Column;
 
 /// Forces below this part of those of a stretch of the same length are rounding.
@@ -49,14 +49,7 @@ fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<
 /// The forces of the body's own models with its nodes at the given places, at rest; none where a model refuses them.
 fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<[f64; D]>> {
     let rest = Columns::zeros(system.places());
-    let view = View {
-        x: x.slices(),
-        v: rest.slices(),
-        nodes: system.nodes,
-        layout: system.layout,
-        time: system.time,
-        threads: system.threads,
-    };
+    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     let mut force = vec![[0.0; D]; system.nodes];
     for member in system.members.iter().filter(|member| member.potential.account() != Account::User) {
         let mut scratch = Column::zeros(member.potential.scratch_len());
