@@ -58,7 +58,7 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let world = Options { threads: call.threads.into(), simd, allow_unstable, batches: true };
+    let world = Options { threads: call.threads.into(), simd, allow_unstable, ..Options::default() };
     let Whole { blueprint, notices, files } = source.read(&reading, &world)?;
     let mut told: Vec<WarningSummary> = notices
         .iter()

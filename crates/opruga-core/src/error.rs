@@ -78,6 +78,9 @@ pub enum StepError {
         /// What helps under the settings of the rule.
         hint: &'static str,
     },
+    /// The step was broken off from outside.
+    #[error("the step was broken off")]
+    BrokenOff,
     /// A model has no meaning in this state.
     #[error("{model}: {message}")]
     Model {

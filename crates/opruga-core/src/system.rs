@@ -85,6 +85,8 @@ pub struct Member<const D: usize> {
 pub struct System<const D: usize> {
     /// The vector instructions in force.
     pub simd: Simd,
+    /// Set from outside, it ends a step that takes long, with [`crate::error::StepError::BrokenOff`].
+    pub break_off: std::sync::Arc<std::sync::atomic::AtomicBool>,
     /// Threads that the work on this system may be spread over; it then runs in a pool of them. They change no bits.
     pub threads: usize,
     /// One body or eight.
@@ -154,6 +156,7 @@ impl<const D: usize> System<D> {
         let one_mass = Parameter::column((0..nodes * layout.stride()).map(|p| inverse.at(p)).collect());
         System {
             simd,
+            break_off: Default::default(),
             threads: 1,
             layout,
             nodes,
@@ -180,6 +183,16 @@ impl<const D: usize> System<D> {
             before: core::array::from_fn(|_| Column::default()),
             velocity_before: core::array::from_fn(|_| Column::default()),
             slots: Column::default(),
+        }
+    }
+    /// Goes on with a step that takes long.
+    ///
+    /// # Errors
+    /// [`StepError::BrokenOff`] where it shall end: what was made of it is to be taken back.
+    pub fn go_on(&self) -> Result<(), StepError> {
+        match self.break_off.load(std::sync::atomic::Ordering::Relaxed) {
+            true => Err(StepError::BrokenOff),
+            false => Ok(()),
         }
     }
     /// The masses by which the nodes weigh [kg]: their own, or with a consistent mass matrix ∫ρNₐ.

@@ -124,7 +124,7 @@ fn path_of(error: &WorldError) -> String {
             format!("body.{}", body.split('[').next().unwrap_or(body))
         }
         WorldError::Path { path, .. } => body(path).unwrap_or_default(),
-        WorldError::Snapshot(_) => String::new(),
+        WorldError::Snapshot(_) | WorldError::BrokenOff => String::new(),
     }
 }
 

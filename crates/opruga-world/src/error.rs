@@ -84,6 +84,9 @@ pub enum WorldError {
         /// What helps under the settings of the integrator.
         hint: &'static str,
     },
+    /// The frame was broken off from outside ([`crate::Options::break_off`]).
+    #[error("the frame was broken off; the world is at its last good frame")]
+    BrokenOff,
     /// A name, path or value does not fit.
     #[error("`{path}`: {message}")]
     Path {
@@ -106,6 +109,7 @@ impl WorldError {
             WorldError::Diverged { .. } => "run.diverged",
             WorldError::Step { .. } => "run.model",
             WorldError::NotConverged { .. } => "run.not_converged",
+            WorldError::BrokenOff => "run.broken_off",
             WorldError::Path { .. } => "path.unknown",
             WorldError::Snapshot(_) => "snapshot.damaged",
         }

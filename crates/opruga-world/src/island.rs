@@ -208,7 +208,10 @@ impl<const D: usize> Island<D> {
             }
             Err(error) => {
                 self.restore();
-                let named = self.name_culprit(plan).unwrap_or(error);
+                let named = match error {
+                    StepError::BrokenOff => error,
+                    error => self.name_culprit(plan).unwrap_or(error),
+                };
                 self.restore();
                 self.system.work = Work8::default();
                 Err(named)
@@ -223,6 +226,7 @@ impl<const D: usize> Island<D> {
             self.system.contacts = Some(Arc::clone(colliders).into_contacts());
         }
         for substep in 0..plan.substeps {
+            self.system.go_on()?;
             self.system.time = plan.start + f64::from(substep) * plan.h;
             self.system.lead_pins(plan.h);
             self.integrator.step(&mut self.system, plan.h)?;

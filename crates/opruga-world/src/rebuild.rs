@@ -130,7 +130,8 @@ impl<const D: usize> World<D> {
     }
 
     /// Puts an island that was just built in its place; what commands do at present is added to it.
-    fn put(&mut self, number: usize, island: Island<D>) {
+    fn put(&mut self, number: usize, mut island: Island<D>) {
+        island.system.break_off = Arc::clone(&self.options.break_off);
         if number < self.islands.len() {
             self.islands[number] = island;
         } else {

@@ -21,7 +21,7 @@ use opruga_core::threads::together;
 use opruga_math::Simd;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The largest number of threads.
@@ -38,11 +38,14 @@ pub struct Options {
     pub allow_unstable: bool,
     /// Alike bodies are stepped eight at a time.
     pub batches: bool,
+    /// Set from outside, it ends a frame that takes long within a substep, with [`WorldError::BrokenOff`] and at the last good frame. It
+    /// is taken back from outside too.
+    pub break_off: Arc<AtomicBool>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { threads: 1, simd: None, allow_unstable: false, batches: true }
+        Options { threads: 1, simd: None, allow_unstable: false, batches: true, break_off: Arc::default() }
     }
 }
 
@@ -231,6 +234,7 @@ impl<const D: usize> World<D> {
                     let (body, last) = (body(*local), self.time());
                     WorldError::Diverged { body, node: *node, time: *time, last, range: *range }
                 }
+                Err(StepError::BrokenOff) => WorldError::BrokenOff,
                 Err(StepError::Model { model, message }) => {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }
                 }

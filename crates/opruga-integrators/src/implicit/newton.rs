@@ -112,6 +112,7 @@ pub(crate) fn solve<const D: usize>(
     // What the next direction is made of first, and the correction of the last iteration that went all of its way.
     let (mut first, mut before) = (Keep::Exact, f64::INFINITY);
     while solved.iterations < settings.iterations {
+        system.go_on()?;
         solved.iterations += 1;
         // Which nodes are held, and how far they have to go.
         let mut changed = look(system, room, balance, true);

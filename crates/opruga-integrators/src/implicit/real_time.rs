@@ -338,6 +338,7 @@ fn iterate<const D: usize>(
     }
     let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
     loop {
+        system.go_on()?;
         let last = solved.iterations == settings.iterations;
         // Which nodes are held, and how far they have to go.
         let mut moves = false;

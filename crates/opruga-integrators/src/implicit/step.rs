@@ -139,7 +139,8 @@ fn advance_in<R: Rule<D>, const D: usize>(
         system.work = work;
         system.work.solver = solver;
         // In real time nobody waits for another setting.
-        let halves = settings.otherwise == Otherwise::Halve || settings.real_time;
+        let broken_off = matches!(outcome, Err(StepError::BrokenOff));
+        let halves = !broken_off && (settings.otherwise == Otherwise::Halve || settings.real_time);
         if halves && halvings < MOST_HALVINGS {
             system.work.solver.halved += 1;
             advance_in(rule, settings, system, room, 0.5 * h, halvings + 1)?;

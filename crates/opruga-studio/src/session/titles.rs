@@ -84,7 +84,7 @@ impl Titles {
             WorldError::Path { path, message } => {
                 (*path, *message) = (self.in_path(path), self.in_text(message));
             }
-            WorldError::Snapshot(_) => {}
+            WorldError::Snapshot(_) | WorldError::BrokenOff => {}
         }
         error
     }

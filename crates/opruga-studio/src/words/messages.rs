@@ -232,6 +232,7 @@ impl Language {
                     None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
                 }
             }
+            WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),
             WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
             WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),
         }

@@ -143,7 +143,7 @@ impl Sweep {
         clock: &dyn Fn() -> f64,
         stop: &AtomicBool,
     ) -> Option<Row> {
-        let options = Options { threads: 1, simd, allow_unstable: self.allow_unstable, batches: true };
+        let options = Options { threads: 1, simd, allow_unstable: self.allow_unstable, ..Options::default() };
         let run = Run { sweep: self, options, clock, stop };
         let outcome = match self.read(point) {
             Ok(AnyBlueprint::Plane(blueprint)) => run.measure(&blueprint),
