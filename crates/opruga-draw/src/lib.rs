@@ -31,6 +31,7 @@ pub use eye::{Eye, Lens, scene as draw_scene};
 pub use fitting::Fitting;
 pub use image::Image;
 pub use layout::Style;
+pub use marks::{arrow_colour, arrow_unit};
 pub use picture::{
     AreaPicture, ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Legend, Picture, PullPicture,
     RestPicture, Sight,

@@ -15,7 +15,7 @@ const SUPPORT_ROOM: f32 = 17.0;
 const CROWD: usize = 50;
 
 /// The colour of a kind of arrow.
-pub(crate) fn arrow_colour(kind: ArrowKind) -> [u8; 3] {
+pub fn arrow_colour(kind: ArrowKind) -> [u8; 3] {
     match kind {
         ArrowKind::Force => INK,
         ArrowKind::Pressure => OKABE_ITO[0],
@@ -43,7 +43,7 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
 }
 
 /// The unit of a kind of arrow, where lengths have a unit of their own.
-pub(crate) fn arrow_unit(kind: ArrowKind, length: &str) -> String {
+pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     match (kind, length) {
         (ArrowKind::Normal, _) => String::new(),
         (ArrowKind::Pressure, "m") => "Pa".into(),
