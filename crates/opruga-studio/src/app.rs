@@ -9,7 +9,7 @@ use crate::hand::{Arrived, Hand};
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
 use crate::panels::properties::Properties;
-use crate::panels::{bars, palette, plots};
+use crate::panels::{bars, palette, plots, status};
 use crate::runner::Link;
 use crate::said::Said;
 use crate::session::{Edit, Placed, Request, Session};
@@ -56,8 +56,8 @@ pub struct Studio {
     closed: u64,
     /// Who spoke last.
     heard: message::Heard,
-    /// What was told last, and since when: it goes by itself.
-    told: (String, f64),
+    /// What was told last, since when, and where: it goes by itself.
+    told: (String, f64, Align2),
     /// Pictures of the interface in a second.
     rate: f64,
     /// Whether time passed in the last picture.
@@ -95,7 +95,7 @@ impl Studio {
             presses: 0,
             closed: 0,
             heard: Default::default(),
-            told: (String::new(), 0.0),
+            told: (String::new(), 0.0, Align2::CENTER_BOTTOM),
             rate: 60.0,
             played: false,
             drawn_by: None,
@@ -163,11 +163,12 @@ impl Studio {
             self.rate += 0.05 * (1.0 / seconds - self.rate);
         }
         // What is done is told by this picture: it may be the last one for long.
-        self.keeping.poll();
+        self.keeping.poll(&self.link);
         self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
         self.shortcuts(ui, &shown, &mut asks);
         self.dropped(ui, &shown, &mut asks);
+        self.properties.hash = false;
         let words = self.language;
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 5));
         let narrow = ui.available_width() <= NARROW;
@@ -177,7 +178,7 @@ impl Studio {
             let making = self.keeping.working();
             let rate = follows.then_some(self.rate);
             let busy = self.link.busy().filter(|busy| *busy > STALE);
-            bars::status(ui, &shown, words, (rate, busy), narrow, self.drawn_by.as_ref(), making);
+            status::status(ui, &shown, words, (rate, busy), narrow, self.drawn_by.as_ref(), making);
         });
         Panel::bottom("time").frame(bar).show(ui, |ui| bars::time(ui, &shown, words, narrow, &mut asks));
         let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 6));
@@ -207,10 +208,15 @@ impl Studio {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
+            self.canvas.wanted = self.show;
             asks.extend(self.canvas.show(ui, &shown, words));
             self.on_canvas(ui, rect, &shown, &mut asks);
         });
         self.windows(ui, &shown, &mut asks);
+        // What nobody looks at is not computed.
+        if self.properties.hash != self.show.hash {
+            asks.push(Request::Show(Show { hash: self.properties.hash, ..self.show }));
+        }
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(rescue) = &mut self.rescue {
             rescue.poll(&self.link);

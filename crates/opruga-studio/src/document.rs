@@ -326,6 +326,14 @@ impl Document {
         }
     }
 
+    /// Takes a field of an obstacle out of the scene itself; `false` where it is not written there.
+    pub fn unset(&mut self, path: &str) -> bool {
+        let ["collider", number, field] = path.split('.').collect::<Vec<_>>()[..] else { return false };
+        let tables = self.text.get_mut("collider").and_then(Item::as_array_of_tables_mut);
+        let table = tables.zip(number.parse().ok()).and_then(|(tables, number)| tables.get_mut(number));
+        table.is_some_and(|table| table.remove(field).is_some())
+    }
+
     /// Gives the scene another integrator.
     pub fn set_integrator(&mut self, values: &Values) {
         let mut table = kind_table(values, None).into_table();

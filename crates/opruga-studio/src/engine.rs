@@ -7,8 +7,7 @@ use crate::samples::Sample;
 use crate::shown::{BodyShown, EnergyShown, Extent, ObstacleShown, Show, Shown};
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
-use opruga::draw::Facets;
-use opruga::pictures::{Quantity, Scenery};
+use opruga::pictures::Scenery;
 use opruga::{Options, Warning, World, WorldError};
 use toml_edit::Table;
 
@@ -49,6 +48,12 @@ pub trait Engine: Send {
     fn snapshot(&self) -> Vec<u8>;
     /// Back to a state of the same past.
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
+    /// What attracted attention.
+    fn warnings(&self) -> Vec<Warning>;
+    /// Frames up to the end of the scene for the command line.
+    fn end(&self) -> u64;
+    /// What is odd in the present state, also about shapes, which are looked at anew by every call.
+    fn warnings_at_the_end(&mut self) -> Vec<Warning>;
     /// The hash of the state.
     fn hash(&self) -> u64;
     /// Pulls a node of a body toward a pointer that is led.
@@ -185,35 +190,6 @@ impl<const D: usize> Living<D> {
         row.extend(cut::<D>(pointer));
         row
     }
-
-    fn picture(&mut self, show: &Show) -> opruga::draw::Picture {
-        let bodies = self.world.blueprint().bodies.len();
-        if bodies != self.known {
-            (self.scenery, self.known) = (Scenery::new(&self.world), bodies);
-        }
-        let as_drawn = show.own_colours && has_drawings(&self.world);
-        let quantity = if as_drawn { Quantity::Plain } else { show.quantity };
-        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, quantity);
-        let mut picture = self.scenery.picture(&moment);
-        if let Some(legend) = &mut picture.legend {
-            legend.map = show.map;
-        }
-        if !show.springs {
-            picture.bodies.iter_mut().for_each(|body| {
-                if D == 2 && !body.cells.is_empty() || !matches!(&body.facets, Facets::Edges(e) if e.is_empty()) {
-                    body.segments.clear();
-                }
-            });
-        }
-        if show.vertices {
-            for body in &mut picture.bodies {
-                body.nodes_drawn = body.positions.len() <= 20_000;
-                body.node_spacing = None;
-            }
-        }
-        self.add_arrows(&mut picture, show);
-        picture
-    }
 }
 
 impl<const D: usize> Engine for Living<D> {
@@ -243,6 +219,17 @@ impl<const D: usize> Engine for Living<D> {
     }
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         self.world.rewind(bytes)
+    }
+    fn warnings(&self) -> Vec<Warning> {
+        self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect()
+    }
+    fn end(&self) -> u64 {
+        let time = &self.world.blueprint().time;
+        (time.seconds / time.frame).round() as u64
+    }
+    fn warnings_at_the_end(&mut self) -> Vec<Warning> {
+        self.world.look_at_steps_again();
+        self.world.warnings_at_the_end().into_iter().chain(self.odd.iter().cloned()).collect()
     }
     fn hash(&self) -> u64 {
         self.world.state_hash()
@@ -430,7 +417,7 @@ impl<const D: usize> Engine for Living<D> {
                 error: e.loss_integrator,
             },
             momentum: three(m.linear.0),
-            warnings: self.world.warnings().into_iter().chain(self.odd.iter().cloned()).collect(),
+            warnings: self.warnings(),
             bodies,
             obstacles,
             has_drawings: has_drawings(&self.world),

@@ -106,11 +106,19 @@ impl Pair {
 
 impl Engine for Pair {
     fn frame(&mut self) -> Result<(), WorldError> {
+        // Where the right one is broken off, both go back.
+        let before = self.left.snapshot();
         self.left.frame()?;
-        if self.stopped.is_none()
-            && let Err(error) = self.right.frame()
-        {
-            self.stopped = Some(error.to_string());
+        if self.stopped.is_some() {
+            return Ok(());
+        }
+        match self.right.frame() {
+            Err(WorldError::BrokenOff) => {
+                self.left.rewind(&before)?;
+                return Err(WorldError::BrokenOff);
+            }
+            Err(error) => self.stopped = Some(error.to_string()),
+            Ok(()) => {}
         }
         Ok(())
     }
@@ -167,6 +175,15 @@ impl Engine for Pair {
         }
         self.stopped = (!reason.is_empty()).then(|| reason.to_string());
         Ok(())
+    }
+    fn warnings(&self) -> Vec<Warning> {
+        self.left.warnings()
+    }
+    fn end(&self) -> u64 {
+        self.left.end()
+    }
+    fn warnings_at_the_end(&mut self) -> Vec<Warning> {
+        self.left.warnings_at_the_end()
     }
     fn hash(&self) -> u64 {
         self.left.hash()

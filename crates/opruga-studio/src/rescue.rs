@@ -25,8 +25,8 @@ pub struct Rescue {
     writing: Option<Receiver<()>>,
     /// When it was asked for last.
     last: Option<Instant>,
-    /// The text that was kept last.
-    kept: Arc<str>,
+    /// The text that was kept last, and whether it holds anything that is not saved.
+    kept: (Arc<str>, bool),
     /// The files of a scene, which are read once: the scene and where they are, and what they hold.
     files: Option<(String, Files, Files)>,
 }
@@ -34,7 +34,7 @@ pub struct Rescue {
 impl Rescue {
     /// Keeps what is done in this file.
     pub fn at(path: impl Into<PathBuf>) -> Rescue {
-        Rescue { path: path.into(), asked: None, writing: None, last: None, kept: "".into(), files: None }
+        Rescue { path: path.into(), asked: None, writing: None, last: None, kept: ("".into(), false), files: None }
     }
 
     /// Looks whether something is to be kept; to be called with every picture.
@@ -53,10 +53,11 @@ impl Rescue {
     }
 
     fn keep(&mut self, copied: Copied) {
-        if *copied.text == *self.kept {
+        if *copied.text == *self.kept.0 && copied.edited == self.kept.1 {
             return;
         }
-        self.kept = copied.text.as_str().into();
+        let edited = copied.edited;
+        self.kept = (copied.text.as_str().into(), edited);
         let known = self.files.take().filter(|(name, files, _)| *name == copied.name && *files == copied.files);
         let files = known.unwrap_or_else(|| {
             let held = Files::held(named_files(&copied.name, &copied.text, &copied.files));
@@ -68,8 +69,14 @@ impl Rescue {
         self.writing = Some(work::spawn(async move {
             // Where it cannot be kept, the window goes on all the same: this is for the day on which it does not.
             let _ = write(&path, &shared);
+            let _ = if edited { std::fs::write(mark_of(&path), []) } else { std::fs::remove_file(mark_of(&path)) };
         }));
     }
+}
+
+/// The file that is there where what is kept in this one was edited or recorded since it was opened or saved.
+pub fn mark_of(path: &Path) -> PathBuf {
+    path.with_extension("edited")
 }
 
 /// Writes a scene so that it is whole whenever it is read.

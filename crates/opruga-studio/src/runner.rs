@@ -31,6 +31,10 @@ pub struct Copied {
     pub differences: Option<Vec<Difference>>,
     /// Frames up to the last one of this course of things.
     pub frames: u64,
+    /// A mark of the text as it stands.
+    pub mark: u64,
+    /// Whether anything was edited or recorded since it was opened or saved.
+    pub edited: bool,
 }
 
 impl Copied {
@@ -42,6 +46,8 @@ impl Copied {
             files: session.files().clone(),
             differences: session.differences().map(<[_]>::to_vec),
             frames: session.latest(),
+            mark: session.mark(),
+            edited: session.is_edited(),
         }
     }
 }

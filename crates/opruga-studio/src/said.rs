@@ -59,6 +59,10 @@ pub enum Said {
     AllGoOn(String),
     /// A body was set down anew.
     SetDown,
+    /// A field, by its path, that is given or not from the start on.
+    AtTheStartAlone(String),
+    /// The scene is at its end, at this time \[s\], and attracts attention by this, in the English words of the world.
+    AtTheEnd(f64, Vec<String>),
     /// The recording that is viewed ends at this time \[s\].
     RecordingEnds(f64),
     /// What was done begins a new course at this time of the recording \[s\].

@@ -27,6 +27,8 @@ pub struct Show {
     pub normals: bool,
     /// Forces of obstacles.
     pub contacts: bool,
+    /// The hash of the state.
+    pub hash: bool,
     /// The colours of numbers.
     pub map: ColourMap,
     /// Whether bodies that carry a drawing are seen in its colours.
@@ -43,6 +45,7 @@ impl Default for Show {
             velocities: false,
             normals: false,
             contacts: false,
+            hash: false,
             map: ColourMap::default(),
             own_colours: true,
         }
@@ -229,6 +232,8 @@ pub struct Shown {
     pub drag: f64,
     /// The integrator of the scene.
     pub integrator: Option<Values>,
+    /// The hash of the state, where somebody looks at it: that of `opruga run --json`.
+    pub hash: Option<u64>,
     /// The bodies, in the order of those of the picture.
     pub bodies: Vec<BodyShown>,
     /// The obstacles.

@@ -56,6 +56,11 @@ pub fn apply(context: &Context) {
     }
 }
 
+/// The colour of text that asks for attention.
+pub fn attention(visuals: &egui::Visuals) -> Color32 {
+    if visuals.dark_mode { Color32::from_rgb(230, 140, 20) } else { Color32::from_rgb(158, 80, 0) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,6 +92,7 @@ mod tests {
             for ground in grounds {
                 let [faint, plain] =
                     [visuals.weak_text_color(), visuals.text_color()].map(|text| contrast(text, ground));
+                assert!(contrast(attention(visuals), ground) >= 4.5, "{theme:?} on {ground:?}");
                 assert!(faint >= 4.5 && plain > 1.3 * faint, "{theme:?} on {ground:?}: {faint} {plain}");
             }
         }

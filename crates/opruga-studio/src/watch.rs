@@ -67,7 +67,11 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         };
         if END.load(Ordering::SeqCst) {
             eprintln!("the studio was asked to end");
-            hint(saved_and_told(&kept.file()).as_deref());
+            if rescue::mark_of(&kept.file()).exists() {
+                hint(saved_and_told(&kept.file()).as_deref());
+            } else {
+                eprintln!("  = nothing was done that is not saved");
+            }
             return ExitCode::from(ENDED);
         }
         let next = next(status.code(), signal(&status));
@@ -192,6 +196,13 @@ impl Kept {
 impl Drop for Kept {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(self.file());
+        let _ = std::fs::remove_file(rescue::mark_of(&self.file()));
+        // What was being written when the window ended.
+        for left in std::fs::read_dir(&self.0).into_iter().flatten().flatten() {
+            if left.file_name().to_string_lossy().starts_with(".kept.") {
+                let _ = std::fs::remove_file(left.path());
+            }
+        }
         let _ = std::fs::remove_dir(&self.0);
     }
 }
@@ -256,6 +267,8 @@ mod tests {
         std::fs::write(kept.file(), b"cut").expect("written");
         assert!(rescue::read(&kept.file()).is_err());
         let folder = kept.0.clone();
+        std::fs::write(rescue::mark_of(&kept.file()), []).expect("written");
+        std::fs::write(folder.join(".kept.opruga-studio.7.writing"), b"cut").expect("written");
         drop(kept);
         assert!(!folder.exists());
     }

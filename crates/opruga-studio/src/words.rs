@@ -107,6 +107,11 @@ words! {
     velocities: "Velocities", "Brzine";
     normals: "Normals", "Normale";
     contacts: "Contact forces", "Sile dodira";
+    arrow_of_velocity: "velocity", "brzina";
+    arrow_of_normal: "normal", "normala";
+    arrow_of_contact: "contact force", "sila dodira";
+    arrow_of_pressure: "pressure", "tlak";
+    arrow_of_force: "force", "sila";
     contacts_hint: "Of obstacles on the nodes in the coming step: normal force, friction, and the impulse of an impact over the step", "Prepreka na čvorove u idućem koraku: normalna sila, trenje i impuls sudara kroz trajanje koraka";
     colour_map: "Colours", "Boje";
     viridis: "Violet to yellow", "Ljubičasto do žuto";
@@ -164,6 +169,9 @@ words! {
     substeps: "Substeps", "Podkoraci";
     substeps_hint: "Steps of the integrator in a frame: fewer are faster, too few are unstable", "Koraka integratora u sličici: manje je brže, premalo je nestabilno";
     stable: "stable from", "stabilno od";
+    state_hash: "State hash", "Sažetak stanja";
+    state_hash_hint: "Of all positions and velocities, bit by bit: `opruga run --json` tells the same (`state_hash`) at this frame of the saved scene", "Svih položaja i brzina, bit po bit: isti javlja `opruga run --json` (`state_hash`) za ovu sličicu spremljenog prizora";
+    copy: "Copy", "Kopiraj";
     nodes: "nodes", "čvorova";
     nothing_selected: "Press on a body to see and change its physics", "Pritisni tijelo da vidiš i promijeniš njegovu fiziku";
     crowd: "In a crowd of more than 64 bodies they are not listed one by one", "Kad ih je više od 64, tijela se ne navode pojedinačno";
@@ -226,7 +234,7 @@ words! {
     recording_hint: "Up to the mark this is what was recorded; what lies behind it was computed since", "Do oznake je ono što je snimljeno; što je iza nje izračunato je poslije";
     warning: "Warning", "Upozorenje";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\n?\tova pomoć";
+    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\nEsc\tput a message away\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\nEsc\tskloni poruku\n?\tova pomoć";
 }
 
 #[cfg(test)]

@@ -128,4 +128,15 @@ fn row_93_what_is_done_is_kept_while_it_is_done() {
     let mut again = rescue::resume(&rescue::read(&path).expect("it is read"), Options::default()).expect("opens");
     to_the_end(&mut again);
     assert_eq!((again.frames(), again.hash()), (frames, hash));
+    // Beside it stands that it is not saved yet, until it is.
+    let until = |rescue: &mut Rescue, edited: bool| {
+        while rescue::mark_of(&path).exists() != edited {
+            assert!(begin.elapsed() < Duration::from_secs(120), "edited: {edited}");
+            rescue.poll(&link);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    };
+    until(&mut rescue, true);
+    link.ask(Request::Saved(link.copy().recv().expect("a copy").mark));
+    until(&mut rescue, false);
 }

@@ -5,11 +5,22 @@ use crate::said::Step;
 use crate::session::{Request, STEADY};
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::Part;
-use egui::{Align2, Color32, CornerRadius, Frame, RichText, Stroke, Ui};
+use egui::{Align2, Color32, CornerRadius, FontId, Frame, Key, Modifiers, Pos2, Rect, RichText, Stroke, Ui, Vec2};
 use opruga::draw::format_value;
 
-/// How long it stays on the screen that something was done [s].
+/// How long it stays on the screen that something was done, and how much longer for every letter behind the first sixty [s].
 const TOLD_FOR: f64 = 6.0;
+const TO_READ: f64 = 0.05;
+
+/// Where a message may be, what is usual first.
+const PLACES: [Align2; 6] = [
+    Align2::CENTER_BOTTOM,
+    Align2::CENTER_TOP,
+    Align2::LEFT_BOTTOM,
+    Align2::RIGHT_BOTTOM,
+    Align2::LEFT_TOP,
+    Align2::RIGHT_TOP,
+];
 
 /// Who speaks to the person, in the order in which they are heard where they speak at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +62,7 @@ impl Heard {
 }
 
 impl Studio {
-    /// The last message, at the bottom of the scene, with what would help.
+    /// The last message, over the scene where it hides least of the bodies, with what would help.
     pub(super) fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
         let words = self.language;
         let pen = self.canvas.refused.map(|why| match why {
@@ -90,23 +101,37 @@ impl Studio {
         let refused = severity == Severity::Refused;
         let time = ui.input(|i| i.time);
         let told = format!("{speaker:?} {:?}: {text}", now[speaker as usize]);
+        let room = (rect.width() - 120.0).clamp(120.0, 620.0);
+        // Between the tools and what stands at the lower border.
+        let high = self.canvas.tools.map_or(rect.top(), |tools| tools.bottom()) + 8.0;
+        let low = rect.bottom() - if shown.beside.is_some() { 66.0 } else { 40.0 };
+        let free = Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)));
         if self.told.0 != told {
-            self.told = (told, time);
+            // Bodies move: where it was put when it came, there it stays.
+            let galley = ui.painter().layout(text.clone(), FontId::proportional(13.0), edge(false), room);
+            let size = galley.size() + Vec2::new(16.0, 48.0);
+            let covered = self.canvas.covered(shown);
+            self.told = (told, time, place(free, size, &covered));
         }
-        if !refused && offer.is_none() && time - self.told.1 > TOLD_FOR {
+        let long = TOLD_FOR + TO_READ * text.chars().count().saturating_sub(60) as f64;
+        // A menu that is open is what Escape closes first.
+        let escape =
+            !egui::Popup::is_any_open(ui.ctx()) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
+        if escape || !refused && offer.is_none() && time - self.told.1 > long {
             self.forget(speaker, message.map(|message| message.number));
             return;
         }
+        let align = self.told.2;
         egui::Area::new(egui::Id::unique("message"))
-            .pivot(Align2::CENTER_BOTTOM)
-            .fixed_pos(rect.center_bottom() - egui::vec2(0.0, if shown.beside.is_some() { 66.0 } else { 40.0 }))
+            .pivot(align)
+            .fixed_pos(align.pos_in_rect(&free))
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
-                let edge = if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) };
-                Frame::popup(ui.style()).stroke(Stroke::new(1.5, edge)).corner_radius(CornerRadius::same(6)).show(
-                    ui,
-                    |ui| {
-                        ui.set_max_width((rect.width() - 120.0).clamp(120.0, 620.0));
+                Frame::popup(ui.style())
+                    .stroke(Stroke::new(1.5, edge(refused)))
+                    .corner_radius(CornerRadius::same(6))
+                    .show(ui, |ui| {
+                        ui.set_max_width(room);
                         let lines: Vec<&str> = text.lines().collect();
                         let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
                         let monospaced = lines.len() > 1;
@@ -139,12 +164,11 @@ impl Studio {
                                 asks.push(Request::Undo);
                                 self.closed = message.map_or(self.closed, |m| m.number);
                             }
-                            if ui.button(words.close()).clicked() {
+                            if ui.button(words.close()).on_hover_text("Esc").clicked() {
                                 self.forget(speaker, message.map(|message| message.number));
                             }
                         });
-                    },
-                );
+                    });
             });
     }
 
@@ -156,6 +180,22 @@ impl Studio {
             Speaker::Pen => self.canvas.refused = None,
         }
     }
+}
+
+/// The colour of the border of a message.
+fn edge(refused: bool) -> Color32 {
+    if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) }
+}
+
+/// The place of a message of this size that hides least of what is there.
+fn place(free: Rect, size: Vec2, covered: &[Rect]) -> Align2 {
+    let hidden = |align: Align2| {
+        let place = align.anchor_size(align.pos_in_rect(&free), size).intersect(free);
+        let over =
+            |other: &Rect| Some(other.intersect(place)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
+        covered.iter().map(over).sum::<f32>()
+    };
+    PLACES.into_iter().min_by(|a, b| hidden(*a).total_cmp(&hidden(*b))).unwrap_or(Align2::CENTER_BOTTOM)
 }
 
 /// Units that stand behind numbers in messages.
@@ -195,6 +235,23 @@ mod tests {
         assert_eq!(heard.last([Some(2), Some(2), None]), Some(Speaker::Window));
         assert_eq!(heard.last([Some(2), None, None]), Some(Speaker::Session));
         assert_eq!(heard.last([None, None, Some(0)]), Some(Speaker::Pen), "another outline");
+    }
+
+    #[test]
+    fn a_message_is_where_it_hides_nothing_or_least() {
+        let free = Rect::from_min_max(Pos2::new(10.0, 60.0), Pos2::new(970.0, 580.0));
+        let size = Vec2::new(400.0, 80.0);
+        let body = |left: f32, top: f32, right: f32, bottom: f32| {
+            Rect::from_min_max(Pos2::new(left, top), Pos2::new(right, bottom))
+        };
+        assert_eq!(place(free, size, &[]), Align2::CENTER_BOTTOM);
+        assert_eq!(place(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Align2::CENTER_BOTTOM);
+        // A flat body on the floor, one that hangs from above too, and one that fills the window but for a corner.
+        let flat = body(200.0, 540.0, 800.0, 600.0);
+        assert_eq!(place(free, size, &[flat]), Align2::CENTER_TOP);
+        let hanging = body(300.0, 60.0, 700.0, 200.0);
+        assert_eq!(place(free, size, &[body(300.0, 540.0, 500.0, 600.0), hanging]), Align2::RIGHT_BOTTOM);
+        assert_eq!(place(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Align2::CENTER_BOTTOM);
     }
 
     #[test]

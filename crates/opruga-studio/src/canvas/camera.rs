@@ -50,6 +50,20 @@ impl Flat {
                 (*low, *high) = (low.min(lowest[d]), high.max(highest[d]));
             }
         }
+        // The scene beside it is seen too, as far as the view may become and as long as it goes along with nothing.
+        let limits = [0, 1].map(|d| {
+            let most = 2.0 * (first[1][d] - first[0][d]);
+            [first[0][d] - most, first[1][d] + most]
+        });
+        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
+        for [lowest, highest] in beside.map(|extent| extent.corners) {
+            for (d, [low, high]) in ends.iter_mut().enumerate() {
+                let [least, most] = limits[d];
+                if *low >= least && *high <= most {
+                    (*low, *high) = (low.min(lowest[d].max(least)), high.max(highest[d].min(most)));
+                }
+            }
+        }
         let mut wider = false;
         for d in 0..2 {
             let most = 2.0 * (first[1][d] - first[0][d]);
@@ -131,6 +145,42 @@ impl Flat {
     }
 }
 
+/// A view with the floors and walls that bodies may come to: at the start they are often far above them.
+pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
+    let center = view.center();
+    let size = view.extent();
+    for collider in &shown.picture.colliders {
+        let opruga::draw::ColliderPicture::HalfSpace { point, normal } = collider else { continue };
+        let long = normal.iter().map(|n| n * n).sum::<f64>();
+        let height = (0..3).map(|d| normal[d] * (center[d] - point[d])).sum::<f64>() / long.max(1e-300);
+        let foot = [0, 1, 2].map(|d| center[d] - height * normal[d]);
+        // A floor far away would make everything small.
+        if foot.iter().zip(&center).all(|(a, b)| (a - b).abs() < 8.0 * size) {
+            for d in 0..3 {
+                view.low[d] = view.low[d].min(foot[d] - 0.05 * size);
+                view.high[d] = view.high[d].max(foot[d] + 0.05 * size);
+            }
+        }
+    }
+    if shown.dimension == 2 {
+        (view.low[2], view.high[2]) = (0.0, 0.0);
+    }
+    view
+}
+
+/// The part of the scene and that of the one beside it: next to one another, on a high window one above the other.
+pub(super) fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
+    if !two {
+        return (whole, None);
+    }
+    let (first, second) = if whole.width() >= whole.height() {
+        whole.split_left_right_at_fraction(0.5)
+    } else {
+        whole.split_top_bottom_at_fraction(0.5)
+    };
+    (first, Some(second))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +225,22 @@ mod tests {
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
         apart.extents = apart.picture.bodies.iter().map(Extent::of).collect();
         assert!(!flat.widen(&mut view, &first, &apart, rect));
+        // The scene beside it is seen too, as far as there is room for both.
+        let mut both = shown(0.0);
+        for (x, there) in [(1.5, true), (40.0, false)] {
+            let right = std::sync::Arc::new(shown(x));
+            let (distances, center, volume, energy, stopped) = (None, None, None, None, None);
+            let differences = Vec::new();
+            let beside = crate::shown::Beside { right, distances, center, volume, energy, differences, stopped };
+            both.beside = Some(beside);
+            for _ in 0..3 {
+                if flat.widen(&mut view, &first, &both, rect) {
+                    flat.fit(&view, rect, None);
+                }
+            }
+            assert_eq!(rect.contains(flat.to_screen(rect, [x + 0.5, 0.5, 0.0], false)), there, "{x}");
+            assert!(rect.contains(flat.to_screen(rect, [-0.5, 0.5, 0.0], false)), "{x}: the first one");
+        }
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub(super) fn place(look: &Look<'_>, tools: Option<Rect>) -> Option<Rect> {
 
 /// What the colours mean.
 pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
-    let Look { painter, shown, rect, paper, range } = *look;
+    let Look { painter, shown, rect, paper, range, .. } = *look;
     let (Some(legend), Some([bar, behind])) = (&shown.picture.legend, places(look, tools)) else { return };
     painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));
     let mut mesh = Mesh::default();

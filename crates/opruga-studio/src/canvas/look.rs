@@ -1,6 +1,6 @@
 //! The colours of the canvas, and what everything that is drawn needs.
 
-use crate::shown::Shown;
+use crate::shown::{Show, Shown};
 use egui::{Color32, Rect, Ui};
 
 /// What everything that is drawn needs.
@@ -11,6 +11,8 @@ pub(crate) struct Look<'a> {
     /// Where the scene is.
     pub(crate) rect: Rect,
     pub(crate) paper: &'a Paper,
+    /// What a person wants to see.
+    pub(crate) show: Show,
     /// The ends of the colours.
     pub(crate) range: [f64; 2],
 }

@@ -1,5 +1,6 @@
 //! The scene on the screen, and what the pointer does there.
 
+mod arrows;
 mod brush;
 mod camera;
 mod detail;
@@ -18,9 +19,9 @@ mod tool;
 
 use crate::said::Said;
 use crate::session::Request;
-use crate::shown::Shown;
+use crate::shown::{Show, Shown};
 use crate::words::Language;
-use camera::Flat;
+use camera::{Flat, halves, with_floors};
 use egui::{Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
 use opruga::WorldError;
@@ -62,6 +63,12 @@ pub struct Canvas {
     rect: Option<Rect>,
     /// Where the tools lie over it.
     pub tools: Option<Rect>,
+    /// What a person wants to see.
+    pub wanted: Show,
+    /// Where the legend is.
+    legend: Option<Rect>,
+    /// The longest arrow of every kind.
+    arrows: arrows::Longest,
     flat: Flat,
     space: space::Space,
     /// What draws the scene beside it.
@@ -147,6 +154,16 @@ impl Canvas {
         Some(self.flat.to_screen(rect, point, shown.picture.y_down))
     }
 
+    /// What of the canvas the bodies and the legend take: no message shall lie there.
+    pub fn covered(&self, shown: &Shown) -> Vec<Rect> {
+        let of = |extent: &crate::shown::Extent| {
+            let corner = |k: usize| [0, 1, 2].map(|d| extent.corners[k >> d & 1][d]);
+            let corners: Vec<Pos2> = (0..8).filter_map(|k| self.on_screen(shown, corner(k))).collect();
+            Rect::from_points(&corners)
+        };
+        shown.extents.iter().map(of).chain(self.legend).collect()
+    }
+
     /// Shows a scene in all the room that is left, and says what the pointer asks for.
     pub fn show(&mut self, ui: &mut Ui, shown: &Arc<Shown>, language: Language) -> Vec<Request> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -192,11 +209,16 @@ impl Canvas {
         let hovered = hovered.cloned();
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
-        let look = Look { painter: &painter, shown, rect, paper: &paper, range };
+        let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
         // Side by side both have the same colours: the legend stands at the right.
         let taken = if other.is_none() { legend::place(&look, self.tools) } else { None };
+        self.legend = taken;
+        self.arrows.follow(shown);
         self.paint(ui, &look, shown, false, taken);
         plane::credit(&look);
+        if is_seen {
+            arrows::key(&look, &self.arrows, self.points_of_arrows(shown, rect), language);
+        }
         if taken.is_some() {
             legend::paint(&look, self.tools, language);
         }
@@ -207,7 +229,7 @@ impl Canvas {
         if let (Some(other), Some(beside)) = (other, &shown.beside) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
-            let look = Look { painter: &painter, shown: &beside.right, rect: other, paper: &paper, range };
+            let look = Look { painter: &painter, shown: &beside.right, rect: other, ..look };
             let taken = legend::place(&look, self.tools);
             self.paint(ui, &look, &beside.right, true, taken);
             let seen = seen_right.as_ref().unwrap_or(&beside.right);
@@ -229,11 +251,11 @@ impl Canvas {
                 self.beside.share_eye(&self.space);
             }
             let space = if beside { &mut self.beside } else { &mut self.space };
-            space.show(ui, look, shown, scales, selected);
+            space.show(ui, look, shown, scales, (selected, &self.arrows));
         } else {
             let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
             let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
-            plane::paint(look, &self.flat, kept, selected, &taken);
+            plane::paint(look, &self.flat, kept, selected, &taken, &self.arrows);
             // Both sides are seen alike.
             if !beside {
                 plane::scale_bar(look, &self.flat);
@@ -377,6 +399,13 @@ impl Canvas {
         self.range = None;
     }
 
+    /// How long the longest arrow of a kind is in space, where it is at the point that is looked at [points]; none in the plane.
+    fn points_of_arrows(&self, shown: &Shown, rect: Rect) -> Option<f64> {
+        let (eye, scales) = (self.space.eye()?, self.scales.as_ref()?);
+        let side = f64::from(rect.width().min(rect.height()));
+        (shown.dimension == 3).then(|| 0.5 * side * scales.arrow / eye.radius)
+    }
+
     fn under(&self, shown: &Shown, rect: Rect, at: Pos2) -> Option<Under> {
         if shown.dimension == 3 {
             let lens = self.space.lens(self.scales.as_ref()?, rect)?;
@@ -397,42 +426,6 @@ impl Canvas {
             Some([x, y, 0.0])
         }
     }
-}
-
-/// A view with the floors and walls that bodies may come to: at the start they are often far above them.
-fn with_floors(mut view: View, shown: &Shown) -> View {
-    let center = view.center();
-    let size = view.extent();
-    for collider in &shown.picture.colliders {
-        let opruga::draw::ColliderPicture::HalfSpace { point, normal } = collider else { continue };
-        let long = normal.iter().map(|n| n * n).sum::<f64>();
-        let height = (0..3).map(|d| normal[d] * (center[d] - point[d])).sum::<f64>() / long.max(1e-300);
-        let foot = [0, 1, 2].map(|d| center[d] - height * normal[d]);
-        // A floor far away would make everything small.
-        if foot.iter().zip(&center).all(|(a, b)| (a - b).abs() < 8.0 * size) {
-            for d in 0..3 {
-                view.low[d] = view.low[d].min(foot[d] - 0.05 * size);
-                view.high[d] = view.high[d].max(foot[d] + 0.05 * size);
-            }
-        }
-    }
-    if shown.dimension == 2 {
-        (view.low[2], view.high[2]) = (0.0, 0.0);
-    }
-    view
-}
-
-/// The part of the scene and that of the one beside it: next to one another, on a high window one above the other.
-fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
-    if !two {
-        return (whole, None);
-    }
-    let (first, second) = if whole.width() >= whole.height() {
-        whole.split_left_right_at_fraction(0.5)
-    } else {
-        whole.split_top_bottom_at_fraction(0.5)
-    };
-    (first, Some(second))
 }
 
 #[cfg(test)]

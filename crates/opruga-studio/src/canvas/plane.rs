@@ -1,14 +1,14 @@
 //! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
 
+use super::arrows::{self, Longest};
 use super::brush::Brush;
 use super::camera::Flat;
 use super::detail::{Detail, apart, corners};
 use super::labels;
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, Part, fill};
-use crate::shown::Shown;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
-use opruga::draw::{ArrowKind, BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
+use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
 /// The rubber line of a pull.
 pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
@@ -90,7 +90,14 @@ impl Kept {
 }
 
 /// Draws obstacles, bodies and arrows; names are not written where something is `taken`.
-pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Option<&str>, taken: &[Rect]) {
+pub(crate) fn paint(
+    look: &Look<'_>,
+    flat: &Flat,
+    kept: &mut Kept,
+    selected: Option<&str>,
+    taken: &[Rect],
+    longest: &Longest,
+) {
     let Look { painter, shown, rect, paper, .. } = *look;
     let picture = &shown.picture;
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
@@ -127,12 +134,12 @@ pub(crate) fn paint(look: &Look<'_>, flat: &Flat, kept: &mut Kept, selected: Opt
         let spots: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
         labels::label(painter, &body.label, &spots, paper, &mut taken);
     }
-    arrows(painter, shown, flat, &project);
+    arrows::paint(look, flat, longest, &project);
 }
 
 /// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
-    let Look { rect, paper, shown, .. } = *look;
+    let Look { rect, paper, shown, show, .. } = *look;
     let (place, body) = number;
     let Kept { outlines, brush, at, inks, seen } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
@@ -185,13 +192,15 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
     if outline.springs {
-        let width = if edged { 0.9 } else { 1.8 };
+        // Over what is filled they are seen by another colour.
+        let (width, share) = if edged { (1.2, if paper.dark { 0.4 } else { 0.15 }) } else { (1.8, 0.0) };
         for [a, b] in &body.segments {
             let (a, b) = (of(a), of(b));
-            brush.line([a.0, b.0], width, [a.1, b.1]);
+            brush.line([a.0, b.0], width, [a.1, b.1].map(|colour| colour.lerp_to_gamma(paper.ink, share)));
         }
     }
-    let width = if wide { 3.2 } else { 2.2 };
+    // Springs along an outline make it thick.
+    let width = if wide { 3.2 } else { 2.2 } - if show.springs { 0.0 } else { 1.2 };
     for line in closed {
         brush.ring(line.iter().map(of), width);
     }
@@ -201,7 +210,15 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
-        at.iter().zip(inks.iter()).for_each(|(pos, ink)| brush.disc(*pos, radius, ink.line));
+        for (pos, ink) in at.iter().zip(inks.iter()) {
+            // Those that a person wants to see stand out from the line on which they lie.
+            if show.vertices {
+                brush.disc(*pos, radius + 1.8, paper.background);
+                brush.disc(*pos, radius + 0.6, ink.line.lerp_to_gamma(paper.ink, 0.6));
+            } else {
+                brush.disc(*pos, radius, ink.line);
+            }
+        }
     }
 }
 
@@ -330,53 +347,6 @@ fn obstacle(
     }
 }
 
-/// The colour of a kind of arrow.
-pub(crate) fn arrow_colour(kind: ArrowKind) -> Color32 {
-    match kind {
-        ArrowKind::Pressure => Color32::from_rgb(86, 160, 230),
-        ArrowKind::Velocity => Color32::from_rgb(0, 158, 115),
-        ArrowKind::Pull => RUBBER,
-        ArrowKind::Contact => Color32::from_rgb(213, 94, 0),
-        ArrowKind::Normal => Color32::from_gray(150),
-        _ => Color32::from_rgb(230, 140, 20),
-    }
-}
-
-/// Arrows, each kind in a scale of its own: the longest takes sixty points of the screen.
-fn arrows(painter: &Painter, shown: &Shown, flat: &Flat, project: &dyn Fn([f64; 3]) -> Pos2) {
-    let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let mut longest: std::collections::BTreeMap<ArrowKind, f64> = std::collections::BTreeMap::new();
-    for arrow in &shown.picture.arrows {
-        let entry = longest.entry(arrow.kind).or_insert(0.0);
-        *entry = entry.max(size(arrow.vector));
-    }
-    for arrow in &shown.picture.arrows {
-        let most = longest.get(&arrow.kind).copied().unwrap_or(0.0);
-        if most <= 0.0 || arrow.kind == ArrowKind::Pull {
-            continue;
-        }
-        let long = if arrow.kind == ArrowKind::Normal { 18.0 } else { 60.0 };
-        let scale = flat.metres(long) / most;
-        let from = project(arrow.from);
-        let to = project([0, 1, 2].map(|d| arrow.from[d] + scale * arrow.vector[d]));
-        let way = to - from;
-        if way.length() < 2.0 {
-            continue;
-        }
-        self::arrow(painter, from, to, Stroke::new(1.5, arrow_colour(arrow.kind)), 6.0);
-    }
-}
-
-/// A line with a head of this length.
-fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, long: f32) {
-    let way = to - from;
-    painter.line_segment([from, to], stroke);
-    let back = way.normalized() * long.min(0.5 * way.length());
-    let side = Vec2::new(-back.y, back.x) * 0.45;
-    let head = vec![to, to - back + side, to - back - side];
-    painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
-}
-
 /// The mark of a pinned node.
 pub(crate) fn pin(painter: &Painter, at: Pos2, paper: &Paper) {
     painter.circle(at, 4.5, Color32::from_rgb(238, 178, 40), Stroke::new(1.5, paper.ink));
@@ -395,7 +365,7 @@ pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], ta
 pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     look.painter.circle_filled(from, 4.0, RUBBER);
     if (to - from).length() >= 2.0 {
-        arrow(look.painter, from, to, Stroke::new(2.5, RUBBER), 11.0);
+        arrows::arrow(look.painter, from, to, Stroke::new(2.5, RUBBER), 11.0);
     }
     newtons(look, to, force, taken);
 }

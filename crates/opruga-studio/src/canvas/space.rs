@@ -1,6 +1,7 @@
 //! A scene of space: drawn by the same renderer as the pictures of the command line, beside the interface, into a
 //! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
 
+use super::arrows::Longest;
 use super::look::Look;
 use crate::shown::Shown;
 use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, Vec2};
@@ -32,6 +33,7 @@ struct Order {
     range: [f64; 2],
     eye: Eye,
     selected: Option<String>,
+    longest: Longest,
 }
 
 /// What a picture shows: scene, frame, eye, size, theme, what else is to be seen, the selected body.
@@ -146,7 +148,14 @@ impl Space {
     }
 
     /// Shows the last picture and orders the next one.
-    pub(crate) fn show(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, scales: &View, selected: Option<&str>) {
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        look: &Look<'_>,
+        shown: &Arc<Shown>,
+        scales: &View,
+        (selected, longest): (Option<&str>, &Longest),
+    ) {
         let Look { painter, rect, paper, range, .. } = *look;
         let Some(eye) = self.eye else { return };
         let fine = f64::from(ui.ctx().pixels_per_point());
@@ -167,6 +176,7 @@ impl Space {
                 range,
                 eye,
                 selected,
+                longest: longest.clone(),
             };
             let (done, busy, context) = (Arc::clone(&self.done), Arc::clone(&self.busy), ui.ctx().clone());
             drop(crate::work::spawn(async move {
@@ -246,11 +256,7 @@ fn drawn(order: &Order) -> Option<Drawn> {
         body.outlined = Some(OUTLINE);
     }
     let mut view = order.view.clone();
-    if !picture.arrows.is_empty()
-        && let Ok(fitted) = View::fit([&picture])
-    {
-        (view.longest, view.arrow) = (fitted.longest, fitted.arrow);
-    }
+    view.longest.clone_from(&order.longest.0);
     let image = draw_scene(&picture, &view, order.background, order.size).ok()?;
     Some(Drawn { image, shown: Arc::clone(&order.shown), eye: order.eye })
 }

@@ -1,14 +1,45 @@
-//! Arrows over a picture.
+//! The picture of a world, and arrows over it.
 
-use super::{Living, three};
+use super::{Living, has_drawings, three};
 use crate::normals::normals;
 use crate::shown::Show;
-use opruga::draw::{ArrowKind, ArrowPicture};
+use opruga::draw::{ArrowKind, ArrowPicture, Facets};
+use opruga::pictures::{Quantity, Scenery};
 
 /// Bodies up to which arrows are drawn: those of more could not be told apart.
 const MOST_WITH_ARROWS: usize = 64;
 
 impl<const D: usize> Living<D> {
+    /// What there is to see.
+    pub(super) fn picture(&mut self, show: &Show) -> opruga::draw::Picture {
+        let bodies = self.world.blueprint().bodies.len();
+        if bodies != self.known {
+            (self.scenery, self.known) = (Scenery::new(&self.world), bodies);
+        }
+        let as_drawn = show.own_colours && has_drawings(&self.world);
+        let quantity = if as_drawn { Quantity::Plain } else { show.quantity };
+        let moment = self.scenery.capture_quantity(&mut self.world, show.arrows, quantity);
+        let mut picture = self.scenery.picture(&moment);
+        if let Some(legend) = &mut picture.legend {
+            legend.map = show.map;
+        }
+        if !show.springs {
+            picture.bodies.iter_mut().for_each(|body| {
+                if D == 2 && !body.cells.is_empty() || !matches!(&body.facets, Facets::Edges(e) if e.is_empty()) {
+                    body.segments.clear();
+                }
+            });
+        }
+        if show.vertices {
+            for body in &mut picture.bodies {
+                body.nodes_drawn = body.positions.len() <= 20_000;
+                body.node_spacing = None;
+            }
+        }
+        self.add_arrows(&mut picture, show);
+        picture
+    }
+
     /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
     pub(super) fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
         let living: Vec<usize> = self.world.bodies().collect();

@@ -4,10 +4,10 @@ use super::keeping::What;
 use crate::session::Request;
 use crate::shown::{Show, Shown};
 use crate::words::Language;
-use egui::{Align, Layout, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Align, Layout, PopupCloseBehavior, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
 use opruga::draw::ColourMap;
 use opruga::pictures::Quantity;
-use std::time::Duration;
 
 /// What was chosen in the bar above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +92,7 @@ pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &m
 }
 
 /// What a file is called.
-fn file_name(words: Language, what: What) -> &'static str {
+pub fn file_name(words: Language, what: What) -> &'static str {
     match what {
         What::Scene => words.save_scene(),
         What::Picture => words.screenshot(),
@@ -209,88 +209,6 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, way: Re
     response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
 }
 
-/// The line on top: the numbers of the machine, and what draws. The rate of pictures where they follow one another, and for how long a
-/// frame has been computed that is not done.
-pub fn status(
-    ui: &mut Ui,
-    shown: &Shown,
-    words: Language,
-    (rate, busy): (Option<f64>, Option<Duration>),
-    narrow: bool,
-    drawn_by: Option<&[String; 2]>,
-    making: impl Iterator<Item = (What, u32)>,
-) {
-    let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
-    let cost = shown.pace.frame_cost;
-    let moving = if shown.playing { shown.pace.ratio * shown.speed } else { 0.0 };
-    let steps = if shown.frame > 0.0 { moving * f64::from(shown.substeps) / shown.frame } else { 0.0 };
-    let margin = margin(shown).map_or("–".into(), |share| format!("{:.0} %", 100.0 * share));
-    let small = |text: String| RichText::new(text).size(11.5);
-    // A number and its unit stay on one line.
-    let whole = |text: RichText| egui::Label::new(text).extend();
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 14.0;
-        let rate = rate.map_or("–".into(), |rate| format!("{rate:.0}"));
-        ui.add(whole(small(format!("{rate} FPS"))));
-        if let Some(busy) = busy {
-            // The figures behind it are those of the frame before.
-            let text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
-            ui.add(whole(small(text).color(egui::Color32::from_rgb(230, 140, 20))));
-            ui.disable();
-        }
-        ui.add(whole(small(format!("{:.2} ms", 1e3 * cost)))).on_hover_text(words.step_time());
-        let pace = format!("{moving:.2} × {}", words.real_time());
-        if shown.playing && shown.pace.ratio < 0.95 {
-            let slower = format!("{:.1} × {}", 1.0 / shown.pace.ratio.max(1e-3), words.slower());
-            let text = if narrow { pace } else { format!("{pace}: {slower}") };
-            let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
-            ui.add(whole(text)).on_hover_text(slower);
-        } else {
-            ui.add(whole(small(pace)));
-        }
-        ui.add(whole(small(format!("{nodes} {}", words.nodes()))));
-        ui.add(whole(small(format!("{steps:.0} {}", words.steps_a_second()))));
-        ui.add(whole(small(format!("{}: {margin}", words.margin())))).on_hover_text(words.substeps_hint());
-        if let Some([by, device]) = drawn_by {
-            ui.add(whole(small(by.clone()))).on_hover_text(format!("{}: {device}", words.drawn_by()));
-        }
-        if shown.recorded > 0 {
-            ui.add(whole(small(format!("{}: {}", words.recorded(), shown.recorded))));
-        }
-        for (what, hundredths) in making {
-            let text = format!("{}: {hundredths} %", file_name(words, what));
-            ui.add(whole(small(text).strong())).on_hover_text(words.working());
-        }
-        for warning in shown.warnings.iter().take(2) {
-            let said = words.detail(&warning.message);
-            let text = format!("{}: {} ({})", words.warning(), beginning(&said), warning.count);
-            let text = small(text).color(egui::Color32::from_rgb(230, 140, 20));
-            ui.label(text).on_hover_text(format!("{said}\n{}", warning.code));
-        }
-    });
-}
-
-/// The step over the largest stable one, of two scenes in that which is nearer to its limit; none where nothing limits it.
-fn margin(shown: &Shown) -> Option<f64> {
-    let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
-    let own = limited.then(|| shown.frame / f64::from(shown.substeps.max(1)) / shown.stable_step);
-    let of_right = shown.beside.as_ref().and_then(|beside| margin(&beside.right));
-    own.into_iter().chain(of_right).max_by(f64::total_cmp)
-}
-
-/// The beginning of a sentence, as far as the line has room for it: what comes before its first aside, in whole words.
-fn beginning(sentence: &str) -> String {
-    const MOST: usize = 60;
-    let whole = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
-    let aside = [" (", "; "].into_iter().filter_map(|mark| whole.find(mark)).min();
-    let first = &whole[..aside.unwrap_or(whole.len())];
-    let room = first.char_indices().nth(MOST).map_or(first.len(), |(end, _)| end);
-    // A word that is longer by itself is cut.
-    let end = if room < first.len() { first[..room].rfind(' ').unwrap_or(room) } else { room };
-    let said = first[..end].trim_end_matches([',', ':']);
-    if end < whole.len() { format!("{said} …") } else { whole }
-}
-
 /// What the colours tell, and what else is drawn.
 pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &mut Vec<Request>) {
     let mut show = now;
@@ -336,7 +254,9 @@ pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &
             }
         }
     });
-    ui.menu_button(words.overlays(), |ui| {
+    // Several of them are chosen at once.
+    let open = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    MenuButton::new(words.overlays()).config(open).ui(ui, |ui| {
         ui.checkbox(&mut show.springs, words.springs());
         ui.checkbox(&mut show.vertices, words.vertices());
         ui.checkbox(&mut show.arrows, words.arrows());
@@ -359,40 +279,5 @@ fn quantity_name(words: Language, quantity: Quantity) -> &'static str {
         Quantity::VonMises => words.von_mises_stress(),
         Quantity::VolumeRatio => words.volume_ratio(),
         Quantity::Plain => words.plain(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{beginning, margin};
-    use crate::shown::{Beside, Shown};
-    use std::sync::Arc;
-
-    #[test]
-    fn of_two_scenes_the_one_that_is_nearer_to_its_limit_is_told() {
-        let one = |substeps, stable_step| Shown { frame: 0.016, substeps, stable_step, ..Shown::default() };
-        let both = |left: Shown, right: Shown| {
-            let (right, differences) = (Arc::new(right), Vec::new());
-            let beside =
-                Beside { right, distances: None, center: None, volume: None, energy: None, differences, stopped: None };
-            margin(&Shown { beside: Some(beside), ..left })
-        };
-        let limitless = || one(8, f64::INFINITY);
-        assert_eq!(margin(&one(8, 0.004)), Some(0.5));
-        assert_eq!(both(one(8, 0.004), one(4, 0.005)), Some(0.8));
-        assert_eq!(both(one(4, 0.005), one(8, 0.004)), Some(0.8));
-        assert_eq!(both(limitless(), one(8, 0.004)), Some(0.5));
-        assert_eq!(both(one(8, 0.004), limitless()), Some(0.5));
-        assert_eq!(both(limitless(), limitless()), None);
-    }
-
-    #[test]
-    fn the_beginning_of_a_sentence_has_whole_words_and_says_where_it_was_cut() {
-        assert_eq!(beginning("the body is stretched:\nby far"), "the body is stretched: by far");
-        let long = "`heun` has no stable step for body `ball` (ω = 160 rad/s): a motion grows as exp(7 t)";
-        assert_eq!(beginning(long), "`heun` has no stable step for body `ball` …");
-        let words = "a word ".repeat(20);
-        assert_eq!(beginning(&words), "a word a word a word a word a word a word a word a word a …");
-        assert_eq!(beginning(&"č".repeat(90)).chars().filter(|letter| *letter == 'č').count(), 60);
     }
 }

@@ -9,6 +9,7 @@ use crate::handing;
 use crate::pair;
 use crate::runner::{Copied, Link};
 use crate::said::Said;
+use crate::session::Request;
 use crate::shown::{Severity, Show};
 use crate::work::{self, breathe};
 use opruga::Options;
@@ -66,8 +67,8 @@ struct Making {
 enum Stage {
     /// The simulation was asked for the scene.
     Asked(Show, Receiver<Copied>),
-    /// It is made beside the interface.
-    Made(Receiver<Result<Said, Said>>),
+    /// It is made beside the interface, of the text of this mark.
+    Made(Receiver<Result<Said, Said>>, u64),
 }
 
 /// Files that are being made.
@@ -97,18 +98,22 @@ impl Keeping {
     }
 
     /// Looks whether something is done.
-    pub fn poll(&mut self) {
+    pub fn poll(&mut self, link: &Link) {
         let (message, told) = (&mut self.message, &mut self.told);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
             Stage::Asked(show, copied) => {
                 if let Ok(copied) = copied.try_recv() {
-                    let (what, show, progress) = (*what, *show, progress.clone());
-                    *stage = Stage::Made(work::spawn(async move { write(what, &copied, show, &progress).await }));
+                    let (what, show, progress, mark) = (*what, *show, progress.clone(), copied.mark);
+                    let file = work::spawn(async move { write(what, &copied, show, &progress).await });
+                    *stage = Stage::Made(file, mark);
                 }
                 true
             }
-            Stage::Made(file) => {
+            Stage::Made(file, mark) => {
                 let Ok(outcome) = file.try_recv() else { return true };
+                if *what == What::Scene && outcome.is_ok() {
+                    link.ask(Request::Saved(*mark));
+                }
                 *told += 1;
                 *message = Some(match outcome {
                     Ok(written) => (written, Severity::Told),

@@ -7,3 +7,4 @@ pub mod palette;
 pub mod parameter;
 pub mod plots;
 pub mod properties;
+pub mod status;

@@ -22,7 +22,7 @@ pub struct Place<'a> {
     pub words: Language,
     /// The values of all fields of the kind: some have no say among the others.
     pub values: Option<&'a Values>,
-    /// What the kind says of itself, where all of its values can be given at once.
+    /// What the kind says of itself, where values can be given no longer.
     pub whole: Option<&'static Spec>,
 }
 
@@ -75,6 +75,10 @@ fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usiz
 fn companions(kind: &str, name: &str) -> &'static [&'static str] {
     match (kind, name) {
         ("bending", "modulus") => &["thickness"],
+        ("box", "min") => &["max"],
+        ("box", "max") => &["min"],
+        ("box", "center") => &["size"],
+        ("box", "size") => &["center"],
         _ => &[],
     }
 }

@@ -19,6 +19,8 @@ pub struct Properties {
     hand: Hand,
     /// A field of a shape that waits until the hand lets go.
     pending: Option<(String, &'static str, Value)>,
+    /// Whether the hash of the state is looked at.
+    pub hash: bool,
     /// The substeps that the hand holds.
     substeps: Option<u32>,
 }
@@ -91,9 +93,10 @@ impl Properties {
                             dimension,
                             words,
                             values: Some(&obstacle.values),
-                            whole: None,
+                            whole: spec.copied(),
                         };
-                        self.set(ui, place, obstacle.values.get(field.name), asks, |_| None);
+                        let unset = |_| Some(Request::Unset(path.clone()));
+                        self.set(ui, place, obstacle.values.get(field.name), asks, unset);
                     }
                 });
             }
@@ -121,23 +124,30 @@ impl Properties {
             ui.label(RichText::new(&body.title).strong().size(14.0));
             ui.label(RichText::new(format!("{} {}", body.nodes, words.nodes())).weak());
         });
-        if !body.readings.is_empty() {
-            let mut readings: Vec<String> = Vec::new();
-            // Those of single chambers are in the table and in the colours.
-            for (name, x) in body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4) {
-                let unit = if *name == "pressure" {
-                    " Pa"
-                } else if *name == "volume" {
-                    // As the plots have it: what a body of the plane encloses is an area.
-                    if kinds.dimension == 3 { " m³" } else { " m²" }
-                } else if *name == "nRT" {
-                    " J"
-                } else {
-                    ""
-                };
-                readings.push(format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x)));
-            }
-            ui.label(RichText::new(readings.join("   ")).weak().size(11.5));
+        // Those of single chambers are in the table and in the colours.
+        let readings: Vec<_> = body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4).collect();
+        let half = 0.5 * ui.available_width() - 4.0;
+        for two in readings.chunks(2) {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().interact_size.y = 14.0;
+                for (name, x) in two {
+                    let unit = match &**name {
+                        "pressure" => " Pa",
+                        // As the plots have it: what a body of the plane encloses is an area.
+                        "volume" if kinds.dimension == 3 => " m³",
+                        "volume" => " m²",
+                        "nRT" => " J",
+                        _ => "",
+                    };
+                    // Each in a room of its own: what is below stays where it is, however many figures there are.
+                    let said = format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x));
+                    let room = egui::Layout::left_to_right(egui::Align::Center);
+                    ui.allocate_ui_with_layout(Vec2::new(half, 14.0), room, |ui| {
+                        ui.set_min_width(half);
+                        ui.add(egui::Label::new(RichText::new(said).weak().size(11.5)).truncate());
+                    });
+                }
+            });
         }
         self.integrator(ui, words, body.integrator.as_ref(), Some(body), kinds, asks);
         for (number, model) in body.models.iter().enumerate() {
@@ -313,10 +323,17 @@ impl Properties {
                     dimension,
                     words,
                     values: Some(shape),
-                    whole: None,
+                    whole: Some(spec),
                 };
                 let slider = matches!(field.range, Allowed::Number { .. } | Allowed::Integer { .. });
-                let Some(Change::Value(value)) = parameter::show(ui, &mut self.hand, place, now) else { continue };
+                let value = match parameter::show(ui, &mut self.hand, place, now) {
+                    Some(Change::Value(value)) => value,
+                    Some(Change::Whole(_)) => {
+                        asks.push(Request::Edit(Edit::ShapeWithout(body.name.clone(), field.name)));
+                        continue;
+                    }
+                    None => continue,
+                };
                 if slider && ui.input(|i| i.pointer.any_down()) {
                     // A new mesh for every step of the hand would be too much: the last one counts.
                     self.pending = Some((body.name.clone(), field.name, value));
@@ -369,15 +386,30 @@ impl Properties {
         if (response.changed() || response.drag_stopped()) && !response.dragged() && substeps != shown.substeps {
             asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));
         }
-        if shown.stable_step.is_finite() && shown.stable_step > 0.0 {
-            let least = (shown.frame / shown.stable_step).ceil().max(1.0);
+        // The row is there in any case: what is below stays where it is.
+        let limit = (shown.stable_step.is_finite() && shown.stable_step > 0.0).then_some(shown.stable_step);
+        let said = limit.map_or("–".into(), |limit| (shown.frame / limit).ceil().max(1.0).to_string());
+        ui.label(RichText::new(format!("{} {said}", words.stable())).weak().size(11.5));
+        if let Some(limit) = limit {
+            let least = (shown.frame / limit).ceil().max(1.0);
             // Where the limit lies on the rail, which has small numbers as wide as large ones.
             let rail = response.rect.left() + 6.0 + 156.0 * (least.ln() / f64::from(most).ln()).clamp(0.0, 1.0) as f32;
             let y = response.rect.center().y;
             let mark = [Pos2::new(rail, y - 8.0), Pos2::new(rail, y + 8.0)];
             ui.painter().line_segment(mark, Stroke::new(2.0, Color32::from_rgb(230, 140, 20)));
-            ui.label(RichText::new(format!("{} {least}", words.stable())).weak().size(11.5));
         }
+        let header = CollapsingHeader::new(words.state_hash()).id_salt("hash").show(ui, |ui| {
+            self.hash = true;
+            let Some(hash) = shown.hash else { return };
+            let hash = format!("{hash:016x}");
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(&hash).monospace());
+                if ui.small_button(words.copy()).clicked() {
+                    ui.ctx().copy_text(hash);
+                }
+            });
+        });
+        header.header_response.on_hover_text(words.state_hash_hint());
     }
 }
 

@@ -3,12 +3,15 @@
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
 use crate::shown::Shown;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long frames are computed before a new picture is shown.
 const BUDGET: Duration = Duration::from_millis(14);
+/// How long a frame takes before it is broken off for what cannot wait.
+const PATIENCE: Duration = Duration::from_millis(250);
 /// How long the thread sleeps while time passes and no frame is due.
 const NAP: Duration = Duration::from_millis(3);
 
@@ -18,6 +21,8 @@ pub struct Link {
     last: Arc<Mutex<Arc<Shown>>>,
     /// When the thread began what it does now; none while it waits.
     since: Arc<Mutex<Option<Instant>>>,
+    /// Ends a frame that takes long.
+    break_off: Arc<AtomicBool>,
 }
 
 /// Pictures that the thread has made and somebody may still look at. They are taken apart here once nobody does: to free what a
@@ -46,15 +51,20 @@ impl Link {
     pub fn start(mut session: Session, wake: impl Fn() + Send + 'static) -> std::io::Result<Link> {
         let (asks, asked) = channel();
         let last = Arc::new(Mutex::new(Arc::new(session.shown())));
+        let break_off = session.break_off();
         let (slot, since) = (Arc::clone(&last), Arc::new(Mutex::new(None)));
         let busy = Arc::clone(&since);
         let work = move || run(session, &asked, &slot, &busy, &wake);
         std::thread::Builder::new().name("simulation".into()).spawn(work)?;
-        Ok(Link { asks, last, since })
+        Ok(Link { asks, last, since, break_off })
     }
 
-    /// Asks for something; it is done between two frames.
+    /// Asks for something; it is done between two frames. One that takes long is broken off for what cannot wait.
     pub fn ask(&self, request: Request) {
+        // The thread takes this back once it has heard of what comes next.
+        if request.breaks_off() && self.busy().is_some_and(|busy| busy > PATIENCE) {
+            self.break_off.store(true, Ordering::Relaxed);
+        }
         // Where the thread has ended there is nobody to ask: the last picture stays.
         let _ = self.asks.send(Ask::Do(request));
     }
@@ -85,6 +95,7 @@ fn run(
     wake: &(dyn Fn() + Send),
 ) {
     let set = |since: Option<Instant>| *busy.lock().unwrap_or_else(PoisonError::into_inner) = since;
+    let break_off = session.break_off();
     let (mut course, mut old) = (Course::new(session), Old::default());
     loop {
         // While nothing moves the thread sleeps until somebody asks for something.
@@ -104,6 +115,7 @@ fn run(
             }
         };
         set(Some(Instant::now()));
+        break_off.store(false, Ordering::Relaxed);
         let news = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET);
         set(None);
         if let Some(shown) = news {

@@ -35,6 +35,8 @@ pub enum Edit {
     Place(String, Placed),
     /// Another value of a field of its shape, such as its number of vertices.
     Shape(String, &'static str, Value),
+    /// A field of its shape is given no longer.
+    ShapeWithout(String, &'static str),
     /// Takes a body away.
     Delete(String),
 }
@@ -75,6 +77,33 @@ impl Session {
         }
         self.remember(past);
         Ok(())
+    }
+
+    /// Gives a field of an obstacle no longer: at the start the scene is silent about it then; later it gets the value that does the
+    /// same, where there is one.
+    pub(super) fn unset(&mut self, path: &str) -> Result<(), Said> {
+        self.branch()?;
+        let past = self.past(Step::Set(path.into()));
+        if self.at_start() && self.document.commands() == self.own_commands {
+            let mut document = self.document.clone();
+            if document.unset(path) {
+                self.begin_with(document, self.own_commands)?;
+                self.remember(past);
+                return Ok(());
+            }
+        }
+        let mut parts = path.split('.').skip(1);
+        let number = parts.next().and_then(|number| number.parse::<usize>().ok());
+        let field = parts.next().unwrap_or_default();
+        let shown = self.engine.shown(&self.show);
+        let now = number.and_then(|number| shown.obstacles.get(number)?.values.get(field));
+        match now {
+            Some(Value::Number(_)) if matches!(field, "spin" | "rotation") => self.set(path, Value::Number(0.0), None),
+            Some(Value::Numbers(list)) if matches!(field, "spin" | "rotation") => {
+                self.set(path, Value::Numbers(vec![0.0; list.len()]), None)
+            }
+            _ => Err(Said::AtTheStartAlone(path.into())),
+        }
     }
 
     pub(super) fn change(
@@ -201,6 +230,13 @@ impl Session {
                 let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
                 let shape = shape.ok_or_else(|| Said::NoShape(name.clone()))?;
                 shape.insert(*field, toml(value));
+                shift(&mut table, self.way_of(name), self.dimension());
+                self.exchange(Step::Shape(field), Some(name), Some(table))
+            }
+            Edit::ShapeWithout(name, field) => {
+                let mut table = self.table_of(name)?;
+                let shape = table.get_mut("shape").and_then(Toml::as_inline_table_mut);
+                shape.ok_or_else(|| Said::NoShape(name.clone()))?.remove(field);
                 shift(&mut table, self.way_of(name), self.dimension());
                 self.exchange(Step::Shape(field), Some(name), Some(table))
             }

@@ -7,6 +7,7 @@
 //! ```
 
 mod edits;
+mod ends;
 mod offers;
 mod opening;
 mod pointer;
@@ -36,6 +37,8 @@ use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::{Options, WorldError};
 use pointer::Held;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
@@ -85,6 +88,8 @@ pub enum Request {
     Unpin(usize, u32),
     /// Set a parameter.
     Set(String, Value),
+    /// Give a field of an obstacle no longer.
+    Unset(String),
     /// Set a parameter by a hand that is down since the press of this number: all that it sets is undone as one.
     Draw(u64, String, Value),
     /// Give a body other models.
@@ -107,13 +112,24 @@ pub enum Request {
     Compare(bool),
     /// Let the right one differ in this.
     Differ(Difference),
+    /// The scene of this mark was saved.
+    Saved(u64),
 }
 
 impl Request {
+    /// Whether it cannot wait until a frame is done that takes long.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn breaks_off(&self) -> bool {
+        use Request::{Accept, Draw, Open, Play, Replay, Reset, Seek};
+        let now = matches!(self, Open { .. } | Play(false) | Replay | Reset | Seek(_) | Accept(_));
+        // What a hand draws comes with every picture: no frame would ever be done.
+        now || self.is_edit() && !matches!(self, Draw(..))
+    }
+
     /// Whether it changes the scene.
     fn is_edit(&self) -> bool {
-        use Request::{AsTheScene, Compare, Differ, Draw, Edit, Integrator, Models, Redo, Set, Take, Undo};
-        let sets = matches!(self, Set(..) | Draw(..) | Models(..) | Integrator(..) | AsTheScene(..));
+        use Request::{AsTheScene, Compare, Differ, Draw, Edit, Integrator, Models, Redo, Set, Take, Undo, Unset};
+        let sets = matches!(self, Set(..) | Unset(..) | Draw(..) | Models(..) | Integrator(..) | AsTheScene(..));
         sets || matches!(self, Take(..) | Edit(..) | Undo | Redo | Compare(..) | Differ(..))
     }
 }
@@ -157,6 +173,10 @@ pub struct Session {
     opened: u64,
     /// How often another state took the place of the one before at once.
     replaced: u64,
+    /// What was told of the end of the scene.
+    ends: ends::Ends,
+    /// A mark of the text of the scene as it was opened or saved.
+    clean: u64,
     /// What was refused because its step was too long.
     refused: Option<Request>,
     /// The recording that it was opened from.
@@ -169,6 +189,13 @@ impl core::fmt::Debug for Session {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Session").field("scene", &self.document.name).field("frame", &self.engine.frames()).finish()
     }
+}
+
+/// A mark of a text.
+fn mark(text: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    hasher.finish()
 }
 
 impl Session {
@@ -185,6 +212,8 @@ impl Session {
     fn begin(document: Document, files: Files, options: Options) -> Result<Session, Said> {
         let engine = pair::build(&document, None, &files, &options)?;
         let mut session = Session {
+            ends: ends::Ends::of(engine.warnings()),
+            clean: mark(&document.text()),
             own_commands: document.commands(),
             document,
             files,
@@ -229,6 +258,9 @@ impl Session {
             Request::Play(playing) => {
                 self.playing = playing;
                 self.pacing.rest();
+                if !playing {
+                    self.look_where_time_stands();
+                }
                 Ok(())
             }
             Request::Step => {
@@ -264,6 +296,7 @@ impl Session {
             }
             Request::Unpin(body, node) => self.let_go(body, node),
             Request::Set(path, value) => self.set(&path, value, None),
+            Request::Unset(path) => self.unset(&path),
             Request::Draw(press, path, value) => self.set(&path, value, Some(press)),
             Request::Models(body, models) => self.change(body, Some(models), None),
             Request::Integrator(Some(body), values) => self.change(body, None, Some(values)),
@@ -275,6 +308,10 @@ impl Session {
             Request::Accept(offer) => self.accept(&offer),
             Request::Show(show) => {
                 self.show = show;
+                Ok(())
+            }
+            Request::Saved(mark) => {
+                self.clean = mark;
                 Ok(())
             }
             Request::Compare(wanted) => self.compare(wanted.then(Vec::new)),
@@ -289,7 +326,8 @@ impl Session {
             Ok(()) if edits && self.messages == before => {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
-            Ok(()) => {}
+            // Who broke it off has asked for something else.
+            Ok(()) | Err(Said::World(WorldError::BrokenOff)) => {}
             Err(Said::World(error)) => self.refuse(&error, Some(again)),
             Err(said) => self.tell(Severity::Refused, said, None),
         }
@@ -305,6 +343,9 @@ impl Session {
                 if self.engine.frames() >= goal {
                     self.arrive();
                 } else if let Err(error) = self.frame() {
+                    if error == WorldError::BrokenOff {
+                        return;
+                    }
                     self.goal = None;
                     self.refuse(&error, None);
                 }
@@ -325,7 +366,9 @@ impl Session {
             self.frame().map(|()| clock().saturating_sub(start)).map_err(Some)
         });
         self.pacing = pacing;
-        if let Err(Some(error)) = outcome {
+        if let Err(Some(error)) = outcome
+            && error != WorldError::BrokenOff
+        {
             self.playing = false;
             self.refuse(&error, None);
         }
@@ -335,12 +378,14 @@ impl Session {
     fn frame(&mut self) -> Result<(), WorldError> {
         if self.recorded_frame()? {
             self.sample();
+            self.look_at_the_end();
             return Ok(());
         }
         self.lead_held();
         self.engine.frame()?;
         self.latest = self.latest.max(self.engine.frames());
         self.keep();
+        self.look_at_the_end();
         Ok(())
     }
 
@@ -382,6 +427,21 @@ impl Session {
     /// In what the scene on the right differs, where there is one.
     pub fn differences(&self) -> Option<&[Difference]> {
         self.differences.as_deref()
+    }
+
+    /// Set from outside, it ends a frame that takes long.
+    pub fn break_off(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.options.break_off)
+    }
+
+    /// Whether anything was edited or recorded since it was opened or saved.
+    pub fn is_edited(&self) -> bool {
+        self.mark() != self.clean
+    }
+
+    /// A mark of the text of the scene, by which it is told from others.
+    pub fn mark(&self) -> u64 {
+        mark(&self.document.text())
     }
 
     /// The text of the scene as it stands.

@@ -12,6 +12,8 @@ impl Session {
     /// Everything that there is to see now.
     pub fn shown(&mut self) -> Shown {
         let mut shown = self.engine.shown(&self.show);
+        self.ends.add(&mut shown);
+        shown.hash = self.show.hash.then(|| self.engine.hash());
         shown.name.clone_from(&self.document.name);
         shown.latest = self.latest;
         shown.playing = self.playing;

@@ -61,6 +61,7 @@ impl Titles {
         match said {
             Said::World(error) => Said::World(self.in_error(error)),
             Said::Because(text) => Said::Because(self.in_text(&text)),
+            Said::AtTheEnd(time, list) => Said::AtTheEnd(time, list.iter().map(|text| self.in_text(text)).collect()),
             Said::GoesOn(name) => Said::GoesOn(of(&name)),
             Said::NoBody(name) => Said::NoBody(of(&name)),
             Said::NoShape(name) => Said::NoShape(of(&name)),

@@ -5,6 +5,7 @@ use crate::differences::Difference;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 use opruga::core::spec::Value;
+use opruga::draw::ArrowKind;
 use opruga::math::words::number;
 use opruga::world::schema::MOST_SUBSTEPS;
 
@@ -38,6 +39,17 @@ impl Language {
             Step::Unpin => self.step_unpin().into(),
             Step::Reset => self.step_reset().into(),
             Step::Compare => self.step_compare().into(),
+        }
+    }
+
+    /// What an arrow of a kind stands for.
+    pub fn arrow(self, kind: ArrowKind) -> &'static str {
+        match kind {
+            ArrowKind::Velocity => self.arrow_of_velocity(),
+            ArrowKind::Normal => self.arrow_of_normal(),
+            ArrowKind::Contact => self.arrow_of_contact(),
+            ArrowKind::Pressure => self.arrow_of_pressure(),
+            _ => self.arrow_of_force(),
         }
     }
 
@@ -76,6 +88,23 @@ impl Language {
             Said::GoesOn(name) => format!("`{name}` {}", self.goes_on()),
             Said::AllGoOn(kind) => format!("{} `{}`", self.all_go_on(), self.kind(Part::Integrator, kind)),
             Said::SetDown => self.set_down().into(),
+            Said::AtTheStartAlone(path) => {
+                let name = self.done(&Step::Set(path.clone()));
+                either!(
+                    self,
+                    "`{name}` can be left out at the start alone: Reset, and then ×",
+                    "`{name}` se može izostaviti samo na početku: „Na početak”, pa ×"
+                )
+            }
+            Said::AtTheEnd(time, list) => {
+                let list: Vec<String> = list.iter().map(|said| self.detail(said).to_string()).collect();
+                let list = list.join(" · ");
+                either!(
+                    self,
+                    "The scene ends here, at t = {time:.2} s. Warning: {list}",
+                    "Prizor ovdje završava, u t = {time:.2} s. Upozorenje: {list}"
+                )
+            }
             Said::RecordingEnds(time) => either!(
                 self,
                 "The recording ends here, at t = {time:.2} s. What comes later is computed: a new course",

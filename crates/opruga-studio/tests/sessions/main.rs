@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods)]
 
 mod edits;
+mod ends;
 mod files;
 mod refusals;
 mod replays;

@@ -7,6 +7,7 @@ mod panels;
 mod pointer;
 #[path = "../screen/mod.rs"]
 mod screen;
+mod steady;
 
 use egui::{Event, Key, Modifiers, PointerButton, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};

@@ -1,0 +1,146 @@
+//! Arrows over a scene of the plane, and the key to those of both dimensions: an arrow as long as it is drawn for a round value.
+
+use super::camera::Flat;
+use super::look::{Look, Paper};
+use super::plane::{colour, on_paper};
+use crate::shown::Shown;
+use crate::words::Language;
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
+use opruga::draw::{ArrowKind, arrow_colour, arrow_unit, format_value, nice_length};
+use std::collections::BTreeMap;
+
+/// The length of the longest arrow of a kind in the plane, and of unit normals there [points].
+const LONG: f64 = 60.0;
+const LONG_NORMAL: f64 = 18.0;
+
+/// The longest arrow of every kind that is drawn: at once longer, slowly shorter, so that the scale can be read.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Longest(pub(crate) BTreeMap<ArrowKind, f64>);
+
+impl Longest {
+    /// Follows what is drawn now.
+    pub(crate) fn follow(&mut self, shown: &Shown) {
+        let right = shown.beside.iter().flat_map(|beside| &beside.right.picture.arrows);
+        let mut now: BTreeMap<ArrowKind, f64> = BTreeMap::new();
+        for arrow in shown.picture.arrows.iter().chain(right) {
+            let entry = now.entry(arrow.kind).or_insert(0.0);
+            *entry = entry.max(arrow.vector.iter().map(|c| c * c).sum::<f64>().sqrt());
+        }
+        for (kind, longest) in &mut now {
+            let before = self.0.get(kind).copied().filter(|before| before > longest && *longest > 0.0);
+            *longest = before.map_or(*longest, |before| before + 0.04 * (*longest - before));
+        }
+        self.0 = now;
+    }
+
+    /// The longest arrow of a kind, where it is one at all.
+    fn of(&self, kind: ArrowKind) -> Option<f64> {
+        self.0.get(&kind).copied().filter(|longest| *longest > 0.0)
+    }
+}
+
+/// The colour of a kind of arrow: that of the pictures of the command line, where it can be seen.
+fn ink(kind: ArrowKind, paper: &Paper) -> Color32 {
+    match kind {
+        ArrowKind::Force => paper.ink,
+        kind => on_paper(colour(arrow_colour(kind)), paper),
+    }
+}
+
+/// The longest arrow of a kind in the plane [points].
+fn long(kind: ArrowKind) -> f64 {
+    if kind == ArrowKind::Normal { LONG_NORMAL } else { LONG }
+}
+
+/// Arrows, each kind in a scale of its own.
+pub(super) fn paint(look: &Look<'_>, flat: &Flat, longest: &Longest, project: &dyn Fn([f64; 3]) -> Pos2) {
+    for mark in &look.shown.picture.arrows {
+        let Some(most) = longest.of(mark.kind).filter(|_| mark.kind != ArrowKind::Pull) else { continue };
+        let scale = flat.metres(long(mark.kind)) / most;
+        let (from, to) = (project(mark.from), project([0, 1, 2].map(|d| mark.from[d] + scale * mark.vector[d])));
+        if (to - from).length() >= 2.0 {
+            arrow(look.painter, from, to, Stroke::new(1.5, ink(mark.kind, look.paper)), 6.0);
+        }
+    }
+}
+
+/// A line with a head of this length.
+pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, long: f32) {
+    let way = to - from;
+    painter.line_segment([from, to], stroke);
+    let back = way.normalized() * long.min(0.5 * way.length());
+    let side = Vec2::new(-back.y, back.x) * 0.45;
+    let head = vec![to, to - back + side, to - back - side];
+    painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+}
+
+/// What a key says of a kind: a round value, the points of the screen that an arrow of it takes, and its words.
+fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Language) -> Option<(f32, String)> {
+    if !(points > 0.0 && points.is_finite()) {
+        return None;
+    }
+    let name = words.arrow(kind);
+    if kind == ArrowKind::Normal {
+        return Some((points as f32, name.into()));
+    }
+    // Looked at from near they would take the whole window.
+    let value = nice_length(most * (0.3 * f64::from(look.rect.width()) / points).min(1.0));
+    let unit = arrow_unit(kind, &look.shown.picture.length_unit);
+    Some(((points * value / most) as f32, format!("{name} {} {unit}", format_value(value))))
+}
+
+/// The key: for every kind of arrow that is seen one of a round value, above the bar of lengths. In space arrows are as long as they
+/// are at the point that is looked at; `points_of` gives the points of the screen of the longest one there.
+pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) {
+    let Look { painter, rect, paper, shown, .. } = *look;
+    let base = rect.bottom()
+        - if shown.dimension == 3 { 18.0 } else { 46.0 }
+        - if shown.beside.is_some() { 40.0 } else { 0.0 };
+    let rows: Vec<(ArrowKind, f32, String)> = longest
+        .0
+        .keys()
+        .filter(|kind| **kind != ArrowKind::Pull)
+        .filter_map(|kind| {
+            let (long, text) = entry(look, *kind, longest.of(*kind)?, points_of.unwrap_or(long(*kind)), words)?;
+            Some((*kind, long, text))
+        })
+        .collect();
+    let wide = rows.iter().map(|(_, long, _)| *long).fold(0.0, f32::max);
+    for (row, (kind, long, text)) in rows.into_iter().enumerate() {
+        let start = Pos2::new(rect.left() + 14.0, base - 17.0 * row as f32);
+        let galley = painter.layout_no_wrap(text, FontId::proportional(12.0), paper.ink);
+        let place = Align2::LEFT_CENTER.anchor_size(start + Vec2::new(wide + 8.0, 0.0), galley.size());
+        let ground = Rect::from_min_max(Pos2::new(start.x - 4.0, place.top()), place.max + Vec2::new(4.0, 0.0));
+        painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.7));
+        arrow(painter, start, start + Vec2::new(long, 0.0), Stroke::new(1.5, ink(kind, paper)), 6.0);
+        painter.galley(place.min, galley, paper.ink);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opruga::draw::{ArrowPicture, Picture};
+
+    #[test]
+    fn the_scale_of_arrows_follows_longer_ones_at_once_and_shorter_ones_slowly() {
+        let seen = |long: f64| {
+            let mark = |kind| ArrowPicture { kind, from: [0.0; 3], vector: [0.0, long, 0.0] };
+            let arrows = if long < 0.0 { Vec::new() } else { vec![mark(ArrowKind::Velocity)] };
+            Shown { picture: Picture { arrows, ..Default::default() }, ..Default::default() }
+        };
+        let mut longest = Longest::default();
+        longest.follow(&seen(2.0));
+        assert_eq!(longest.of(ArrowKind::Velocity), Some(2.0));
+        longest.follow(&seen(5.0));
+        assert_eq!(longest.of(ArrowKind::Velocity), Some(5.0));
+        longest.follow(&seen(1.0));
+        assert!(longest.of(ArrowKind::Velocity).is_some_and(|long| (4.0..5.0).contains(&long)));
+        // What stands still has no scale, and what is seen no longer leaves none behind.
+        longest.follow(&seen(0.0));
+        assert_eq!(longest.of(ArrowKind::Velocity), None);
+        longest.follow(&seen(5.0));
+        longest.follow(&seen(-1.0));
+        assert!(longest.0.is_empty());
+    }
+}
