@@ -230,14 +230,15 @@ impl Outputs<'_> {
             None => format!(" in {:.2} s", self.wall),
         };
         eprintln!(
-            "{}: {from}{:.3} s of {}{speed}\n  energy {} J; {} J {} without a cause, {} of the most that was in motion",
+            "{}: {from}{:.3} s of {}{speed}\n  energy {} J; the ledger closes to {} % of the most that was in motion ({} J {} by the \
+             integrator's error)",
             world.blueprint().name,
             world.time(),
             counted(nodes as u64, "node", "nodes"),
             number(e.total()),
+            rounded(100.0 * e.closure, 2),
             number(e.loss_integrator.abs()),
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
-            rounded(e.closure, 2),
         );
         world
             .warnings_at_the_end()
@@ -247,9 +248,14 @@ impl Outputs<'_> {
         self.say_where();
     }
 
-    /// Where the output lies.
+    /// Where the output lies, and what of it is for the eye.
     pub(crate) fn say_where(&self) {
         eprintln!("written to {}", self.folder.path("").display());
+        let pictures = ["video.mp4", "video.gif", "strip.png", "plots.svg"];
+        let there: Vec<&str> = pictures.into_iter().filter(|name| self.folder.path(name).is_file()).collect();
+        if !there.is_empty() {
+            eprintln!("  to look at: {}", there.join(", "));
+        }
     }
 }
 

@@ -79,9 +79,6 @@ scene.toml:11:47: error[scene.range]: `stiffness` is -5
  11 | models = [{ kind = "mass_spring", stiffness = -5 }]
     |                                               ^^
   = allowed: a number >= 0
-scene.toml:14:8: error[scene.missing]: `select` is missing in `pin`
- 14 | pin = [{ selct = { node = 0 } }]
-    |        ^^^^^^^^^^^^^^^^^^^^^^^^
 scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
  14 | pin = [{ selct = { node = 0 } }]
     |          ^^^^^

@@ -339,6 +339,17 @@ fn all_errors_at_once() {
     assert_eq!((found.len(), found[200].code), (201, "scene.more"));
 }
 
+/// A misspelt name is one slip: what it stands for is not said to be missing too. Where unknown fields pass, it is.
+#[test]
+fn a_misspelt_name_is_one_error() {
+    for (right, wrong) in [("vertices", "vertces"), ("radius", "radus"), ("mass = 1.0", "mas = 1.0"), ("name", "nme")] {
+        let text = format!("{HEAD}{}", BALL.replacen(right, wrong, 1));
+        let found: Vec<&str> = errors(&text).iter().map(|error| error.code).collect();
+        assert_eq!(found, ["scene.unknown_field"], "{wrong}");
+        assert!(read_with(&text, &Options { lenient: true, ..Options::default() }).is_err(), "{wrong}");
+    }
+}
+
 /// Errors in the fields of a body do not hide those of what selects its nodes, wherever that stands.
 #[test]
 fn wrong_numbers_of_nodes_are_found_beside_wrong_fields() {

@@ -1,7 +1,7 @@
 //! Names that are near to what was written.
 
 /// What else in the field bears a name, letters and digits only, and how it is called here.
-const OTHER_NAMES: [(&str, &str); 22] = [
+const OTHER_NAMES: [(&str, &str); 23] = [
     ("rk4", "runge_kutta"),
     ("rungekutta4", "runge_kutta"),
     ("euler", "symplectic_euler"),
@@ -24,6 +24,7 @@ const OTHER_NAMES: [(&str, &str); 22] = [
     ("circle", "ring"),
     ("plane", "half_space"),
     ("sphere", "icosphere"),
+    ("name", "title"),
 ];
 
 /// The candidate that another name in the field stands for, or that differs from a word in the fewest letters, if it is near enough to be meant.

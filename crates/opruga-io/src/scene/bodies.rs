@@ -273,6 +273,7 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
             })
         }
         [] if values.flag("fixed") => Some(Mass::Node(1.0)),
+        [] if reader.misspelt(node, &schema::BODY, None).iter().any(|meant| WORDS.contains(&meant.as_str())) => None,
         [] => {
             let error = SceneError::new("scene.missing", "the body has no mass")
                 .path(join(path, "mass"))

@@ -173,10 +173,7 @@ impl<'a> Reader<'a> {
             self.wrong_type(node, path, "a table");
             return values;
         }
-        let names = || {
-            let fields = section.spec.fields.iter().map(|f| f.name);
-            fields.chain(section.children.iter().map(|c| c.name)).chain(tag)
-        };
+        let names = || names(section, tag);
         for entry in node.entries() {
             let here = join(path, &entry.key);
             if let Some(field) = section.spec.fields.iter().find(|f| f.name == entry.key) {
@@ -208,10 +205,21 @@ impl<'a> Reader<'a> {
                 if self.options.lenient { self.notice(entry.place, error) } else { self.report(entry.place, error) }
             }
         }
-        self.missing(node, path, section);
-        self.choices(node, path, section.spec);
+        let meant = self.misspelt(node, section, tag);
+        self.missing(node, path, section, &meant);
+        self.choices(node, path, section.spec, &meant);
         self.without_effect(node, path, section.spec, &values);
         values
+    }
+
+    /// The fields that are there under a misspelt name: one slip is one error. Where unknown fields pass with a warning, what
+    /// they may have meant is missing all the same.
+    pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
+        if self.options.lenient {
+            return Vec::new();
+        }
+        let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
+        unknown.filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 
     /// Tells of fields that are written and have no say among the others.
@@ -226,11 +234,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports all missing fields of a table at once.
-    fn missing(&mut self, node: &Node, path: &str, section: &Section) {
+    /// Reports all missing fields of a table at once, but for those that are meant by a misspelt name.
+    fn missing(&mut self, node: &Node, path: &str, section: &Section, meant: &[String]) {
         let plain = section.spec.fields.iter().filter(|f| f.default == Default::Required).map(|f| f.name);
         let structured = section.children.iter().filter(|c: &&Child| c.required).map(|c| c.name);
-        let missing: Vec<&str> = plain.chain(structured).filter(|name| node.get(name).is_none()).collect();
+        let missing: Vec<&str> = plain
+            .chain(structured)
+            .filter(|name| node.get(name).is_none() && !meant.iter().any(|m| m == name))
+            .collect();
         if missing.is_empty() {
             return;
         }
@@ -246,9 +257,9 @@ impl<'a> Reader<'a> {
         self.report(node.place, error);
     }
 
-    /// Reports choices between fields of which none or several are given.
-    fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec) {
-        for set in spec.choices() {
+    /// Reports choices between fields of which none or several are given, but for those that a misspelt name means.
+    fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec, meant: &[String]) {
+        for set in spec.choices().filter(|set| !set.iter().any(|name| meant.iter().any(|m| m == name))) {
             let given: Vec<&&str> = set.iter().filter(|name| node.get(name).is_some()).collect();
             let (place, name) = match given.as_slice() {
                 [_] => continue,
@@ -371,4 +382,10 @@ impl<'a> Reader<'a> {
 pub(crate) fn listed<'w>(words: impl Iterator<Item = &'w str>) -> String {
     let mut seen = BTreeSet::new();
     words.filter(|word| seen.insert(*word)).collect::<Vec<_>>().join(", ")
+}
+
+/// The names of all that a table may hold.
+fn names<'s>(section: &'s Section, tag: Option<&'s str>) -> impl Iterator<Item = &'s str> {
+    let fields = section.spec.fields.iter().map(|f| f.name);
+    fields.chain(section.children.iter().map(|c| c.name)).chain(tag)
 }

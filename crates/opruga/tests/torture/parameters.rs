@@ -134,6 +134,8 @@ fn everything_that_is_wrong_is_said_at_once() {
     println!("{said}");
     assert_eq!(said.matches("error[model.one_of]").count(), 3, "{said}");
     assert!(said.contains("`normal` is [0, 0]") && said.contains("`point` is not finite"), "{said}");
+    let misspelt = super::said(&ring(16, "{ kind = \"mass_spring\", stifness = 1 }", ""));
+    assert!(misspelt.contains("there is no field `stifness`") && !misspelt.contains("model.one_of"), "{misspelt}");
     let broken = ring(16, "{ kind = \"mass_spring\" }", "[[command]]\ndo = \"remove\"\nat = 1\nbody = \"c\"\n");
     let said = super::said(&broken.replace("radius = 0.5", "radius = -1"));
     assert!(said.contains("there is no body `c`") && !said.contains("has no bodies"), "{said}");
