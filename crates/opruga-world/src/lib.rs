@@ -18,6 +18,7 @@ mod loads;
 mod looks;
 pub mod modes;
 mod other_balances;
+mod pin_ways;
 mod plausible;
 mod population;
 mod problems;

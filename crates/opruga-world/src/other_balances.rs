@@ -8,14 +8,20 @@
 //! a small part. A folded body holds its energy by itself, by forces that are small or act where its own shape would lie too.
 //!
 //! The best fit is that of least squares with the weights |fᵢ|: it lays the rest shape to where something holds the body.
+//!
+//! Pins that lead nodes have done work all along their ways, whatever lies between the ends of these: a bar that they have turned
+//! three times round holds what they gave, though its ends lie where those of the bar at rest do. A node that was led counts with the
+//! way that it has gone, beyond one of all pins as a whole, where that is longer: U ≤ Σ |fᵢ| sᵢ where the forces grew on the way.
 
+use crate::pin_ways::ways;
 use crate::world::{Warning, World};
 use opruga_core::state::{Columns, Layout, View};
 use opruga_core::system::{Stage, System};
 use opruga_core::tile::Tile;
 use opruga_math::words::{number, rounded};
-use opruga_math::{Column, WIDTH, sum_in_fixed_order};
+use opruga_math::{Column, Lane, WIDTH, sum_in_fixed_order};
 use opruga_solve::dense::symmetric_eigen;
+use std::collections::BTreeMap;
 
 /// The code of the warning.
 const OTHER_BALANCE: &str = "cells.other_balance";
@@ -28,6 +34,10 @@ const STRAINED: f64 = 1e-3;
 
 /// The weight of all masses together in the fit, beside one for all forces: so it is defined where forces leave it open.
 const LITTLE: f64 = 1e-6;
+
+/// How many times as large as at its end the mean force of a way may have been along which pins led a node: laws that soften, and
+/// bodies that buckle, give way.
+const FALLEN: f64 = 2.0;
 
 /// A vector; in the plane the last number is zero.
 type Vector = [f64; 3];
@@ -47,6 +57,8 @@ struct Node {
     velocity: Vector,
     force: Vector,
     mass: f64,
+    /// How far pins have led it [m].
+    led: f64,
 }
 
 impl<const D: usize> World<D> {
@@ -114,15 +126,25 @@ impl<const D: usize> World<D> {
 
     fn nodes_of(&self, body: usize, forces: &Columns<D>) -> Vec<Node> {
         let (island, lane) = self.place[body];
-        let layout = self.islands[island].system.layout;
+        let system = &self.islands[island].system;
+        let layout = system.layout;
+        let mesh = &self.blueprint.bodies[body].mesh;
+        let mut led = vec![0.0; mesh.positions.len()];
+        let node_at: BTreeMap<usize, usize> = (0..led.len()).map(|node| (layout.place(node, lane), node)).collect();
+        let pins: Vec<_> = system.pins.iter().filter(|pin| node_at.contains_key(&pin.place)).collect();
+        for (pin, way) in pins.iter().zip(ways(&pins, system.time)) {
+            let led = &mut led[node_at[&pin.place]];
+            *led = led.larger(way);
+        }
         let of = |node: (usize, &[f64; D])| Node {
             rest: in_space(node.1),
             now: in_space(&self.position(body, node.0 as u32)),
             velocity: in_space(&self.velocity(body, node.0 as u32)),
             force: in_space(&forces.at(layout.place(node.0, lane))),
             mass: self.node_mass(body, node.0 as u32),
+            led: led[node.0],
         };
-        self.blueprint.bodies[body].mesh.positions.iter().enumerate().map(of).collect()
+        mesh.positions.iter().enumerate().map(of).collect()
     }
 
     /// Whether any cell has another shape than at rest.
@@ -168,7 +190,7 @@ fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH
     Some((energies, forces))
 }
 
-/// Σ |fᵢ| |xᵢ − yᵢ| with the rest shape moved as a whole to its best fit yᵢ [J].
+/// Σ |fᵢ| |xᵢ − yᵢ| with the rest shape moved as a whole to its best fit yᵢ, and the ways of led nodes where these are longer [J].
 fn accounted(nodes: &[Node], dimension: usize) -> f64 {
     let (mut forces, mut mass) = (0.0, 0.0);
     for node in nodes {
@@ -198,7 +220,7 @@ fn accounted(nodes: &[Node], dimension: usize) -> f64 {
         let (from, to) = (less(&node.rest, &rest), less(&node.now, &now));
         length(&core::array::from_fn(|d| to[d] - dot(&turn[d], &from)))
     };
-    nodes.iter().map(|node| length(&node.force) * distance(node)).sum()
+    nodes.iter().map(|node| length(&node.force) * distance(node).larger(FALLEN * node.led)).sum()
 }
 
 /// The rotation in the plane that brings X nearest to x, from Σ w X xᵀ.
