@@ -13,6 +13,7 @@
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
 //! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
+//! | `beginning` | where that begins |
 //! | `line_search` | how far a step is gone |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
@@ -41,6 +42,7 @@
 //! brings along the normal is lost or returned by the restitution, and friction takes µ times that change as well.
 
 pub(crate) mod approach;
+mod beginning;
 pub(crate) mod contact;
 pub(crate) mod contact_derivatives;
 mod growth;

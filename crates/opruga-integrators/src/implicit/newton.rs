@@ -1,9 +1,10 @@
 //! Newton's method on the balance of forces of a stage.
 
 use super::approach::part_without_inertia;
+use super::beginning::begin;
 use super::contact::{Contacting, Verdict};
 use super::contact_derivatives::Sight;
-use super::line_search::{line_search, potential, slope_along};
+use super::line_search::{line_search, slope_along};
 use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
 use super::settings::Settings;
@@ -105,7 +106,7 @@ pub(crate) fn solve<const D: usize>(
     for x in &room.x0 {
         size = x.abs().larger(size);
     }
-    begin(system, room, balance)?;
+    let torn = begin(system, room, balance)?;
     room.mixing.begin(room.u.len());
     room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
     let mut first_norm = 0.0;
@@ -210,34 +211,10 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
     }
-    Ok(solved)
-}
-
-/// Evaluates where the iteration begins: where the motion leads or, where a body would be torn there, where it is.
-fn begin<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> Result<(), StepError> {
-    if balance.sigma == 0.0 {
-        return evaluate(system, room, balance, false);
+    match torn {
+        Some(error) if !solved.converged => Err(error),
+        _ => Ok(solved),
     }
-    for k in 0..room.u.len() {
-        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
-    }
-    let here = match evaluate(system, room, balance, true) {
-        Ok(()) => potential(system, room, balance, true).map(|(energy, _)| energy),
-        Err(_) => None,
-    };
-    let there = evaluate(system, room, balance, false);
-    let better = match (here, &there) {
-        (None, _) => return there,
-        (Some(_), Err(_)) => true,
-        (Some(here), Ok(())) => !potential(system, room, balance, false).is_some_and(|(there, _)| there <= here),
-    };
-    if better {
-        for k in 0..room.u.len() {
-            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
-        }
-        evaluate(system, room, balance, false)?;
-    }
-    Ok(())
 }
 
 /// The longest way of a node.

@@ -1,0 +1,64 @@
+//! Where an iteration begins.
+
+use super::line_search::potential;
+use super::newton::{Balance, evaluate};
+use super::room::Room;
+use opruga_core::error::StepError;
+use opruga_core::system::System;
+
+/// Evaluates where the iteration begins: where the motion leads or, where a body would be torn there, where it is.
+///
+/// Pins go to where they have to be at once, and leave the cells beside them the whole way, many times what is their share of it. Where
+/// that alone tears these cells, it begins with nothing moved at all, and pins go their way with the rest of the body, in the
+/// iterations. What the model has said is given, for the case that these lead nowhere.
+pub(super) fn begin<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+) -> Result<Option<StepError>, StepError> {
+    let error = match begin_with_pins(system, room, balance) {
+        Ok(()) => return Ok(None),
+        Err(error) => error,
+    };
+    let leads = |(held, u): (&f64, &f64)| !held.is_nan() && *u != 0.0;
+    if !(matches!(error, StepError::Model { .. }) && room.held.iter().zip(&room.u).any(leads)) {
+        return Err(error);
+    }
+    room.u.fill(0.0);
+    match evaluate(system, room, balance, false) {
+        Ok(()) => Ok(Some(error)),
+        // It was not torn by the pins.
+        Err(_) => Err(error),
+    }
+}
+
+/// The same with pins where they have to be.
+fn begin_with_pins<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+) -> Result<(), StepError> {
+    if balance.sigma == 0.0 {
+        return evaluate(system, room, balance, false);
+    }
+    for k in 0..room.u.len() {
+        room.trial[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+    }
+    let here = match evaluate(system, room, balance, true) {
+        Ok(()) => potential(system, room, balance, true).map(|(energy, _)| energy),
+        Err(_) => None,
+    };
+    let there = evaluate(system, room, balance, false);
+    let better = match (here, &there) {
+        (None, _) => return there,
+        (Some(_), Err(_)) => true,
+        (Some(here), Ok(())) => !potential(system, room, balance, false).is_some_and(|(there, _)| there <= here),
+    };
+    if better {
+        for k in 0..room.u.len() {
+            room.u[k] = if room.held[k].is_nan() { 0.0 } else { room.held[k] };
+        }
+        evaluate(system, room, balance, false)?;
+    }
+    Ok(())
+}
