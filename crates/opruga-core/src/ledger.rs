@@ -73,6 +73,8 @@ pub struct SolverWork {
     pub accepted: u64,
     /// Steps that were halved since they had not converged.
     pub halved: u64,
+    /// How often one step was halved at most: its shortest part is 2⁻ⁿ of it.
+    pub deepest: u64,
     /// Steps of the real-time setting that may be worse than it promises: a budget that was spent, or equations so slow to solve
     /// that what is left says little.
     pub cut_off: u64,
@@ -94,6 +96,7 @@ impl SolverWork {
         self.residual = other.residual.larger(self.residual);
         self.accepted += other.accepted;
         self.halved += other.halved;
+        self.deepest = self.deepest.max(other.deepest);
         self.cut_off += other.cut_off;
         self.left = other.left.larger(self.left);
         self.disturbed += other.disturbed;

@@ -413,3 +413,18 @@ fn the_error_object() {
         })
     );
 }
+
+/// What a scene places by numbers of any size is refused at its own line, with the value and what is allowed.
+#[test]
+fn placements_beyond_all_measure_name_their_field() {
+    let with = |field: &str| format!("{HEAD}{BALL}{field}\n");
+    for (field, parts) in [
+        ("rotation = 1e200", ["`rotation` is 1e200", "angles within 1e6 radians", "whole turns of 6.283185307179586"]),
+        ("rotation = -1e7", ["`rotation` is -1e7", "angles within 1e6 radians", "whole turns of 6.283185307179586"]),
+        ("scale = 1e-320", ["`scale` is 1e-320: products of lengths so small are zero", "from 1e-70", "in metres"]),
+    ] {
+        let said = said(&with(field));
+        assert!(said.contains(&format!(" | {field}")), "{said}");
+        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+    }
+}

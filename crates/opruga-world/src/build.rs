@@ -178,7 +178,9 @@ impl<const D: usize> Builder<'_, D> {
         let places = layout.places(nodes);
         let range = plausible::range(&first.mesh);
         for (body, state) in blueprints.iter().zip(states) {
+            let time = &self.blueprint.time;
             plausible::check_range(&state.x, range)
+                .and_then(|()| plausible::check_speed(&state.v, range, time.frame / f64::from(time.substeps)))
                 .map_err(|source| WorldError::Build { place: format!("body `{}`", body.name), source })?;
         }
         let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));

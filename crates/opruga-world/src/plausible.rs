@@ -79,6 +79,25 @@ pub(crate) fn check_range<const D: usize>(x: &[[f64; D]], range: f64) -> Result<
     Err(BuildError::new("position", "scene.range", message))
 }
 
+/// Refuses a body that goes farther in a step of h [s] than its [`range`] reaches.
+pub(crate) fn check_speed<const D: usize>(v: &[[f64; D]], range: f64, h: f64) -> Result<(), BuildError> {
+    let fastest = v.iter().flatten().fold(0.0, |most: f64, c| if c.abs() > most { c.abs() } else { most });
+    // Written so that what is no number is too fast.
+    if fastest * h <= range {
+        return Ok(());
+    }
+    let message = format!(
+        "`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s; allowed: at most {} m/s, \
+         with which a step ends where positions still have digits that tell its nodes apart; hint: are its units mixed (metres, seconds, \
+         radians)?",
+        rounded(fastest, 3),
+        rounded(fastest * h, 3),
+        number(h),
+        rounded(range / h, 3),
+    );
+    Err(BuildError::new("velocity", "scene.range", message))
+}
+
 /// The code of the warning of bodies that begin inside an obstacle.
 pub(crate) const BURIED: &str = "contact.starts_inside";
 

@@ -311,10 +311,18 @@ impl<const D: usize> World<D> {
             "a step counted though Newton's method had not converged (`when_not_converged = \"accept\"`)",
             solver.accepted,
         );
+        // No step is halved more often than an integrator may.
+        let parts = 1u64 << solver.deepest.min(63);
         count(
             "step.halved",
-            "a step, of time or of the load, was made in two halves since Newton's method had not converged \
-             (`when_not_converged = \"halve\"`, or in real time)",
+            &format!(
+                "a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where \
+                 need be, down to {} s, a part of 1/{parts}: Newton's method had not converged over the whole \
+                 (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and \
+                 took longer; hint: more substeps, in statics more `load_steps` or frames, spare the attempts in vain",
+                number(self.h()),
+                number(self.h() / parts as f64),
+            ),
             solver.halved,
         );
         count(

@@ -317,7 +317,7 @@ A body with a `fem` model whose cells are all triangles or tetrahedra has 2 wher
     ),
     children: &[
         child("shape", Holds::Shape, true, "Its shape at rest."),
-        child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad]."),
+        child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad], within 1e6."),
         child(
             "angular_velocity",
             Holds::Turn,

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 6;
+const VERSION: u64 = 7;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -102,8 +102,9 @@ impl<const D: usize> World<D> {
             out.count(n);
         }
         let s = &f.solver;
-        for n in [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.cut_off, s.disturbed, s.odd_rests]
-        {
+        let counts =
+            [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
+        for n in counts.into_iter().chain([s.odd_rests]) {
             out.count(n);
         }
         out.number(s.residual);
@@ -244,7 +245,7 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
-        let mut solver = [0; 8];
+        let mut solver = [0; 9];
         for n in &mut solver {
             *n = reader.count()?;
         }
@@ -254,7 +255,7 @@ impl<const D: usize> World<D> {
         }
         let [user, gas, damping, friction, contact, correction, start, changed, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
-        let [steps, iterations, linear_iterations, accepted, halved, cut_off, disturbed, odd_rests] = solver;
+        let [steps, iterations, linear_iterations, accepted, halved, deepest, cut_off, disturbed, odd_rests] = solver;
         rest.flows = Flows {
             user,
             gas,
@@ -277,6 +278,7 @@ impl<const D: usize> World<D> {
                 residual,
                 accepted,
                 halved,
+                deepest,
                 cut_off,
                 left,
                 disturbed,

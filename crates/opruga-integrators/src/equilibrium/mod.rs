@@ -166,7 +166,9 @@ impl Equilibrium {
             return outcome;
         }
         if self.settings.otherwise == Otherwise::Halve && halvings < MOST_HALVINGS {
-            system.work.solver.halved += 1;
+            let solver = &mut system.work.solver;
+            solver.halved += 1;
+            solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
             room.hold(system, from.held, h);
             for k in 0..room.u.len() {
                 room.u[k] = if room.held[k].is_nan() { room.u1[k] } else { room.held[k] };

@@ -142,7 +142,9 @@ fn advance_in<R: Rule<D>, const D: usize>(
         let broken_off = matches!(outcome, Err(StepError::BrokenOff));
         let halves = !broken_off && (settings.otherwise == Otherwise::Halve || settings.real_time);
         if halves && halvings < MOST_HALVINGS {
-            system.work.solver.halved += 1;
+            let solver = &mut system.work.solver;
+            solver.halved += 1;
+            solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
             advance_in(rule, settings, system, room, 0.5 * h, halvings + 1)?;
             return advance_in(rule, settings, system, room, 0.5 * h, halvings + 1);
         }

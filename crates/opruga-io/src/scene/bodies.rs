@@ -381,6 +381,16 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
 /// The largest coordinate of a shape [m]: powers of lengths up to the fourth are numbers then.
 const LONGEST: f64 = 1e70;
 
+/// The smallest scale: powers of lengths up to the fourth are not zero then.
+const SHORTEST: f64 = 1e-70;
+
+/// Refuses a body whose volume would be zero by rounding alone.
+fn report_tiny(reader: &mut Reader<'_>, node: &Node, path: String, what: String) {
+    let error = SceneError::new("scene.range", format!("{what}: products of lengths so small are zero"));
+    let error = error.path(path).value(node.shown()).allowed("from 1e-70");
+    reader.report(node.place, error.hint("coordinates are in metres: `scale = 1e-6` makes micrometres of them"));
+}
+
 /// Whether a number of a value is longer than any length may be.
 fn is_vast(node: &Node) -> bool {
     match &node.data {
@@ -414,6 +424,10 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     if let Some(scale) = draft.node.get("scale").filter(|node| is_vast(node)) {
         report_vast(reader, scale, join(&draft.path, "scale"), format!("`scale` is {}", scale.shown()));
+        return None;
+    }
+    if let Some(scale) = draft.node.get("scale").filter(|_| transform.scale < SHORTEST) {
+        report_tiny(reader, scale, join(&draft.path, "scale"), format!("`scale` is {}", scale.shown()));
         return None;
     }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &place)?;

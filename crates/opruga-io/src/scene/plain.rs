@@ -6,6 +6,9 @@ use crate::problem::{SceneError, visible};
 use opruga_core::spec::{Allowed, Value, nearest};
 use opruga_world::schema::LARGEST_WHOLE;
 
+/// Angles beyond this are rounded by more than 1e-10 [rad].
+const LARGEST_ANGLE: f64 = 1e6;
+
 impl Reader<'_> {
     /// The value of a field, or a report of what is wrong with it.
     pub(crate) fn plain(&mut self, node: &Node, path: &str, name: &str, range: &Allowed) -> Option<Value> {
@@ -230,6 +233,16 @@ impl Reader<'_> {
             };
             error.allowed = Some(allowed);
             error.hint = Some(example.into());
+        }
+        let angle = read.iter().flatten().map(|x| x.abs()).fold(0.0, |most: f64, x| if x > most { x } else { most });
+        if unit == "radians" && angle > LARGEST_ANGLE {
+            let error = SceneError::new(
+                "scene.range",
+                format!("`rotation` is {}: where in its turn so large an angle ends is lost in rounding", node.shown()),
+            );
+            let error = error.path(path).value(node.shown()).allowed("angles within 1e6 radians");
+            self.report(node.place, error.hint("whole turns of 6.283185307179586 radians change nothing"));
+            return zero;
         }
         read.unwrap_or(zero)
     }

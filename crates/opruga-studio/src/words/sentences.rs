@@ -14,6 +14,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          dio razmaka čvorova; savjet: pomakni prizor u ishodište",
     ),
     (
+        "`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s; allowed: at most {} m/s, \
+         with which a step ends where positions still have digits that tell its nodes apart; hint: are its units mixed (metres, \
+         seconds, radians)?",
+        "zbog `velocity` i `angular_velocity` počinje s {} m/s duž jedne osi, {} m u koraku od {} s; dopušteno: najviše {} m/s, s \
+         kojima korak završava tamo gdje položaji još imaju znamenke koje razlikuju čvorove; savjet: jesu li mu jedinice pomiješane \
+         (metri, sekunde, radijani)?",
+    ),
+    (
         "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline",
         "`modulus` treba trokute uz bridove; za lanac ili obris zadaj `stiffness`",
     ),
@@ -397,10 +405,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "korak je vrijedio iako Newtonova metoda nije konvergirala (`when_not_converged = \"accept\"`)",
     ),
     (
-        "a step, of time or of the load, was made in two halves since Newton's method had not converged (`when_not_converged = \
-         \"halve\"`, or in real time)",
-        "korak, vremena ili tereta, učinjen je u dvije polovice jer Newtonova metoda nije konvergirala (`when_not_converged = \
-         \"halve\"`, ili u stvarnom vremenu)",
+        "a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where need be, \
+         down to {} s, a part of 1/{}: Newton's method had not converged over the whole (`when_not_converged = \"halve\"`, or in real \
+         time); the result is that of steps so short there, no worse for it, and took longer; hint: more substeps, in statics more \
+         `load_steps` or frames, spare the attempts in vain",
+        "korak od {} s, u statici ono što on dodaje teretu i putovima pribadača, učinjen je u dvije polovice, a one opet gdje je trebalo, \
+         do {} s, dijela od 1/{}: Newtonova metoda nije konvergirala preko cijeloga (`when_not_converged = \"halve\"`, ili u stvarnom \
+         vremenu); rezultat je onaj tako kratkih koraka na tom mjestu, zbog toga nije lošiji, a trajao je dulje; savjet: više \
+         podkoraka, u statici više `load_steps` ili sličica, štedi uzaludne pokušaje",
     ),
     (
         "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of \

@@ -91,6 +91,20 @@ fn parameters_that_make_no_sense() {
             ring(64, BALL, "").replace("center = [0, 0.6]", "center = [1e12, 0.6]"),
             "scene.range: body `b`: position: it begins 1e12 m from the origin along an axis",
         ),
+        // as fast as to leave that place within a step
+        (
+            ring(64, BALL, "velocity = [1e300, 0]"),
+            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` let it begin with 1e300 m/s along an axis, ",
+        ),
+        (ring(64, BALL, "angular_velocity = 1e200"), "hint: are its units mixed (metres, seconds, radians)?"),
+        (
+            ring(64, BALL, "rotation = 1e200"),
+            "error[scene.range]: `rotation` is 1e200: where in its turn so large an angle",
+        ),
+        (
+            ring(64, BALL, "scale = 1e-320"),
+            "error[scene.range]: `scale` is 1e-320: products of lengths so small are zero",
+        ),
         // 72: a drag that would end when it begins
         (
             ring(16, BALL, "[[command]]\ndo = \"drag\"\nat = 1\nbody = \"b\"\npath = [[1, 0, 0]]"),

@@ -13,6 +13,24 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "`{}` je {#}: umnošci takvih duljina više nisu brojevi",
     ),
     (
+        "`scale` is {#}: products of lengths so small are zero",
+        "`scale` je {#}: umnošci tako malih duljina jednaki su nuli",
+    ),
+    ("from 1e-70", "od 1e-70"),
+    (
+        "coordinates are in metres: `scale = 1e-6` makes micrometres of them",
+        "koordinate su u metrima: `scale = 1e-6` čini od njih mikrometre",
+    ),
+    (
+        "`rotation` is {#}: where in its turn so large an angle ends is lost in rounding",
+        "`rotation` je {#}: gdje u svom okretu tako velik kut završava, gubi se u zaokruživanju",
+    ),
+    ("angles within 1e6 radians", "kutovi do 1e6 radijana"),
+    (
+        "whole turns of 6.283185307179586 radians change nothing",
+        "puni okreti od 6.283185307179586 radijana ništa ne mijenjaju",
+    ),
+    (
         "`{}` makes it too large: products of such lengths are no numbers any more",
         "`{}` ga čini prevelikim: umnošci takvih duljina više nisu brojevi",
     ),
