@@ -81,6 +81,10 @@ pub struct SolverWork {
     /// What was left out of balance at the end of such a step at most, as the way that it would move nodes if each stood
     /// alone [m].
     pub left: f64,
+    /// Steps that ended where forces balance to their rounding, though what is left of them would still move nodes visibly.
+    pub blurred: u64,
+    /// By how much at most it would [m].
+    pub blur: f64,
     /// How often a body that stood still flat, inside out or folded was disturbed.
     pub disturbed: u64,
     /// How often that was in vain.
@@ -99,6 +103,8 @@ impl SolverWork {
         self.deepest = self.deepest.max(other.deepest);
         self.cut_off += other.cut_off;
         self.left = other.left.larger(self.left);
+        self.blurred += other.blurred;
+        self.blur = other.blur.larger(self.blur);
         self.disturbed += other.disturbed;
         self.odd_rests += other.odd_rests;
     }

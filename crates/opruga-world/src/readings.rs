@@ -336,9 +336,21 @@ impl<const D: usize> World<D> {
             solver.cut_off,
         );
         count(
+            "statics.blurred",
+            &format!(
+                "a balance was found where forces are as small as their rounding, though what is left of them would still move nodes by up to {} m: \
+                 positions have sixteen digits, and the body is so slender, its cells so thin or the origin so far that this is what \
+                 they leave open; what is smaller in the result is chance; hint: cells that are less long for their thickness, or a scene at the \
+                 origin",
+                number(solver.blur)
+            ),
+            solver.blurred,
+        );
+        count(
             "step.disturbed",
             "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a \
-             hundredth and by a tenth",
+             hundredth and by a tenth; hint: what has left such a shape swings on until something damps it, soonest under `backward_euler` \
+             or with `damping` of its material",
             solver.disturbed,
         );
         count("step.odd_rest", &self.odd_rest(), solver.odd_rests);

@@ -104,11 +104,12 @@ impl<const D: usize> World<D> {
         let s = &f.solver;
         let counts =
             [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
-        for n in counts.into_iter().chain([s.odd_rests]) {
+        for n in counts.into_iter().chain([s.odd_rests, s.blurred]) {
             out.count(n);
         }
         out.number(s.residual);
         out.number(s.left);
+        out.number(s.blur);
     }
 
     pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
@@ -245,17 +246,18 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
-        let mut solver = [0; 9];
+        let mut solver = [0; 10];
         for n in &mut solver {
             *n = reader.count()?;
         }
-        let (residual, left) = (reader.number()?, reader.number()?);
+        let (residual, left, blur) = (reader.number()?, reader.number()?, reader.number()?);
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
         let [user, gas, damping, friction, contact, correction, start, changed, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
-        let [steps, iterations, linear_iterations, accepted, halved, deepest, cut_off, disturbed, odd_rests] = solver;
+        let [steps, iterations, linear_iterations, accepted, halved, deepest, cut_off, disturbed, odd_rests, blurred] =
+            solver;
         rest.flows = Flows {
             user,
             gas,
@@ -283,6 +285,8 @@ impl<const D: usize> World<D> {
                 left,
                 disturbed,
                 odd_rests,
+                blurred,
+                blur,
             },
         };
         Ok(rest)

@@ -15,6 +15,7 @@
 //! | `newton` | the exact iteration: derivatives, direction, line search |
 //! | `beginning` | where that begins |
 //! | `line_search` | how far a step is gone |
+//! | `rounding` | balances whose forces are as small as their rounding |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
@@ -55,6 +56,7 @@ mod mixing;
 pub(crate) mod newton;
 mod real_time;
 pub(crate) mod room;
+mod rounding;
 pub(crate) mod settings;
 mod slenderness;
 pub(crate) mod standstill;

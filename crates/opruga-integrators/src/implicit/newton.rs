@@ -7,6 +7,7 @@ use super::contact_derivatives::Sight;
 use super::line_search::{line_search, slope_along};
 use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
+use super::rounding::{at_rounding, carries, in_doubt, settle};
 use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
@@ -44,6 +45,8 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
+    /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
+    pub(crate) blur: f64,
     /// Whether what is left may have made energy.
     pub(crate) doubtful: bool,
 }
@@ -82,16 +85,16 @@ const MOST_DECISIONS: u32 = 30;
 const ROUGH: f64 = 1e-3;
 
 /// The part of the residual that the linear solver may leave, in the first iteration.
-const LINEAR_TOLERANCE: f64 = 1e-2;
+pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
+
+/// From this iteration on forces that are as small as their rounding are a balance, whether it carries the loads or not.
+const MOST_AT_ROUNDING: u32 = 50;
 
 /// How often a direction is corrected for the friction that it changes, at most.
 const MOST_ROUNDS: u32 = 12;
 
 /// The part of the force of friction that may be left, in the first iteration.
 const FRICTION_TOLERANCE: f64 = 1e-3;
-
-/// Rounding of a force, in units of stiffness times size.
-const ROUNDING: f64 = 4e-15;
 
 /// Looks for the stage from the displacement in `room.u` on; on success forces and residual belong to what is found.
 pub(crate) fn solve<const D: usize>(
@@ -185,6 +188,7 @@ pub(crate) fn solve<const D: usize>(
         if stuck {
             if at_rounding(system, room, balance, settings, size) {
                 solved.converged = true;
+                solved.blur = settle(system, room, balance, settings)?;
                 break;
             }
             // A stiffer matrix leads less far, and more surely downhill.
@@ -206,10 +210,20 @@ pub(crate) fn solve<const D: usize>(
             }
             changed |= verdict.anew || verdict.unsettled;
         }
-        if !changed && !stuck && (plain <= goal || at_rounding(system, room, balance, settings, size)) {
+        let ends = !changed && !stuck;
+        if ends && plain <= goal {
             solved.converged = true;
             break;
         }
+        let last = solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
+        if ends && at_rounding(system, room, balance, settings, size) && (last || carries(system, room, balance)) {
+            solved.converged = true;
+            solved.blur = settle(system, room, balance, settings)?;
+            break;
+        }
+    }
+    if solved.converged {
+        solved.blur = in_doubt(system, room, balance, settings, size).larger(solved.blur);
     }
     match torn {
         Some(error) if !solved.converged => Err(error),
@@ -218,7 +232,7 @@ pub(crate) fn solve<const D: usize>(
 }
 
 /// The longest way of a node.
-fn longest(step: &[f64], dimension: usize) -> f64 {
+pub(super) fn longest(step: &[f64], dimension: usize) -> f64 {
     let mut longest: f64 = 0.0;
     for node in step.chunks_exact(dimension) {
         longest = node.iter().map(|x| x * x).sum::<f64>().larger(longest);
@@ -452,23 +466,4 @@ fn full_step<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance
         *u += s;
     }
     evaluate(system, room, balance, false)
-}
-
-/// Whether what is out of balance is no more than the rounding of the forces.
-fn at_rounding<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-    size: f64,
-) -> bool {
-    room.right.copy_from_slice(&room.residual);
-    room.contacting.subtract_friction(&mut room.right);
-    let filter = Filter { free: &room.free, projectors: &room.projectors };
-    filter.apply(&mut room.right);
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    room.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
-        let floor = ROUNDING * room.linear.size_at(&mixture, node) * size;
-        rest.iter().all(|r| r.abs() <= floor)
-    })
 }

@@ -365,6 +365,8 @@ fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     let work = &mut system.work.solver;
     work.iterations += u64::from(solved.iterations);
     work.linear_iterations += u64::from(solved.products);
+    work.blurred += u64::from(solved.blur > 0.0);
+    work.blur = solved.blur.larger(work.blur);
 }
 
 fn finish<const D: usize>(system: &mut System<D>, room: &Room<D>) {

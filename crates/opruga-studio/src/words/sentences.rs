@@ -415,6 +415,15 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          podkoraka, u statici više `load_steps` ili sličica, štedi uzaludne pokušaje",
     ),
     (
+        "a balance was found where forces are as small as their rounding, though what is left of them would still move nodes by up to {} m: \
+         positions have sixteen digits, and the body is so slender, its cells so thin or the origin so far that this is what they \
+         leave open; what is smaller in the result is chance; hint: cells that are less long for their thickness, or a scene at the origin",
+        "ravnoteža je nađena gdje su sile male kao njihovo zaokruživanje, iako bi ono što od njih ostaje još pomaknulo čvorove do {} m: \
+         položaji imaju šesnaest znamenki, a tijelo je tako vitko, ćelije tako tanke ili ishodište tako daleko da je to ono što \
+         one ostavljaju otvorenim; što je u rezultatu manje, slučajno je; savjet: ćelije manje duge prema debljini, ili prizor u \
+         ishodištu",
+    ),
+    (
         "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of \
          balance that would move single nodes by up to {} m; the body is too stiff or too slender for the step: more substeps, \
          `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
@@ -424,9 +433,11 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a hundredth and \
-         by a tenth",
+         by a tenth; hint: what has left such a shape swings on until something damps it, soonest under `backward_euler` or with \
+         `damping` of its material",
         "tijelo koje je mirovalo spljošteno, izvrnuto ili presavijeno nasumce je poremećeno, za 1e-4 svoje veličine, zatim za \
-         stotinu i za desetinu",
+         stotinu i za desetinu; savjet: što je iz takva oblika izašlo, njiše se dok ga nešto ne priguši, najbrže uz `backward_euler` \
+         ili uz prigušenje (`damping`) materijala",
     ),
     (
         "the run ends before the whole load is on: body `{}` is in balance under {#} of it (`load_factor`), and that is what the \

@@ -10,7 +10,8 @@
 //!
 //! what resists volume beyond λ′ sees the mean F, since no cell of so few corners could bend much and keep the volume of every
 //! point (all laws are linear in μ and λ). F⁻¹ is cof Fᵀ φ(J) with φ = J/(J² + δ² (1 − J)²): it is F⁻¹ at rest and nearly so while
-//! the cell has a volume, and goes to zero with it; there s = Jφ does too, and stiffness of no direction is left in its place.
+//! the cell has a volume, and goes to zero with it; there s = Jφ does too, and stiffness of no direction is left in its place. Beyond
+//! one and a half times the volume (J − 3/2)³ of that comes on top in space.
 //! Under `linear`, which does not know of rotations, F_q is F + ε_q and q is g. In plane stress λ′ is λ.
 
 mod corners;
@@ -34,6 +35,11 @@ use opruga_math::{Lane, Register, WIDTH};
 
 /// δ²: cells that have lost most of their volume lose the stiffness of the law against bending.
 const FLAT: f64 = 0.01;
+
+/// Hexahedra of more than this part of their volume are guarded against modes of their own. The strain ε of the assumed stresses is
+/// symmetric, and det (1 + ε) falls with a shear in it, which a true shear leaves as it is: under a pull from all sides p that is
+/// worth −½ p J tr ε², from J = 2.3 on in confined bars more than the law holds against it.
+const SWOLLEN: f64 = 1.5;
 
 /// What is kept of a cell between the steps of a pass: F, g and β.
 pub(super) const KEPT: usize = 9 + MOST_MODES * 3 + MOST_STRESSES;
@@ -82,7 +88,15 @@ impl<R: Lane, const D: usize> Frame<R, D> {
         let phi = j * inverse;
         let first = inverse - phi * slope * inverse;
         let second = (two * slope * slope * phi * inverse - two * slope * inverse - phi * bend) * inverse;
-        let lost = [flat * change * change * inverse, -(phi + j * first), -(two * first + j * second)];
+        let mut lost = [flat * change * change * inverse, -(phi + j * first), -(two * first + j * second)];
+        let beyond = j - R::splat(SWOLLEN);
+        let swollen = R::zero().less(beyond);
+        let square = beyond * beyond;
+        let more = [square * beyond, R::splat(3.0) * square, R::splat(6.0) * beyond];
+        // The strains of the plane have hardly any shear.
+        for (lost, more) in lost.iter_mut().zip(more).take(if D == 3 { 3 } else { 0 }) {
+            *lost = R::select(swollen, *lost + more, *lost);
+        }
         Frame { cofactors, phi: [phi, first, second], lost }
     }
     /// Cᵀ of amplitudes.

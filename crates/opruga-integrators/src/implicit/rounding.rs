@@ -1,0 +1,139 @@
+//! Balances whose forces are as small as their rounding.
+
+use super::linear::Filter;
+use super::newton::{Balance, LINEAR_TOLERANCE, evaluate, longest, mixture};
+use super::room::Room;
+use super::settings::Settings;
+use opruga_core::error::StepError;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_math::Lane;
+use opruga_solve::dot;
+
+/// Rounding of a force, in units of stiffness times size.
+const ROUNDING: f64 = 4e-15;
+
+/// What another iteration would move nodes by is made smaller, and told, from these parts of the extent on.
+const LEFT: f64 = 1e-8;
+const BLURRED: f64 = 1e-7;
+
+/// The part of the loads that statics may leave out of balance.
+const UNCARRIED: f64 = 1e-2;
+
+/// Loads below this part of the rounding of forces are lost in it: that is taken ten or fifty times too large.
+const LOST: f64 = 1e-2;
+
+/// How often what is left is made smaller at most.
+const MOST_ROUNDS: usize = 8;
+
+/// Whether what is out of balance is no more than the rounding of the forces.
+pub(super) fn at_rounding<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) -> bool {
+    take_residual(room);
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    room.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
+        let floor = ROUNDING * room.linear.size_at(&mixture, node) * size;
+        rest.iter().all(|r| r.abs() <= floor)
+    })
+}
+
+/// Goes on in statics as long as what is out of balance, though it is as small as rounding, would still visibly move a node, and every
+/// further correction halves that: little of a stout body, and much of one that is stiff along and soft across. Gives how far it would
+/// move one in the end [m]; zero where that is not seen. After [`at_rounding`], which leaves what is out of balance in `room.right`.
+pub(super) fn settle<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Result<f64, StepError> {
+    if balance.sigma != 0.0 {
+        return Ok(0.0);
+    }
+    let Some(mut left) = correction(system, room, balance, settings) else { return Ok(0.0) };
+    for _ in 0..MOST_ROUNDS {
+        if left <= LEFT * room.extent {
+            return Ok(0.0);
+        }
+        room.trial.copy_from_slice(&room.u);
+        for (u, step) in room.u.iter_mut().zip(&room.step) {
+            *u -= step;
+        }
+        evaluate(system, room, balance, false)?;
+        take_residual(room);
+        let next = correction(system, room, balance, settings).filter(|next| *next < left);
+        let Some(next) = next else {
+            room.u.copy_from_slice(&room.trial);
+            evaluate(system, room, balance, false)?;
+            break;
+        };
+        let halved = next <= 0.5 * left;
+        left = next;
+        if !halved {
+            break;
+        }
+    }
+    Ok(if left > BLURRED * room.extent { left } else { 0.0 })
+}
+
+/// Whether a balance of statics carries its loads, and does not leave them out of balance.
+pub(super) fn carries<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> bool {
+    if balance.sigma != 0.0 {
+        return true;
+    }
+    let loads = loads(system, room, balance);
+    take_residual(room);
+    loads == 0.0 || dot(&room.right, &room.right).sqrt() <= UNCARRIED * loads
+}
+
+/// How far a node was moved by loads that are lost in the rounding of forces, or left out of balance, in statics [m]: positions do not
+/// tell what balances them, or a matrix that was made stiffer by hand led nowhere, and all of that way is in doubt. Zero where it is not.
+pub(super) fn in_doubt<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) -> f64 {
+    let way = longest(&room.u, D);
+    let loads = if balance.sigma == 0.0 && way > BLURRED * room.extent { loads(system, room, balance) } else { 0.0 };
+    if loads == 0.0 {
+        return 0.0;
+    }
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    let floors = (0..room.mass.len()).map(|node| ROUNDING * room.linear.size_at(&mixture, node) * size);
+    let floor = floors.fold(0.0, |most: f64, floor| floor.larger(most));
+    if loads < LOST * floor || !carries(system, room, balance) { way } else { 0.0 }
+}
+
+/// The loads and the weight, as the root of the sum of their squares [N].
+fn loads<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &Balance) -> f64 {
+    system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+    (0..system.nodes).flat_map(|node| room.outer.at(node)).map(|f| f * f).sum::<f64>().sqrt()
+}
+
+/// What is out of balance in the free directions, into `room.right`.
+fn take_residual<const D: usize>(room: &mut Room<D>) {
+    room.right.copy_from_slice(&room.residual);
+    room.contacting.subtract_friction(&mut room.right);
+    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
+}
+
+/// How far the last matrix would move what is out of balance, into `room.step`: the longest way of a node [m].
+fn correction<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Option<f64> {
+    let Room { linear, mass, free, projectors, right, step, .. } = room;
+    let mixture = mixture(system, mass, balance, Definiteness::Exact, settings);
+    let filter = Filter { free, projectors };
+    linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, step).ok()?;
+    filter.apply(step);
+    Some(longest(step, D))
+}
