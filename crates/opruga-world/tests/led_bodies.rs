@@ -70,9 +70,8 @@ fn nothing_is_told<const D: usize>(blueprint: Blueprint<D>, name: &str) {
             assert!(statics && frame > LED / 3, "{name}, frame {frame}: {error}");
             break;
         }
-        if world.inverted_cells().is_some() {
-            // A law that gives way under pressure has turned cells inside out: that is told, and is no balance of its own shape.
-            assert!(name.contains("st_venant_kirchhoff"), "{name}, frame {frame}");
+        if name.contains("st_venant_kirchhoff") && world.inverted_cells().is_some() {
+            // A law that gives way under pressure, and holds as much inside out: that is told, and is no balance of its own shape.
             return;
         }
         if frame % 10 == 9 {
