@@ -322,3 +322,25 @@ fn blades_of_slivers_carry_loads_below_rounding_and_say_what_is_in_doubt() {
         assert!(told.message.contains("would still move nodes by up to "), "{told:?}");
     }
 }
+
+/// A wire of steel, 10 m by 10 mm, that is drawn by its weight under a thousand times that of the earth: the matrix at its start knows of no
+/// stiffness across but that of bending, and would let what rounding leaves move it a thousand times as far.
+#[test]
+fn wires_under_tension_are_in_no_doubt() {
+    let mesh = Mesh::<3>::grid([0.0; 3], [10.0, 0.01, 0.01], [50, 1, 1]).unwrap();
+    let material = [
+        ("material", text("corotated")),
+        ("youngs_modulus", Value::Number(2e11)),
+        ("poissons_ratio", Value::Number(0.0)),
+    ];
+    let (density, gravity, modulus) = (1000.0, 1e4, 2e11);
+    let mut wire = solid(mesh, "equilibrium", &[], &material);
+    wire.bodies[0].pins = clamp();
+    wire.surroundings.gravity = [gravity, 0.0, 0.0];
+    let mut world = World::new(wire, Options::default()).unwrap();
+    world.frame().unwrap();
+    // ρ g L²/(2 E) at the end.
+    let (found, wanted) = (world.position(0, 50)[0] - 10.0, density * gravity * 100.0 / (2.0 * modulus));
+    assert!((found / wanted - 1.0).abs() < 1e-3, "{found} m, {wanted} m");
+    assert!(!world.warnings().iter().any(|warning| warning.code == "statics.blurred"), "{:?}", world.warnings());
+}

@@ -7,7 +7,7 @@ use super::contact_derivatives::Sight;
 use super::line_search::{line_search, slope_along};
 use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
-use super::rounding::{at_rounding, carries, in_doubt, settle};
+use super::rounding::{at_rounding, carries, chance, in_doubt, settle, visible};
 use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
@@ -223,12 +223,33 @@ pub(crate) fn solve<const D: usize>(
         }
     }
     if solved.converged {
-        solved.blur = in_doubt(system, room, balance, settings, size).larger(solved.blur);
+        let doubt = in_doubt(system, room, balance, settings, size);
+        let suspected = doubt.way.larger(solved.blur);
+        if suspected > 0.0 {
+            let left = left_over(system, room, balance, settings);
+            let chance = if doubt.lost { chance(system, room, balance, settings, size) } else { 0.0 };
+            solved.blur = left.map_or(suspected, |left| visible(left.larger(chance.smaller(suspected)), room.extent));
+        }
     }
     match torn {
         Some(error) if !solved.converged => Err(error),
         _ => Ok(solved),
     }
+}
+
+/// How far what is left out of balance would move a node by the matrix of what was found [m]: what was suspected on the way there went by
+/// an earlier one. Nothing without a positive one, or on obstacles.
+fn left_over<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Option<f64> {
+    if room.contacting.any() {
+        return None;
+    }
+    find_direction(system, room, balance, settings, Keep::Exact, false, &mut 0.0).ok()?;
+    Some(longest(&room.step, D))
 }
 
 /// The longest way of a node.

@@ -1,6 +1,6 @@
 //! Balances whose forces are as small as their rounding.
 
-use super::linear::Filter;
+use super::linear::{Filter, Linear, Mixture};
 use super::newton::{Balance, LINEAR_TOLERANCE, evaluate, longest, mixture};
 use super::room::Room;
 use super::settings::Settings;
@@ -20,8 +20,11 @@ const BLURRED: f64 = 1e-7;
 /// The part of the loads that statics may leave out of balance.
 const UNCARRIED: f64 = 1e-2;
 
-/// Loads below this part of the rounding of forces are lost in it: that is taken ten or fifty times too large.
+/// Loads below this part of the largest rounding of forces may be lost in it.
 const LOST: f64 = 1e-2;
+
+/// The usual rounding of a force as a part of the largest.
+const TYPICAL: f64 = 0.02;
 
 /// How often what is left is made smaller at most.
 const MOST_ROUNDS: usize = 8;
@@ -37,7 +40,7 @@ pub(super) fn at_rounding<const D: usize>(
     take_residual(room);
     let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
     room.right.as_chunks::<D>().0.iter().enumerate().all(|(node, rest)| {
-        let floor = ROUNDING * room.linear.size_at(&mixture, node) * size;
+        let floor = floor(&room.linear, &mixture, node, size);
         rest.iter().all(|r| r.abs() <= floor)
     })
 }
@@ -77,7 +80,12 @@ pub(super) fn settle<const D: usize>(
             break;
         }
     }
-    Ok(if left > BLURRED * room.extent { left } else { 0.0 })
+    Ok(visible(left, room.extent))
+}
+
+/// A way that is seen in a body of an extent, or zero.
+pub(super) fn visible(way: f64, extent: f64) -> f64 {
+    if way > BLURRED * extent { way } else { 0.0 }
 }
 
 /// Whether what statics leaves out of balance is a small part of the loads. Where it is not it may be rounding, which far from the
@@ -99,24 +107,57 @@ fn leaves<const D: usize>(room: &mut Room<D>, loads: f64) -> bool {
     along.abs() > UNCARRIED * loads * loads
 }
 
-/// How far a node was moved by loads that are lost in the rounding of forces, or left out of balance, in statics [m]: positions do not
-/// tell what balances them, or a matrix that was made stiffer by hand led nowhere, and all of that way is in doubt. Zero where it is not.
+/// A balance of statics that may be wrong.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Doubt {
+    /// The longest way of a node, of which nothing may be sure [m]; zero without a doubt.
+    pub(super) way: f64,
+    /// Whether the loads are so small that they are lost in the rounding of forces.
+    pub(super) lost: bool,
+}
+
+/// Whether loads are lost in the rounding of forces or left out of balance, in statics: positions do not tell what balances them, or a
+/// matrix that was made stiffer by hand led nowhere.
 pub(super) fn in_doubt<const D: usize>(
     system: &mut System<D>,
     room: &mut Room<D>,
     balance: &Balance,
     settings: &Settings,
     size: f64,
-) -> f64 {
+) -> Doubt {
     let way = longest(&room.u, D);
     let loads = if balance.sigma == 0.0 && way > BLURRED * room.extent { loads(system, room, balance) } else { 0.0 };
     if loads == 0.0 {
-        return 0.0;
+        return Doubt::default();
     }
     let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    let floors = (0..room.mass.len()).map(|node| ROUNDING * room.linear.size_at(&mixture, node) * size);
+    let floors = (0..room.mass.len()).map(|node| floor(&room.linear, &mixture, node, size));
     let floor = floors.fold(0.0, |most: f64, floor| floor.larger(most));
-    if loads < LOST * floor || leaves(room, loads) { way } else { 0.0 }
+    let lost = loads < LOST * floor;
+    if lost || leaves(room, loads) { Doubt { way, lost } } else { Doubt::default() }
+}
+
+/// How far rounding may move a node by the matrix of what was found [m]: forces of about its size, of either sign.
+pub(super) fn chance<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) -> f64 {
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    for (number, force) in room.right.iter_mut().enumerate() {
+        // The highest bit of a product with the golden ratio: signs without order, and always the same.
+        let sign = if (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0 { 1.0 } else { -1.0 };
+        *force = sign * TYPICAL * floor(&room.linear, &mixture, number / D, size);
+    }
+    Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);
+    correction(system, room, balance, settings).unwrap_or(f64::INFINITY)
+}
+
+/// The largest rounding of the force of a node [N], in a body so far from the origin.
+fn floor<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>, node: usize, size: f64) -> f64 {
+    ROUNDING * linear.size_at(mixture, node) * size
 }
 
 /// The loads and the weight, as the root of the sum of their squares [N].
