@@ -9,6 +9,8 @@ use std::time::Duration;
 static STOP: AtomicBool = AtomicBool::new(false);
 /// Whether the user has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
+/// Whether another program has the word, which ends by itself and says what became of its work.
+static SILENT: AtomicBool = AtomicBool::new(false);
 static HANDLER: Once = Once::new();
 
 /// How long the work at hand may take to end before the user is told that it goes on.
@@ -26,11 +28,18 @@ pub(crate) fn asked_to_stop() -> &'static AtomicBool {
             STOP.store(true, Ordering::SeqCst);
             std::thread::spawn(|| {
                 std::thread::sleep(PATIENCE);
-                eprintln!("ends after the step at hand; asked once more, at once");
+                if !SILENT.load(Ordering::SeqCst) {
+                    eprintln!("ends after the step at hand; asked once more, at once");
+                }
             });
         });
     });
     &STOP
+}
+
+/// Leaves it to another program to say how it ends, or takes the word back.
+pub(crate) fn leave_the_word(to_another: bool) {
+    SILENT.store(to_another, Ordering::SeqCst);
 }
 
 /// Whether the user has asked the program to end, and not only the work at hand to stop.

@@ -9,10 +9,8 @@ use std::process::{Child, Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long a program that was asked to end may take to save what was done.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// How long it may take to answer to Ctrl-C itself.
-const ANSWER: Duration = Duration::from_secs(3);
+/// How long a program that was asked to end may take to save what was done, on a machine that has much else to do.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The exit code of a studio that found no screen.
 const NO_WINDOW: i32 = 5;
@@ -91,30 +89,32 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
         |e: std::io::Error| Failure::Call { message: format!("the studio cannot be started: {e}"), hint: None };
     // Before it is started: a signal that comes at once is not lost.
     let stop = interrupt::asked_to_stop();
-    let status = command.spawn().and_then(|child| wait(child, stop)).map_err(failed)?;
+    interrupt::leave_the_word(true);
+    let status = command.spawn().and_then(|child| wait(child, stop)).map_err(failed);
+    interrupt::leave_the_word(false);
+    let status = status?;
     match status.code() {
         Some(code) => Ok(u8::try_from(code).unwrap_or(1)),
         None => Err(Failure::Interrupted),
     }
 }
 
-/// Waits for the end of a program, which is asked to end too where this one is: it saves what was done. Where it does not end then,
-/// it is ended. The window of the studio ends by itself with the program that watches over it.
+/// Waits for the end of a program, which is asked to end as soon as this one is: it saves what was done, also where this one does not
+/// wait for it, and where Ctrl-C has asked it too. Where it does not end then, it is ended. The window of the studio ends by itself
+/// with the program that watches over it.
 fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
-    let (mut since, mut asked): (Option<Instant>, bool) = (None, false);
+    let mut asked: Option<Instant> = None;
     loop {
         if let Some(status) = child.try_wait()? {
             return Ok(status);
         }
         if stop.load(Ordering::SeqCst) {
-            let waited = since.get_or_insert_with(Instant::now).elapsed();
-            if waited > PATIENCE {
+            if asked.is_none() {
+                ask_to_end(&mut child)?;
+            }
+            if asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                 child.kill()?;
                 return child.wait();
-            }
-            // Ctrl-C has asked it already, and asked twice it ends at once: it gets time to answer to the first.
-            if waited > ANSWER && !std::mem::replace(&mut asked, true) {
-                ask_to_end(&mut child)?;
             }
         }
         std::thread::sleep(Duration::from_millis(30));
@@ -128,10 +128,10 @@ fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
     Ok(rustix::process::kill_process(number, rustix::process::Signal::TERM)?)
 }
 
-/// Ends a program where there is no way to ask it.
+/// Where there is no way to ask a program, Ctrl-C has asked it already.
 #[cfg(not(unix))]
-fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
-    child.kill()
+fn ask_to_end(_: &mut Child) -> std::io::Result<()> {
+    Ok(())
 }
 
 /// The cargo that runs this program and the root of the source tree, where it is one of the studio too.
@@ -176,6 +176,12 @@ mod tests {
             assert_eq!(status.code(), None, "a signal has ended it");
         });
         assert!(asked.elapsed() < Duration::from_secs(300));
+        // It is asked, and not killed: there is something to save. It says when it listens.
+        let words = ["-c", "trap 'exit 7' TERM; echo; while :; do sleep 0.1; done"];
+        let mut child = Command::new("sh").args(words).stdout(std::process::Stdio::piped()).spawn().expect("a shell");
+        let mut listens = [0];
+        std::io::Read::read_exact(&mut child.stdout.take().expect("its words"), &mut listens).expect("a line");
+        assert_eq!(wait(child, &AtomicBool::new(true)).expect("its end").code(), Some(7));
     }
 
     #[test]

@@ -31,6 +31,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether Ctrl-C or a signal has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
+/// Whether it was asked more than once: the window does not get the time to end by itself then. What was done is saved all the same.
+static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
 /// What follows the end of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,10 +51,10 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
         // A window that nobody watches over is better than none.
         return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
     };
-    // Where the system gives us no handler, a signal ends the program as it always did. Asked once more it ends at once.
+    // Where the system gives us no handler, a signal ends the program as it always did.
     let _ = ctrlc::set_handler(|| {
         if END.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(ENDED));
+            AT_ONCE.store(true, Ordering::SeqCst);
         }
     });
     let mut lost: Vec<Instant> = Vec::new();
@@ -158,7 +160,8 @@ fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
         }
         if end.load(Ordering::SeqCst) {
             drop(input.take());
-            if asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+            let waited = asked.get_or_insert_with(Instant::now).elapsed();
+            if waited > PATIENCE || AT_ONCE.load(Ordering::SeqCst) {
                 child.kill()?;
                 return child.wait();
             }
