@@ -119,8 +119,12 @@ fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> V
     vec![
         number(format!("{rate} FPS"), "000 FPS".into(), ""),
         number(format!("{:.2} ms", 1e3 * cost), "0000.00 ms".into(), words.step_time()),
-        number(format!("{nodes} {}", words.nodes()), format!("000000 {}", words.nodes()), ""),
-        number(format!("{steps:.0} {}", words.steps_a_second()), format!("000000 {}", words.steps_a_second()), ""),
+        number(format!("{} {}", short(nodes as f64), words.nodes()), format!("000000 {}", words.nodes()), ""),
+        number(
+            format!("{} {}", short(steps), words.steps_a_second()),
+            format!("000000 {}", words.steps_a_second()),
+            "",
+        ),
         number(format!("{}: {margin}", words.margin()), format!("{}: 000 %", words.margin()), words.substeps_hint()),
         // What has the longest form stands last.
         Number {
@@ -195,6 +199,16 @@ fn beginning(sentence: &str) -> String {
     let end = if room < first.len() { first[..room].rfind(' ').unwrap_or(room) } else { room };
     let said = first[..end].trim_end_matches([',', ':']);
     if end < whole.len() { format!("{said} …") } else { whole }
+}
+
+/// A count in six letters at most: from a million on in millions (M), from a thousand of them on in thousands of millions (G).
+fn short(count: f64) -> String {
+    if count < 999_999.5 {
+        return format!("{count:.0}");
+    }
+    let (part, letter) = if count < 999.5e6 { (count * 1e-6, 'M') } else { (count * 1e-9, 'G') };
+    let digits = if part < 9.995 { 2 } else { usize::from(part < 99.95) };
+    format!("{part:.digits$} {letter}")
 }
 
 #[cfg(test)]

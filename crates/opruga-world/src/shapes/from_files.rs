@@ -39,7 +39,7 @@ const OVERLAP: Field = Field::new(
     Allowed::Choice(&["refuse", "union", "even_odd"]),
     "",
     Default::Text("refuse"),
-    "What holds where outlines cross, touch or lie in one another: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told. Areas that touch in points alone are apart there.",
+    "What holds where outlines cross or touch: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told. Areas that touch in points alone are apart there. An outline within another is a hole, and one within that an area again, also of another element of a drawing; with \"union\" what any element paints is inside.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",
