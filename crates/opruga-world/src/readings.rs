@@ -317,8 +317,8 @@ impl<const D: usize> World<D> {
             "step.halved",
             &format!(
                 "a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where \
-                 need be, down to {} s, a part of 1/{parts}: Newton's method had not converged over the whole \
-                 (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and \
+                 need be, down to {} s, a part of 1/{parts}: Newton's method had not converged over the whole, \
+                 or a model has no meaning there (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and \
                  took longer; hint: more substeps, in statics more `load_steps` or frames, spare the attempts in vain",
                 number(self.h()),
                 number(self.h() / parts as f64),

@@ -13,7 +13,20 @@ const SLOPE_LEFT: f64 = 0.8;
 
 /// A step whose end is steeper than this part of its beginning is gone on with, up to so many times its length.
 const STEEP: f64 = 0.3;
-const LONGEST_STRETCH: f64 = 16.0;
+pub(super) const LONGEST_STRETCH: f64 = 16.0;
+
+/// Energies that differ by less than this part of their terms are the same.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether a step from whose end it is still steep downhill is gone on with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Stretches {
+    No,
+    /// Up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
+    WhereEnergyFalls,
+    /// Up to so many times its length, also where differences of energies are lost in rounding: off a balance that does not hold.
+    UpTo(f64),
+}
 
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
@@ -25,7 +38,7 @@ pub(super) fn line_search<const D: usize>(
     room: &mut Room<D>,
     balance: &Balance,
     slope: f64,
-    stretches: bool,
+    stretches: Stretches,
 ) -> Result<f64, StepError> {
     // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
     let before = if system.is_damped() { None } else { potential(system, room, balance, false) };
@@ -41,7 +54,7 @@ pub(super) fn line_search<const D: usize>(
         let risen = match before {
             Some((energy, magnitude)) if allowed => {
                 potential(system, room, balance, true).is_none_or(|(after, size)| {
-                    let rounding = 1e-12 * (magnitude + size + (length * given).abs());
+                    let rounding = ROUNDING * (magnitude + size + (length * given).abs());
                     let risen = after - length * given - energy;
                     risen.is_nan() || risen > rounding
                 })
@@ -50,8 +63,9 @@ pub(super) fn line_search<const D: usize>(
         };
         if allowed && now.is_finite() && now <= SLOPE_LEFT * slope.abs() && !risen {
             room.u.copy_from_slice(&room.trial);
-            if length == 1.0 && stretches && now < -STEEP * slope.abs() {
-                return stretch(system, room, balance, slope, now, before.map(|(energy, _)| (energy, given)));
+            if length == 1.0 && stretches != Stretches::No && now < -STEEP * slope.abs() {
+                let before = before.map(|(energy, _)| (energy, given));
+                return stretch(system, room, balance, (slope, now), before, stretches);
             }
             return Ok(length);
         }
@@ -69,11 +83,15 @@ fn stretch<const D: usize>(
     system: &mut System<D>,
     room: &mut Room<D>,
     balance: &Balance,
-    slope: f64,
-    now: f64,
+    (slope, mut now): (f64, f64),
     before: Option<(f64, f64)>,
+    stretches: Stretches,
 ) -> Result<f64, StepError> {
-    let (mut length, mut now) = (1.0, now);
+    let mut length = 1.0;
+    let (longest, rounding) = match stretches {
+        Stretches::UpTo(longest) => (longest, ROUNDING),
+        _ => (LONGEST_STRETCH, 0.0),
+    };
     let mut last = before.and_then(|(_, given)| Some(potential(system, room, balance, false)?.0 - given));
     loop {
         // The secant of the slopes, but no more than twice as far.
@@ -82,14 +100,14 @@ fn stretch<const D: usize>(
         for k in 0..room.u.len() {
             room.trial[k] = room.u[k] + (longer - length) * room.step[k];
         }
-        let allowed = longer <= LONGEST_STRETCH && evaluate(system, room, balance, true).is_ok();
+        let allowed = longer <= longest && evaluate(system, room, balance, true).is_ok();
         let beyond = if allowed { slope_along(room) } else { f64::NAN };
         let energy = match before {
             Some((_, given)) if allowed => potential(system, room, balance, true).map(|(e, _)| e - longer * given),
             _ => None,
         };
         let falls = match (energy, last) {
-            (Some(energy), Some(last)) => energy < last,
+            (Some(energy), Some(last)) => energy - last < rounding * last.abs() || energy < last,
             _ => before.is_none(),
         };
         if !(falls && beyond <= STEEP * slope.abs()) {

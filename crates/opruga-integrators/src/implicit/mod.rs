@@ -46,6 +46,7 @@ pub(crate) mod approach;
 mod beginning;
 pub(crate) mod contact;
 pub(crate) mod contact_derivatives;
+mod falling;
 mod growth;
 pub(crate) mod holding;
 pub(crate) mod impact;

@@ -4,7 +4,8 @@ use super::approach::part_without_inertia;
 use super::beginning::begin;
 use super::contact::{Contacting, Verdict};
 use super::contact_derivatives::Sight;
-use super::line_search::{line_search, slope_along};
+use super::falling::Falling;
+use super::line_search::{Stretches, line_search, slope_along};
 use super::linear::{Filter, Linear, Mixture, is_matrix_free};
 use super::room::Room;
 use super::rounding::{at_rounding, carries, chance, in_doubt, settle, visible};
@@ -81,9 +82,6 @@ const SLOW: f64 = 0.03;
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
-/// Corrections above this part of the extent are far from the solution.
-const ROUGH: f64 = 1e-3;
-
 /// The part of the residual that the linear solver may leave, in the first iteration.
 pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
 
@@ -115,6 +113,7 @@ pub(crate) fn solve<const D: usize>(
     let mut first_norm = 0.0;
     // What the next direction is made of first, and the correction of the last iteration that went all of its way.
     let (mut first, mut before) = (Keep::Exact, f64::INFINITY);
+    let mut falling = Falling::new();
     while solved.iterations < settings.iterations {
         system.go_on()?;
         solved.iterations += 1;
@@ -169,16 +168,24 @@ pub(crate) fn solve<const D: usize>(
         }
         let mixed = mix(room, plain > SLOW * before, &mut slope);
         before = plain;
+        falling.note(plain, keep != Keep::Exact && !mixed);
         let mut length = 1.0;
         if plain <= goal {
             full_step(system, room, balance)?;
         } else {
             // What is too stiff and has not far to go to obstacles may go on, unless it falls towards them without inertia.
             let falls = balance.sigma == 0.0 && system.contacts.is_some();
-            let rough = keep != Keep::Exact && plain > ROUGH * room.extent && !falls;
-            let stretches = rough && farthest <= 1e-3 * room.extent && !room.contacting.any_turns();
+            let stiff = keep != Keep::Exact && !falls;
+            let stretches = if stiff && farthest <= 1e-3 * room.extent && !room.contacting.any_turns() {
+                falling.stretches(room.extent)
+            } else {
+                Stretches::No
+            };
             length = line_search(system, room, balance, slope, stretches)?;
             gone *= length;
+            if length > 1.0 {
+                falling.stretched();
+            }
             if length != 1.0 {
                 room.mixing.forget();
                 before = f64::INFINITY;

@@ -226,13 +226,13 @@ impl Settings {
         match (by_arc, self.otherwise, alone) {
             (true, ..) => "a shorter `arc_length`, or more `iterations`",
             (_, Otherwise::Halve, true) => {
-                "the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap"
+                "more `iterations`; the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap"
             }
             (_, Otherwise::Halve, false) => {
-                "the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest"
+                "more `iterations`; the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest"
             }
             (_, _, true) => {
-                "`when_not_converged = \"halve\"` or more `load_steps`; where a body gives way, `arc_length`"
+                "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`; where a body gives way, `arc_length`"
             }
             (_, _, false) => "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
         }

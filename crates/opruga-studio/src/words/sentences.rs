@@ -218,16 +218,16 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("a shorter `arc_length`, or more `iterations`", "kraći `arc_length`, ili više `iterations`"),
     (
-        "the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap",
-        "teret je već prepolavljan do 1/256: gdje tijelo popusti, `arc_length` ga prati kroz preskok",
+        "more `iterations`; the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap",
+        "više `iterations`; teret je već prepolavljan do 1/256: gdje tijelo popusti, `arc_length` ga prati kroz preskok",
     ),
     (
-        "the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest",
-        "teret je već prepolavljan do 1/256: pravilo koje prigušeno korača kroz vrijeme nađe gdje će tijelo mirovati",
+        "more `iterations`; the load was already halved down to 1/256: a rule that steps through time with damping finds a place to rest",
+        "više `iterations`; teret je već prepolavljan do 1/256: pravilo koje prigušeno korača kroz vrijeme nađe gdje će tijelo mirovati",
     ),
     (
-        "`when_not_converged = \"halve\"` or more `load_steps`; where a body gives way, `arc_length`",
-        "`when_not_converged = \"halve\"` ili više `load_steps`; gdje tijelo popusti, `arc_length`",
+        "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`; where a body gives way, `arc_length`",
+        "`when_not_converged = \"halve\"`, više `load_steps`, ili više `iterations`; gdje tijelo popusti, `arc_length`",
     ),
     (
         "`when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`",
@@ -406,11 +406,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     (
         "a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where need be, \
-         down to {} s, a part of 1/{}: Newton's method had not converged over the whole (`when_not_converged = \"halve\"`, or in real \
-         time); the result is that of steps so short there, no worse for it, and took longer; hint: more substeps, in statics more \
+         down to {} s, a part of 1/{}: Newton's method had not converged over the whole, or a model has no meaning there \
+         (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and took longer; hint: more substeps, in statics more \
          `load_steps` or frames, spare the attempts in vain",
         "korak od {} s, u statici ono što on dodaje teretu i putovima pribadača, učinjen je u dvije polovice, a one opet gdje je trebalo, \
-         do {} s, dijela od 1/{}: Newtonova metoda nije konvergirala preko cijeloga (`when_not_converged = \"halve\"`, ili u stvarnom \
+         do {} s, dijela od 1/{}: Newtonova metoda nije konvergirala preko cijeloga, ili neki model ondje nema smisla \
+         (`when_not_converged = \"halve\"`, ili u stvarnom \
          vremenu); rezultat je onaj tako kratkih koraka na tom mjestu, zbog toga nije lošiji, a trajao je dulje; savjet: više \
          podkoraka, u statici više `load_steps` ili sličica, štedi uzaludne pokušaje",
     ),
