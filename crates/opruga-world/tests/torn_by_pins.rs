@@ -14,6 +14,18 @@ const STIFFNESS: f64 = 1e5;
 
 /// A plate of 2 by 1 m whose right side pins draw along x to so many lengths in so many steps of 1 s; it thins freely.
 fn drawn(order: u32, rule: &str, material: &str, ratio: f64, to: f64, steps: u32) -> Blueprint<2> {
+    drawn_by(order, (rule, &[]), material, ratio, to, steps)
+}
+
+/// The same by a rule with parameters of its own.
+fn drawn_by(
+    order: u32,
+    (rule, of_rule): (&str, &[(&str, Value)]),
+    material: &str,
+    ratio: f64,
+    to: f64,
+    steps: u32,
+) -> Blueprint<2> {
     let mut mesh = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [8, 4]).expect("a grid").into_simplices().expect("triangles");
     if order == 2 {
         mesh = mesh.into_quadratic().expect("quadratic triangles");
@@ -24,7 +36,7 @@ fn drawn(order: u32, rule: &str, material: &str, ratio: f64, to: f64, steps: u32
         ("poissons_ratio", Value::Number(ratio)),
         ("plane", text("stress")),
     ];
-    let mut out = solid(mesh, rule, &[], &fields);
+    let mut out = solid(mesh, rule, of_rule, &fields);
     out.time = Time { seconds: 1e3, frame: 1.0, substeps: 1 };
     let seconds = f64::from(steps);
     let side = |side: &str, motion| PinBlueprint { select: Selector::Side(side.into()), axes: [true, false], motion };
@@ -94,5 +106,62 @@ fn plates_that_thin_follow_pins_through_time() {
             }
             assert!(world.energy().elastic > 0.0 && world.energy().elastic.is_finite());
         }
+    }
+}
+
+/// Ten iterations are too few for the whole way from where the cells are torn, and what is said of it is that they are: a refusal of the
+/// model, which half of the way does not meet.
+#[test]
+fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
+    let lead = |policy: &str| {
+        let of_rule = [("iterations", Value::Integer(10)), ("when_not_converged", text(policy))];
+        let rule = ("equilibrium", &of_rule[..]);
+        let mut world =
+            World::new(drawn_by(1, rule, "st_venant_kirchhoff", 0.4, 1.8, 1), Options::default()).expect("a world");
+        (world.frame().map_err(|error| (error.code().to_string(), error.to_string())), world)
+    };
+    let (outcome, mut world) = lead("error");
+    let (code, told) = outcome.expect_err("a refusal");
+    assert!(code == "run.model" && told.contains("has no positive thickness"), "{code}: {told}");
+    assert!(told.contains("hint: `when_not_converged = \"halve\"`"), "{told}");
+    assert_eq!((world.solver_work().halved, tension(&mut world)), (0, 0.0));
+    let (outcome, mut world) = lead("halve");
+    outcome.expect("half of the way, and the other half");
+    assert_eq!((world.solver_work().halved, world.solver_work().deepest), (1, 1));
+    let warnings = world.warnings();
+    let halved = warnings.iter().find(|warning| warning.code == "step.halved").expect("a warning");
+    assert!(halved.count == 1 && halved.message.contains("or a model has no meaning there"), "{halved:?}");
+    let (wanted, force) = (1.8 * STIFFNESS * 0.5 * (1.8 * 1.8 - 1.0), tension(&mut world));
+    assert!((force / wanted - 1.0).abs() < 1e-9, "{force} N, {wanted} N");
+}
+
+/// Pressed to 0.7 or 0.8 of its length in one step, the law softens so much that the iteration comes by folded shapes. What it finds is
+/// the balance of the closed form, in which no cell is odd, and nothing is said of the way there.
+#[test]
+fn plates_that_are_pressed_at_once_are_not_said_to_have_been_folded() {
+    for (count, to, ratio) in [(3, 0.7, 0.4), (3, 0.8, 0.3), (4, 0.7, 0.3), (4, 0.8, 0.4)] {
+        let mesh =
+            Mesh::<2>::grid([0.0; 2], [1.0; 2], [count; 2]).expect("a grid").into_simplices().expect("triangles");
+        let fields = [
+            ("material", text("st_venant_kirchhoff")),
+            ("youngs_modulus", Value::Number(STIFFNESS)),
+            ("poissons_ratio", Value::Number(ratio)),
+            ("plane", text("stress")),
+        ];
+        let mut out = solid(mesh.into_quadratic().expect("quadratic triangles"), "equilibrium", &[], &fields);
+        out.time = Time { seconds: 1e3, frame: 1.0, substeps: 1 };
+        let side = |side: &str, axes, motion| PinBlueprint { select: Selector::Side(side.into()), axes, motion };
+        let motion = vec![vec![0.0; 3], vec![1.0, to - 1.0, 0.0]];
+        out.bodies[0].pins = vec![
+            side("left", [true, false], Vec::new()),
+            side("bottom", [false, true], Vec::new()),
+            side("right", [true, false], motion),
+        ];
+        let mut world = World::new(out, Options::default()).expect("a world");
+        world.frame().expect("a balance");
+        let strain = 0.5 * (to * to - 1.0);
+        let (found, wanted) = (world.energy().elastic, 0.5 * STIFFNESS * strain * strain);
+        assert!((found / wanted - 1.0).abs() < 1e-9, "{count} {to} {ratio}: {found} J, {wanted} J");
+        assert!(world.warnings_at_the_end().is_empty(), "{count} {to} {ratio}: {:?}", world.warnings_at_the_end());
     }
 }

@@ -280,9 +280,13 @@ impl Equilibrium {
         }
         // A shape that is none of the body's own is left.
         let mut times = 0;
+        let solver = system.work.solver;
         while self.arc_length.is_none() && standstill::disturb_balance(system, room, times) {
             self.balance(system, room, whole, h).map_err(|error| self.told(error, system, None))?;
             times += 1;
+        }
+        if times > 0 {
+            standstill::forget_wrong_turns(system, &solver);
         }
         room.u1.copy_from_slice(&room.u);
         room.v1.fill(0.0);

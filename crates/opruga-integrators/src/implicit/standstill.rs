@@ -28,7 +28,7 @@ use super::room::{Room, write};
 use opruga_core::error::StepError;
 use opruga_core::potential::{Account, CellState};
 use opruga_core::state::Columns;
-use opruga_core::system::{Stage, State, System};
+use opruga_core::system::{SolverWork, Stage, State, System};
 use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_solve::blocks::nodes;
 use opruga_solve::dense::symmetric_eigen;
@@ -125,6 +125,15 @@ pub(crate) fn disturb_balance<const D: usize>(system: &mut System<D>, room: &mut
         }
     }
     true
+}
+
+/// Takes back what was counted since `before` where a body in a shape of its own has come to another one of its own: what was flat or
+/// folded between them was a wrong turn on the way from one balance to the next, and no shape in which the body stood still.
+pub(crate) fn forget_wrong_turns<const D: usize>(system: &mut System<D>, before: &SolverWork) {
+    let ends_well = system.work.solver.odd_rests == before.odd_rests;
+    if ends_well && odd_size(system, Stage::Current).is_none() {
+        system.work.solver.disturbed = before.disturbed;
+    }
 }
 
 /// How a body moves.
