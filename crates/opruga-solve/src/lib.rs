@@ -9,6 +9,7 @@ mod cholesky;
 mod conjugate_gradients;
 pub mod dense;
 pub mod eigen;
+mod filled;
 mod landing;
 mod lu;
 mod matrix;
@@ -20,6 +21,7 @@ mod woodbury;
 
 pub use cholesky::Cholesky;
 pub use conjugate_gradients::{Directions, Ended, conjugate_gradients};
+pub use filled::FilledCholesky;
 pub use lu::Factors;
 pub use matrix::BlockMatrix;
 pub use packed::Packed;

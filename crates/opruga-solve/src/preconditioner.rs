@@ -53,14 +53,43 @@ pub struct IncompleteCholesky<const D: usize> {
     generation: u64,
     start: Vec<u32>,
     column: Vec<u32>,
-    /// For each block below the diagonal its place in the matrix.
+    /// For each block below the diagonal its place in the matrix, or [`FILL`]; and for each on the diagonal.
     source: Vec<u32>,
+    diagonal: Vec<u32>,
     below: Vec<Block<D>>,
     /// The inverses of the diagonal blocks of L.
     inverse: Vec<Block<D>>,
 }
 
+/// No place in the matrix: a block that only the factor has.
+const FILL: u32 = u32::MAX;
+
 impl<const D: usize> IncompleteCholesky<D> {
+    /// The number of rows of blocks.
+    pub(crate) fn rows(&self) -> usize {
+        self.diagonal.len()
+    }
+    /// Takes the pattern of a factor whose k-th row is that of the node `order[k]`, with these columns below the diagonal.
+    pub(crate) fn take(&mut self, matrix: &BlockMatrix<D>, order: &[usize], rows: &[Vec<u32>]) {
+        (self.start, self.column, self.source) = (vec![0], Vec::new(), Vec::new());
+        for (node, columns) in order.iter().zip(rows) {
+            let there = matrix.row(*node);
+            for k in columns {
+                let other = order[*k as usize] as u32;
+                let found = matrix.column[there.clone()].binary_search(&other);
+                self.column.push(*k);
+                self.source.push(found.map_or(FILL, |at| (there.start + at) as u32));
+            }
+            self.start.push(self.column.len() as u32);
+        }
+        self.diagonal = order.iter().map(|node| matrix.diagonal[*node]).collect();
+        self.make_room();
+    }
+    fn make_room(&mut self) {
+        self.below = vec![[[0.0; D]; D]; self.column.len()];
+        self.inverse = vec![[[0.0; D]; D]; self.diagonal.len()];
+    }
+
     /// Factors a matrix.
     ///
     /// # Errors
@@ -90,20 +119,23 @@ impl<const D: usize> IncompleteCholesky<D> {
             }
             self.start.push(self.column.len() as u32);
         }
-        self.below = vec![[[0.0; D]; D]; self.column.len()];
-        self.inverse = vec![[[0.0; D]; D]; matrix.rows()];
+        self.diagonal.clone_from(&matrix.diagonal);
+        self.make_room();
     }
-    fn factor(&mut self, matrix: &BlockMatrix<D>, raised: f64) -> Result<(), Indefinite> {
+    pub(crate) fn factor(&mut self, matrix: &BlockMatrix<D>, raised: f64) -> Result<(), Indefinite> {
         for row in 0..matrix.rows() {
             let (from, until) = (self.start[row] as usize, self.start[row + 1] as usize);
-            let mut diagonal = matrix.values[matrix.diagonal[row] as usize];
+            let mut diagonal = matrix.values[self.diagonal[row] as usize];
             for d in 0..D {
                 diagonal[d][d] += raised * diagonal[d][d];
             }
             for at in from..until {
                 // L_rk = (A_rk − Σ L_rj L_kjᵀ) L_kk⁻ᵀ, over the j that both rows have.
                 let k = self.column[at] as usize;
-                let mut block = matrix.values[self.source[at] as usize];
+                let mut block = match self.source[at] {
+                    FILL => [[0.0; D]; D],
+                    source => matrix.values[source as usize],
+                };
                 let (mut p, mut q) = (from, self.start[k] as usize);
                 let end = self.start[k + 1] as usize;
                 while p < at && q < end {

@@ -344,3 +344,41 @@ fn wires_under_tension_are_in_no_doubt() {
     assert!((found / wanted - 1.0).abs() < 1e-3, "{found} m, {wanted} m");
     assert!(!world.warnings().iter().any(|warning| warning.code == "statics.blurred"), "{:?}", world.warnings());
 }
+
+/// Conjugate gradients take a nearly incompressible solid as many products as it has unknowns; then they take a complete factor of their
+/// own, which gives the same bits on every processor, and the same balance as the sparse one.
+#[test]
+fn nearly_incompressible_solids_are_solved_with_a_complete_factor() {
+    let sagged = |solver: &str| {
+        let mesh = Mesh::<2>::grid([0.0; 2], [1.0, 0.5], [32, 16]).unwrap().into_simplices().unwrap();
+        let mut plate = statics(mesh.into_quadratic().unwrap(), &[("linear_solver", text(solver))]);
+        plate.bodies[0].models[0] = {
+            let spec = opruga_world::Registry::<2>::default().model("fem").expect("a model").spec();
+            let mut values = opruga_core::spec::Values::defaults(spec, 2);
+            for (name, value) in [
+                ("material", text("neo_hookean")),
+                ("youngs_modulus", Value::Number(1e5)),
+                ("poissons_ratio", Value::Number(0.4999)),
+            ] {
+                values.set(spec, name, value, 2).expect("a field");
+            }
+            values
+        };
+        plate.surroundings.gravity = [0.0, -9.81];
+        plate.bodies[0].pins = clamp();
+        let mut plate = World::new(plate, Options::default()).unwrap();
+        plate.frame().unwrap();
+        let places: Vec<[f64; 2]> = (0..plate.node_count(0)).map(|k| plate.position(0, k as u32)).collect();
+        (places, plate.solver_work(), plate.same_bits_everywhere())
+    };
+    let (wanted, _, everywhere) = sagged("cholesky");
+    assert!(!everywhere);
+    let (found, work, everywhere) = sagged("conjugate_gradients");
+    assert!(everywhere);
+    println!("{work:?}");
+    // A thousand in vain, and one or two for each iteration.
+    assert!(work.linear_iterations < 1000 + 3 * work.iterations, "{work:?}");
+    for (a, b) in found.iter().zip(&wanted) {
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-7, "{a:?} {b:?}");
+    }
+}

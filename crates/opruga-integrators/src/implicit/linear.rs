@@ -5,7 +5,8 @@ use opruga_core::potential::{Definiteness, Sink};
 use opruga_core::system::{Stage, System};
 use opruga_solve::blocks::{Block, held, isotropic, nodes, nodes_mut, times};
 use opruga_solve::{
-    BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, IncompleteCholesky, Indefinite, conjugate_gradients,
+    BlockJacobi, BlockMatrix, Cholesky, Directions, Factors, FilledCholesky, IncompleteCholesky, Indefinite,
+    Preconditioner, conjugate_gradients,
 };
 
 /// The matrix of an iteration, and what solves with it.
@@ -20,6 +21,10 @@ pub(crate) struct Linear<const D: usize> {
     added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
     incomplete: IncompleteCholesky<D>,
+    /// The complete factor, and whether it is there for the matrix at hand; whether products were so many that it is asked for.
+    filled: FilledCholesky<D>,
+    is_filled: bool,
+    is_slow: bool,
     cholesky: Cholesky,
     factors: Factors,
     directions: Directions,
@@ -27,6 +32,9 @@ pub(crate) struct Linear<const D: usize> {
 
 /// Iterations of conjugate gradients at most.
 const MOST_PRODUCTS: u32 = 20_000;
+
+/// After so many the complete factor is asked for: a nearly incompressible solid takes an incomplete one thousands.
+const MANY_PRODUCTS: u32 = 1000;
 
 /// What a matrix is made of.
 #[derive(Clone, Copy, Debug)]
@@ -149,6 +157,11 @@ impl<const D: usize> Mixture<'_, D> {
 }
 
 impl<const D: usize> Linear<D> {
+    /// Forgets how many products earlier iterations took: what a step does goes by nothing that the state does not hold.
+    pub(crate) fn begin(&mut self) {
+        (self.is_filled, self.is_slow) = (false, false);
+    }
+
     /// Takes the derivatives of a state, after its forces were evaluated.
     pub(crate) fn assemble(&mut self, mixture: &Mixture<D>) {
         self.added.clear();
@@ -243,10 +256,14 @@ impl<const D: usize> Linear<D> {
             self.jacobi.update(self.diagonal.iter())?;
         } else {
             self.constrain(filter);
+            self.is_filled = false;
             if settings.solver.is_direct::<D>(self.whole.rows()) {
                 self.cholesky.update(&self.constrained)?;
             } else {
-                self.incomplete.update(&self.constrained)?;
+                self.is_filled = self.is_slow && self.filled.update(&self.constrained).is_ok();
+                if !self.is_filled {
+                    self.incomplete.update(&self.constrained)?;
+                }
             }
         }
         self.solve_again(mixture, filter, settings, tolerance, b, out)
@@ -277,11 +294,28 @@ impl<const D: usize> Linear<D> {
             self.cholesky.solve(out);
             1
         } else {
-            let Linear { constrained, incomplete, directions, .. } = self;
-            let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
-            conjugate_gradients(multiply, &*incomplete, b, out, tolerance, most, directions)?.iterations
+            self.by_gradients(tolerance, b, out)?
         };
         if out.iter().all(|x| x.is_finite()) { Ok(products) } else { Err(Indefinite) }
+    }
+
+    /// Solves by conjugate gradients, with the complete factor where the incomplete one leads nowhere soon.
+    fn by_gradients(&mut self, tolerance: f64, b: &[f64], out: &mut [f64]) -> Result<u32, Indefinite> {
+        let mut products = 0;
+        // The complete factor is tried once; where it is none, there is no end to the products but the last.
+        for most in [if self.is_slow { MOST_PRODUCTS } else { MANY_PRODUCTS }, MOST_PRODUCTS] {
+            let Linear { constrained, incomplete, filled, is_filled, directions, .. } = self;
+            let by: &dyn Preconditioner = if *is_filled { filled } else { incomplete };
+            let multiply = |x: &[f64], y: &mut [f64]| constrained.multiply(x, y);
+            let ended = conjugate_gradients(multiply, by, b, out, tolerance, most, directions)?;
+            products += ended.iterations;
+            if ended.residual <= tolerance || most == MOST_PRODUCTS {
+                break;
+            }
+            self.is_slow = true;
+            self.is_filled = self.filled.update(&self.constrained).is_ok();
+        }
+        Ok(products)
     }
 
     /// The matrix with nothing taken out.

@@ -108,6 +108,7 @@ pub(crate) fn solve<const D: usize>(
         size = x.abs().larger(size);
     }
     let torn = begin(system, room, balance)?;
+    room.linear.begin();
     room.mixing.begin(room.u.len());
     room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
     let mut first_norm = 0.0;

@@ -67,7 +67,8 @@ pub(crate) const TOLERANCE: Field = Field::new(
 macro_rules! solvers {
     () => {
         "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
-processor, or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
+processor (where a matrix takes them more than a thousand products, as one of a nearly incompressible solid does, with a complete factor \
+in arithmetic of one order, if that finds room in 100 MB), or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
 the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes. \"matrix_free\" keeps no matrix and takes several times \
 as many products, of quadratic cells dozens of times as long: it is for bodies whose matrix finds no room."
     };
