@@ -135,6 +135,7 @@ fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
         ("a.mesh", twice("mfem_mesh_end\nvertices"), "mfem.syntax", 24, "vertices"),
         ("a.mesh", MEDIT.replace("Formatted 2", "Formatted 9"), "medit.version", 1, "9"),
         ("a.mesh", MEDIT.replace("Tetra", "Dimension 2\nTetra"), "medit.syntax", 10, "Dimension"),
+        ("a.mesh", MEDIT.replace("Tetrahedra", "TetrahedraP2"), "mesh.unsupported_element", 10, "TetrahedraP2"),
         ("a.mesh", MEDIT.replace("End", "Tetrahedra\n0\nEnd"), "medit.syntax", 14, "Tetrahedra"),
     ] {
         let error = body(name, &file).map(|_| file.clone()).unwrap_err();

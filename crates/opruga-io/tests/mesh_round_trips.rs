@@ -129,6 +129,7 @@ fn formats_of_straight_cells_keep_them_and_refuse_others() {
         assert!(!write(&simplices, ending).unwrap().left_out.is_empty(), "{ending}");
         let error = write(&quadratic, ending).unwrap_err();
         assert_eq!(error.code, "mesh.write", "{error}");
+        assert!(error.message.contains("cells of second order are not written to "), "{error}");
     }
     for ending in ["mesh", "mfem"] {
         let read = again(&boxes, ending);

@@ -12,6 +12,8 @@ use crate::problem::{SceneError, visible};
 const SYNTAX: &str = "medit.syntax";
 const SIZE: &str = "medit.size";
 
+const SECOND_ORDER: &str = "triangles of 6 nodes and tetrahedra of 10 are read from Gmsh and VTK files";
+
 /// Reads a file.
 ///
 /// # Errors
@@ -84,7 +86,9 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             "Pyramids" | "Prisms" | "Pentahedra" | "EdgesP2" | "TrianglesP2" | "QuadrilateralsQ2" | "TetrahedraP2"
             | "HexahedraQ2" => {
                 let error = scanner.error("mesh.unsupported_element", format!("{word} cannot be read"), from);
-                return Err(error.value(word).allowed("Edges, Triangles, Quadrilaterals, Tetrahedra, Hexahedra"));
+                let error = error.value(word).allowed("Edges, Triangles, Quadrilaterals, Tetrahedra, Hexahedra");
+                let is_quadratic = word.ends_with("P2") || word.ends_with("Q2");
+                return Err(if is_quadratic { error.hint(SECOND_ORDER) } else { error });
             }
             other => {
                 let error = scanner.error(SYNTAX, format!("`{}` is no keyword that can be read", visible(other)), from);

@@ -251,14 +251,14 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
     out
 }
 
-/// Refuses cells of second order, which a format does not have.
+/// Refuses cells of second order, which are written to other formats.
 fn linear<const D: usize>(mesh: &Mesh<D>, format: &str) -> Result<(), SceneError> {
     let quadratic = mesh.cells.quadratic_triangles.len() + mesh.cells.quadratic_tetrahedra.len();
     if quadratic == 0 {
         return Ok(());
     }
-    let error = SceneError::new("mesh.write", format!("{format} has no cells of second order"));
-    Err(error.value(quadratic.to_string()).allowed("linear cells").hint("`.msh`, `.vtk` and `.vtu` have them"))
+    let error = SceneError::new("mesh.write", format!("cells of second order are not written to {format} files"));
+    Err(error.value(quadratic.to_string()).allowed("linear cells").hint("`.msh`, `.vtk` and `.vtu` files take them"))
 }
 
 /// One number per cell: the place of its group, from 1; 0 without one. Cells of several groups have that of the first by name.
@@ -313,7 +313,7 @@ fn medit<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
 }
 
 fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
-    linear(mesh, "MFEM's format of straight meshes")?;
+    linear(mesh, "MFEM")?;
     let mut left_out = Vec::new();
     let references = references(mesh, &mut left_out);
     let mut out = format!("MFEM mesh v1.0\n\ndimension\n{D}\n\nelements\n{}\n", mesh.cells.len());
@@ -338,7 +338,7 @@ fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
 }
 
 fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
-    linear(mesh, "TetGen's format as it is written here")?;
+    linear(mesh, "TetGen")?;
     let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
     if boxes > 0 {
         let error = SceneError::new("mesh.write", "TetGen has no quadrilaterals and hexahedra");

@@ -171,6 +171,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "Edges, Triangles, Quadrilaterals, Tetrahedra, Hexahedra",
         "Edges, Triangles, Quadrilaterals, Tetrahedra ili Hexahedra",
     ),
+    (
+        "triangles of 6 nodes and tetrahedra of 10 are read from Gmsh and VTK files",
+        "trokuti od 6 i tetraedri od 10 čvorova čitaju se iz datoteka Gmsh i VTK",
+    ),
     ("`{}` is no keyword that can be read", "`{}` nije ključna riječ koja se može pročitati"),
     ("Dimension, Vertices, Triangles, Tetrahedra … or End", "Dimension, Vertices, Triangles, Tetrahedra … ili End"),
     ("{#} come before the vertices", "{#} dolaze prije vrhova"),
