@@ -135,6 +135,26 @@ impl<const D: usize> System<D> {
         self.held.learn(&self.pins, self.time, h);
     }
 
+    /// Gives held nodes the velocity of their path at the start of a frame, where they have another: at the start of a run, or where a
+    /// command has just taken hold of them. Dampers between them and their neighbours would act for a step by a motion that ended with
+    /// the hold, which costs every rule its order. What that changes of the kinetic energy is work of the pins. Where a mass matrix
+    /// couples nodes it is an impulse on others too, and is left to the rule.
+    pub fn take_hold(&mut self) {
+        if self.inertia.is_some() {
+            return;
+        }
+        for pin in &self.pins {
+            let (_, velocity) = pin.target(self.time);
+            for d in (0..D).filter(|d| pin.axes[*d]) {
+                let before = core::mem::replace(&mut self.state.v.0[d][pin.place], velocity[d]);
+                if before != velocity[d] {
+                    let change = 0.5 * self.mass.at(pin.place) * (velocity[d] * velocity[d] - before * before);
+                    self.work.user[pin.place % WIDTH] += change;
+                }
+            }
+        }
+    }
+
     /// Puts held nodes where they are prescribed to be, at the velocity of their path there; where a mass matrix couples them
     /// to others they keep the one that the step has given them, since a change of it is an impulse on those too.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {

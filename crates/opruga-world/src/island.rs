@@ -229,6 +229,9 @@ impl<const D: usize> Island<D> {
             self.system.go_on()?;
             self.system.time = plan.start + f64::from(substep) * plan.h;
             self.system.lead_pins(plan.h);
+            if substep == 0 {
+                self.system.take_hold();
+            }
             self.integrator.step(&mut self.system, plan.h)?;
             let done = substep + 1;
             if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
@@ -251,6 +254,9 @@ impl<const D: usize> Island<D> {
         for substep in 0..plan.substeps {
             let time = plan.start + f64::from(substep) * plan.h;
             self.system.time = time;
+            if substep == 0 {
+                self.system.take_hold();
+            }
             if let Err(error) = self.integrator.step(&mut self.system, plan.h) {
                 return Some(error);
             }

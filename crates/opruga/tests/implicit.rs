@@ -442,3 +442,27 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
         }
     }
 }
+
+/// A weight on a damped spring whose other end is pinned begins with the velocity of the whole body, which the pin ends at once: no damper
+/// acts by the motion that the held node had. With c = 2 and k = 40 at 1 kg, v₀ = ½ m/s and no weight, after a second:
+/// x = e⁻¹ (v₀/ω) sin ω, v = e⁻¹ v₀ (cos ω − (sin ω)/ω), ω = √39.
+#[test]
+fn a_pin_ends_the_motion_of_its_node_before_the_first_step() {
+    let omega = 39f64.sqrt();
+    let (x, v) = ((-1f64).exp() * 0.5 / omega * omega.sin(), (-1f64).exp() * 0.5 * (omega.cos() - omega.sin() / omega));
+    for (rule, error) in [("verlet", 2e-5), ("heun", 1e-4), ("runge_kutta", 1e-9), ("newmark", 5e-5)] {
+        let text = head(0.1, 64, 0.0, rule)
+            + "[[body]]\nname = \"weight\"\nshape = { kind = \"line\", from = [0.0, 0.0], to = [0.0, -1.0], segments = 1 }\n\
+               node_mass = 1.0\nvelocity = [0.0, 0.5]\n\
+               models = [ { kind = \"mass_spring\", stiffness = 40.0, damping = 2.0 } ]\n\
+               pin = [ { select = { node = 0 } } ]\n";
+        let mut world = built(plane(&text));
+        frames(&mut world, 10);
+        let [dx, dv] = [world.position(0, 1)[1] + 1.0 - x, world.velocity(0, 1)[1] - v];
+        println!("{rule}: {dx:e} m, {dv:e} m/s");
+        assert!(dx.abs() < error && dv.abs() < error, "{rule}: {dx:e} {dv:e}");
+        // What the pin has taken is its work, and nothing is missed.
+        let energy = world.energy();
+        assert!(energy.loss_integrator.abs() < 1e-3 && (energy.work_user + 0.125).abs() < 1e-3, "{rule}: {energy:?}");
+    }
+}
