@@ -21,7 +21,8 @@ const INSCRIBED: [[[usize; 4]; 5]; 2] = [
 /// Into how many tetrahedra a hexahedron is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// Six around its diagonal 0–6, in every hexahedron alike.
+    /// Six around its diagonal 0–6, in every hexahedron alike; where neighbours would cut their common face by both of its diagonals, six
+    /// from the node of the least number.
     Six,
     /// Five: one inscribed and four corners, mirrored from hexahedron to hexahedron so that common faces are cut alike.
     Five,
@@ -142,9 +143,11 @@ impl<const D: usize> Mesh<D> {
                 self.cells.triangles.extend([[a, b, d], [b, c, d]]);
             }
         }
+        let alike = cut == Cut::Five || self.are_cut_alike();
         let odd = if cut == Cut::Five { self.odd_nodes()? } else { Vec::new() };
         for cell in std::mem::take(&mut self.cells.hexahedra) {
             match cut {
+                Cut::Six if !alike => self.cells.tetrahedra.extend(from_the_least(&cell)),
                 Cut::Six => self.cells.tetrahedra.extend(KUHN.map(|corners| corners.map(|corner| cell[corner]))),
                 Cut::Five => {
                     let parts = INSCRIBED[usize::from(odd[cell[0] as usize])];
@@ -155,6 +158,22 @@ impl<const D: usize> Mesh<D> {
         self.follow_cells(&origins);
         self.facets = self.facets_from_cells()?;
         Ok(self)
+    }
+
+    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces by the same diagonal: they do on grids, and where
+    /// a file numbers the corners of all hexahedra alike.
+    fn are_cut_alike(&self) -> bool {
+        let mut faces: Vec<([u32; 4], [u32; 2])> = Vec::with_capacity(6 * self.cells.hexahedra.len());
+        for cell in &self.cells.hexahedra {
+            for face in &HEXAHEDRON_FACES {
+                // The diagonals go from 0 or from 6.
+                let Some(from) = face.iter().position(|corner| *corner == 0 || *corner == 6) else { continue };
+                let [a, c] = [face[from], face[(from + 2) % 4]].map(|corner| cell[corner]);
+                faces.push((distinct(face.map(|corner| cell[corner])), ascending(a, c)));
+            }
+        }
+        faces.sort_unstable();
+        faces.windows(2).all(|pair| pair[0].0 != pair[1].0 || pair[0].1 == pair[1].1)
     }
 
     /// Which nodes are an odd number of edges of hexahedra away from the first of their piece, so that every diagonal of a
@@ -192,6 +211,21 @@ impl<const D: usize> Mesh<D> {
         }
         Ok(odd.into_iter().map(|parity| parity == Some(true)).collect())
     }
+}
+
+/// Six tetrahedra from the node of the least number to the faces that it is none of, each of which is cut from its own least node: so
+/// neighbours cut their common face alike, however their corners are numbered.
+fn from_the_least(cell: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> {
+    let least = cell.iter().copied().fold(u32::MAX, u32::min);
+    HEXAHEDRON_FACES
+        .map(|face| face.map(|corner| cell[corner]))
+        .into_iter()
+        .filter(move |face| !face.contains(&least))
+        .flat_map(move |face| {
+            let first = (0..4).fold(0, |first, k| if face[k] < face[first] { k } else { first });
+            let [a, b, c, d] = core::array::from_fn(|k| face[(first + k) % 4]);
+            [[least, a, b, c], [least, a, c, d]]
+        })
 }
 
 /// The first D nodes as a facet.

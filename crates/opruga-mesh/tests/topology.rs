@@ -314,3 +314,32 @@ fn problems_are_listed() {
     assert!(matches!(mixed.measure(), Err(MeshError::MixedMeasures { .. })));
     assert_eq!(Mesh::<3>::default().check(), []);
 }
+
+/// Boxes whose corners a file numbers in turns of their own are cut into tetrahedra that fit together all the same: no face of one is
+/// left without the other, and the volume is that of the boxes.
+#[test]
+fn boxes_that_are_turned_among_each_other_are_cut_into_tetrahedra_that_fit() {
+    let mut mesh = Mesh::<3>::grid([0.0; 3], [3.0, 2.0, 2.0], [3, 2, 2]).unwrap();
+    // Quarter turns about the third axis of a box, and about its first.
+    let turns = [[1, 2, 3, 0, 5, 6, 7, 4], [3, 2, 6, 7, 0, 1, 5, 4]];
+    for (k, cell) in mesh.cells.hexahedra.iter_mut().enumerate() {
+        for _ in 0..k % 4 {
+            *cell = turns[k % 2].map(|corner| cell[corner]);
+        }
+    }
+    let cut = mesh.clone().into_simplices().unwrap();
+    assert_eq!(cut.cells.tetrahedra.len(), 6 * 12);
+    // Each square of the boundary is two triangles, and no crack is one.
+    assert_eq!(cut.facets.len(), 2 * 32);
+    let mut volume = 0.0;
+    for tetrahedron in &cut.cells.tetrahedra {
+        let [a, b, c, d] = tetrahedron.map(|node| cut.positions[node as usize]);
+        let [p, q, r]: [[f64; 3]; 3] = [b, c, d].map(|x| std::array::from_fn(|k| x[k] - a[k]));
+        let part =
+            (0..3).map(|k| p[k] * (q[(k + 1) % 3] * r[(k + 2) % 3] - q[(k + 2) % 3] * r[(k + 1) % 3])).sum::<f64>()
+                / 6.0;
+        assert!(part > 0.1, "{tetrahedron:?}: {part}");
+        volume += part;
+    }
+    close(volume, 12.0);
+}
