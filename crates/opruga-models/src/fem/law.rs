@@ -4,10 +4,12 @@
 //! stresses of them, elements make forces of these: two calls for 64 points cost less than a nanosecond per point.
 
 use super::material::{Material, Parameters, Tangent};
+use super::principal_frame::{Clamp, Frames, InFrame, OutOfFrame};
+use super::section::{MOST_PACKS, Room};
 use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
 use opruga_math::matrix::Matrix;
-use opruga_math::{Lane, Pack, Register, Simd, Twin, WIDTH, Work};
+use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
 /// Numbers of [`Parameters`] at a point.
 pub(super) const PARAMETERS: usize = 3;
@@ -72,13 +74,17 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
     }
     fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]) {
         match keep {
-            Definiteness::Exact => simd.run(Tangents::<M, D, false> { points, tangent, material: self.0 }),
-            Definiteness::Clamped => simd.run(Tangents::<M, D, true> { points, tangent, material: self.0 }),
+            Definiteness::Exact => simd.run(Tangents::<M, D> { points, tangent, material: self.0 }),
+            Definiteness::Clamped => {
+                let mut principal = Room([0.0; MOST_PACKS * PRINCIPAL * 9 * WIDTH]);
+                self.principal(simd, points, &mut principal.0);
+                simd.run(OutOfFrame::<D> { count: points.count, principal: &principal.0, tangent });
+            }
         }
     }
     fn short_tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, out: &mut [f64]) -> Form {
         if keep == Definiteness::Clamped {
-            simd.run(Principals::<M, D> { points, out, material: self.0 });
+            self.principal(simd, points, out);
             return Form::Principal;
         }
         if simd.run(ByInvariants::<M, D> { points, out, material: self.0 }) {
@@ -95,9 +101,25 @@ impl<M: Material<D>, const D: usize> Law<D> for Lift<M> {
     }
 }
 
+impl<M> Lift<M> {
+    /// Tangents without negative eigenvalues, as [`Form::Principal`] says them.
+    fn principal<const D: usize>(&self, simd: Simd, points: Points<'_>, out: &mut [f64])
+    where
+        M: Material<D>,
+    {
+        simd.run(Frames::<D> { points, turns: M::TURNS, out });
+        simd.run(InFrame::<M, D> { points, out, material: self.0 });
+        simd.run(Clamp::<D> { count: points.count, out });
+    }
+}
+
 /// The numbers of a part of a pack of points.
 #[inline(always)]
-fn read<R: Register, const D: usize>(points: &Points<'_>, pack: usize, part: usize) -> (Parameters<R>, Matrix<R, D>) {
+pub(super) fn read<R: Register, const D: usize>(
+    points: &Points<'_>,
+    pack: usize,
+    part: usize,
+) -> (Parameters<R>, Matrix<R, D>) {
     let own = &points.parameters[pack * PARAMETERS * WIDTH..(pack + 1) * PARAMETERS * WIDTH];
     let at = |k: usize| R::load(&own[k * WIDTH + part * R::NUMBERS..]);
     let parameters = Parameters { mu: at(0), lambda: at(1), own: at(2) };
@@ -150,32 +172,36 @@ impl<M: Material<D>, const D: usize> Work for Stress<'_, M, D> {
     }
 }
 
-struct Tangents<'a, M, const D: usize, const CLAMPED: bool> {
+struct Tangents<'a, M, const D: usize> {
     points: Points<'a>,
     tangent: &'a mut [f64],
     #[allow(dead_code)] // says which material
     material: M,
 }
-impl<M: Material<D>, const D: usize, const CLAMPED: bool> Work for Tangents<'_, M, D, CLAMPED> {
+impl<M: Material<D>, const D: usize> Work for Tangents<'_, M, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
         for pack in 0..self.points.count {
-            let out = &mut self.tangent[pack * D * D * D * D * WIDTH..(pack + 1) * D * D * D * D * WIDTH];
             for part in 0..P::PARTS {
                 let (p, f) = read::<P::Part, D>(&self.points, pack, part);
-                let tangent: Tangent<P::Part, D> = if CLAMPED {
-                    let (singular, principal) = M::principal(&p, &f);
-                    principal.clamped().tangent(&singular)
-                } else {
-                    M::tangent(&p, &f)
-                };
-                for i in 0..D {
-                    for j in 0..D {
-                        write_matrix(&mut out[(i * D + j) * D * D * WIDTH..], part, &tangent[i][j]);
-                    }
-                }
+                write_tangent(self.tangent, pack, part, &M::tangent(&p, &f));
             }
+        }
+    }
+}
+
+/// Writes a part of D⁴ packs of a pack of points.
+#[inline(always)]
+pub(super) fn write_tangent<R: Register, const D: usize>(
+    to: &mut [f64],
+    pack: usize,
+    part: usize,
+    tangent: &Tangent<R, D>,
+) {
+    for i in 0..D {
+        for j in 0..D {
+            write_matrix(&mut to[((pack * D + i) * D + j) * D * D * WIDTH..], part, &tangent[i][j]);
         }
     }
 }
@@ -203,53 +229,5 @@ impl<M: Material<D>, const D: usize> Work for ByInvariants<'_, M, D> {
             }
         }
         true
-    }
-}
-
-struct Principals<'a, M, const D: usize> {
-    points: Points<'a>,
-    out: &'a mut [f64],
-    #[allow(dead_code)] // says which material
-    material: M,
-}
-impl<M: Material<D>, const D: usize> Work for Principals<'_, M, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        // Singular vectors wait for roots and divisions: two registers at a time, the last of an odd number twice.
-        let parts = self.points.count * P::PARTS;
-        for first in (0..parts).step_by(2) {
-            let second = (first + 1).min(parts - 1);
-            let (p, f) = read::<P::Part, D>(&self.points, first / P::PARTS, first % P::PARTS);
-            let (q, g) = read::<P::Part, D>(&self.points, second / P::PARTS, second % P::PARTS);
-            let parameters =
-                Parameters { mu: Twin(p.mu, q.mu), lambda: Twin(p.lambda, q.lambda), own: Twin(p.own, q.own) };
-            let mut both = [[Twin(f[0][0], g[0][0]); D]; D];
-            for i in 0..D {
-                for j in 0..D {
-                    both[i][j] = Twin(f[i][j], g[i][j]);
-                }
-            }
-            let (singular, principal) = M::principal(&parameters, &both);
-            let principal = principal.clamped();
-            let mut pairs = [[Twin::<P::Part>::zero(); D]; D];
-            for a in 0..D {
-                for b in a + 1..D {
-                    (pairs[a][b], pairs[b][a]) = principal.pair(a, b);
-                }
-            }
-            for (k, matrix) in [&singular.u, &singular.v, &principal.second, &pairs].into_iter().enumerate() {
-                let mut one = [[P::Part::zero(); D]; D];
-                let mut other = one;
-                for i in 0..D {
-                    for j in 0..D {
-                        (one[i][j], other[i][j]) = (matrix[i][j].0, matrix[i][j].1);
-                    }
-                }
-                let size = D * D * WIDTH;
-                write_matrix(&mut self.out[(first / P::PARTS * PRINCIPAL + k) * size..], first % P::PARTS, &one);
-                write_matrix(&mut self.out[(second / P::PARTS * PRINCIPAL + k) * size..], second % P::PARTS, &other);
-            }
-        }
     }
 }

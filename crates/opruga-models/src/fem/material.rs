@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::Singular;
+use opruga_math::singular::{Singular, singular};
 use opruga_math::{Lane, symmetric};
 
 /// The parameters of a material at a point.
@@ -33,8 +33,8 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     const CANCELS: bool = false;
     /// Energy density ψ(F) [J/m³], zero at rest, and first Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
-    /// The singular vectors of F, and the second derivatives by principal stretches: ∂P/∂F in their frame [Pa].
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>);
+    /// The second derivatives by the principal stretches σ of F: ∂P/∂F in the frame of its singular vectors [Pa].
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D>;
     /// The derivatives by tr FᵀF and det F, of a law that knows of nothing else: its tangent needs no more.
     #[inline(always)]
     fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
@@ -46,8 +46,8 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
         if let Some(invariants) = Self::invariants(p, f) {
             return invariants.tangent(f);
         }
-        let (singular, principal) = Self::principal(p, f);
-        principal.tangent(&singular)
+        let singular = singular(f);
+        Self::principal(p, f, &singular.sigma).tangent(&singular)
     }
 }
 
@@ -161,38 +161,61 @@ impl<S: Lane, const D: usize> Principal<S, D> {
         (half * (self.difference[a][b] + self.sum[a][b]), half * (self.difference[a][b] - self.sum[a][b]))
     }
 
+    /// For every pair of axes a < b what [`Principal::pair`] gives, at [a][b] and at [b][a].
+    #[inline(always)]
+    pub(super) fn pairs(&self) -> Matrix<S, D> {
+        let mut out = matrix::zeros();
+        for a in 0..D {
+            for b in a + 1..D {
+                (out[a][b], out[b][a]) = self.pair(a, b);
+            }
+        }
+        out
+    }
+
     /// The tangent.
     #[inline(always)]
     pub fn tangent(&self, singular: &Singular<S, D>) -> Tangent<S, D> {
-        let (u, v) = (&singular.u, &singular.v);
-        let mut out = [[[[S::zero(); D]; D]; D]; D];
-        for a in 0..D {
-            for b in 0..D {
-                // u_a v_bᵀ, and what the tangent makes of it.
-                let mut image = matrix::zeros::<S, D>();
-                if a == b {
-                    for c in 0..D {
-                        add_outer(&mut image, self.second[a][c], u, c, v, c);
-                    }
-                } else {
-                    let (own, other) = if a < b { self.pair(a, b) } else { self.pair(b, a) };
-                    add_outer(&mut image, own, u, a, v, b);
-                    add_outer(&mut image, other, u, b, v, a);
+        out_of_frame(&singular.u, &singular.v, &self.second, &self.pairs())
+    }
+}
+
+/// The tangent of a law from what it is in the frame of the singular vectors: its second derivatives by stretches, and
+/// [`Principal::pairs`].
+#[inline(always)]
+pub(super) fn out_of_frame<S: Lane, const D: usize>(
+    u: &Matrix<S, D>,
+    v: &Matrix<S, D>,
+    second: &Matrix<S, D>,
+    pairs: &Matrix<S, D>,
+) -> Tangent<S, D> {
+    let mut out = no_tangent();
+    for a in 0..D {
+        for b in 0..D {
+            // u_a v_bᵀ, and what the tangent makes of it.
+            let mut image = matrix::zeros::<S, D>();
+            if a == b {
+                for c in 0..D {
+                    add_outer(&mut image, second[a][c], u, c, v, c);
                 }
-                for i in 0..D {
-                    for j in 0..D {
-                        let weight = u[i][a] * v[j][b];
-                        for k in 0..D {
-                            for l in 0..D {
-                                out[i][j][k][l] += weight * image[k][l];
-                            }
+            } else {
+                let (low, high) = if a < b { (a, b) } else { (b, a) };
+                add_outer(&mut image, pairs[low][high], u, a, v, b);
+                add_outer(&mut image, pairs[high][low], u, b, v, a);
+            }
+            for i in 0..D {
+                for j in 0..D {
+                    let weight = u[i][a] * v[j][b];
+                    for k in 0..D {
+                        for l in 0..D {
+                            out[i][j][k][l] += weight * image[k][l];
                         }
                     }
                 }
             }
         }
-        out
     }
+    out
 }
 
 /// Adds s u_a v_bᵀ of the columns a and b.

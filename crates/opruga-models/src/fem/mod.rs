@@ -41,6 +41,7 @@ mod part;
 mod pass;
 mod plane_stress;
 mod pressures;
+mod principal_frame;
 mod section;
 mod solid;
 mod spec;

@@ -4,7 +4,6 @@ use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::rotation::nearest_rotation;
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ |F − R|² + λ/2 tr²(RᵀF − 1) with the rotation R nearest to F; P = 2μ(F − R) + λ tr(RᵀF − 1) R.
 ///
@@ -46,22 +45,21 @@ impl<const D: usize> Material<D> for Corotated {
         (energy, matrix::plus(&matrix::scaled(&difference, p.mu + p.mu), p.lambda * trace, &r))
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
-        let s = singular(f);
-        let mut principal = distance_from_rotation(p.mu, &s.sigma);
+    fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
+        let mut principal = distance_from_rotation(p.mu, sigma);
         let mut strain = S::zero();
         for i in 0..D {
-            strain += s.sigma[i] - S::one();
+            strain += sigma[i] - S::one();
         }
         for i in 0..D {
             for j in 0..D {
                 principal.second[i][j] += p.lambda;
                 if i < j {
-                    let sum = (s.sigma[i] + s.sigma[j]).larger(S::splat(LEAST_SUM));
+                    let sum = (sigma[i] + sigma[j]).larger(S::splat(LEAST_SUM));
                     principal.sum[i][j] += S::splat(2.0) * p.lambda * strain / sum;
                 }
             }
         }
-        (s, principal)
+        principal
     }
 }

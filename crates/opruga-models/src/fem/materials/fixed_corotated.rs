@@ -5,7 +5,6 @@ use crate::fem::material::{Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
 use opruga_math::rotation::nearest_rotation;
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ |F − R|² + λ/2 (J − 1)² with the rotation R nearest to F and J = det F; P = 2μ(F − R) + λ(J − 1) cof F.
 ///
@@ -27,10 +26,9 @@ impl<const D: usize> Material<D> for FixedCorotated {
         (energy, matrix::plus(&matrix::scaled(&difference, p.mu + p.mu), p.lambda * change, &cofactors))
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
-        let s = singular(f);
-        let mut principal = distance_from_rotation(p.mu, &s.sigma);
-        principal.add_volumetric(&s.sigma, p.lambda * (matrix::determinant(f) - S::one()), p.lambda);
-        (s, principal)
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
+        let mut principal = distance_from_rotation(p.mu, sigma);
+        principal.add_volumetric(sigma, p.lambda * (matrix::determinant(f) - S::one()), p.lambda);
+        principal
     }
 }

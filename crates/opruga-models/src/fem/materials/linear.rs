@@ -3,7 +3,6 @@
 use crate::fem::material::{Material, Parameters, Principal, Tangent, add_identity, no_tangent};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::Singular;
 
 /// Hooke's law of the small strain ε = ½(F + Fᵀ) − 1: ψ = μ ε:ε + λ/2 tr² ε, P = 2με + λ tr ε 1.
 ///
@@ -41,9 +40,9 @@ impl<const D: usize> Material<D> for Linear {
         }
         out
     }
-    /// It is the same for every F: the unit vectors serve as well as the singular ones.
+    /// The same for every F and in every frame.
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+    fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>, _sigma: &[S; D]) -> Principal<S, D> {
         let mut principal = Principal::zeros();
         for i in 0..D {
             for j in 0..D {
@@ -52,6 +51,6 @@ impl<const D: usize> Material<D> for Linear {
             }
             principal.second[i][i] += p.mu + p.mu;
         }
-        (Singular { u: matrix::identity(), sigma: [S::one(); D], v: matrix::identity() }, principal)
+        principal
     }
 }

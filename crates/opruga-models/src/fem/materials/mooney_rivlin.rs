@@ -6,7 +6,6 @@ use crate::fem::material::{
 };
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = C₁ (I₁ − 3) + C₂ (I₂ − 3) + a (J² − 1) − b ln J with C₁ + C₂ = μ/2, a = λ/4 − C₂, b = 2(C₁ + C₂) + λ/2; I₁ = tr C,
 /// I₂ = ½(I₁² − tr C²), C = FᵀF (in plane strain with the stretch 1 along z), J = det F.
@@ -91,17 +90,16 @@ impl<const D: usize> Material<D> for MooneyRivlin {
         out
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
         let [c1, c2, a, b] = constants::<S, D>(p);
-        let s = singular(f);
         let two = S::splat(2.0);
         let mut principal = Principal::zeros();
-        principal.add_stretch(&s.sigma, c1, S::zero());
+        principal.add_stretch(sigma, c1, S::zero());
         if D == 3 {
             let i1 = matrix::inner(f, f);
             for i in 0..D {
                 for j in 0..D {
-                    let (x, y) = (s.sigma[i], s.sigma[j]);
+                    let (x, y) = (sigma[i], sigma[j]);
                     let ends = x * x + y * y;
                     principal.second[i][j] += if i == j { two * c2 * (i1 - x * x) } else { S::splat(4.0) * c2 * x * y };
                     principal.difference[i][j] += two * c2 * (i1 - ends - x * y);
@@ -110,7 +108,7 @@ impl<const D: usize> Material<D> for MooneyRivlin {
             }
         }
         let (first, second) = volumetric(a, b, matrix::determinant(f));
-        principal.add_volumetric(&s.sigma, first, second);
-        (s, principal)
+        principal.add_volumetric(sigma, first, second);
+        principal
     }
 }

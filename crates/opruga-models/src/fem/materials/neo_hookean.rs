@@ -3,7 +3,6 @@
 use crate::fem::material::{Invariants, Material, Parameters, Principal, logarithm_of_volume};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ/2 (I₁ − D) − μ ln J + λ/2 ln² J with I₁ = tr FᵀF and J = det F; P = μF + (λ ln J − μ) J⁻¹ cof F.
 ///
@@ -42,12 +41,11 @@ impl<const D: usize> Material<D> for NeoHookean {
         Some(Invariants { stretch: p.mu, stretch_twice: None, volume, volume_twice })
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
-        let s = singular(f);
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
         let (first, second) = volumetric(p, matrix::determinant(f));
         let mut principal = Principal::zeros();
-        principal.add_stretch(&s.sigma, S::splat(0.5) * p.mu, S::zero());
-        principal.add_volumetric(&s.sigma, first, second);
-        (s, principal)
+        principal.add_stretch(sigma, S::splat(0.5) * p.mu, S::zero());
+        principal.add_volumetric(sigma, first, second);
+        principal
     }
 }

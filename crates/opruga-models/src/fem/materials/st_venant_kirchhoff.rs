@@ -3,7 +3,6 @@
 use crate::fem::material::{Material, Parameters, Principal, Tangent, add_strain_tangent, no_tangent};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = μ E:E + λ/2 tr² E with E = ½(FᵀF − 1); P = F S, S = 2μE + λ tr E 1.
 ///
@@ -46,18 +45,17 @@ impl<const D: usize> Material<D> for StVenantKirchhoff {
         out
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
-        let s = singular(f);
+    fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
         let mut squares = S::zero();
         for i in 0..D {
-            squares += s.sigma[i] * s.sigma[i] - S::one();
+            squares += sigma[i] * sigma[i] - S::one();
         }
         // ψᵢ = μ σᵢ(σᵢ² − 1) + λ/2 (I − D) σᵢ.
         let common = S::splat(0.5) * p.lambda * squares - p.mu;
         let mut principal = Principal::zeros();
         for i in 0..D {
             for j in 0..D {
-                let (a, b) = (s.sigma[i], s.sigma[j]);
+                let (a, b) = (sigma[i], sigma[j]);
                 principal.second[i][j] = p.lambda * a * b;
                 if i == j {
                     principal.second[i][i] += common + S::splat(3.0) * p.mu * a * a;
@@ -67,6 +65,6 @@ impl<const D: usize> Material<D> for StVenantKirchhoff {
                 principal.sum[i][j] = common + p.mu * (ends - a * b);
             }
         }
-        (s, principal)
+        principal
     }
 }

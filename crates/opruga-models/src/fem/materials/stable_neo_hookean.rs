@@ -3,7 +3,6 @@
 use crate::fem::material::{Invariants, Material, Parameters, Principal};
 use opruga_math::Lane;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::singular::{Singular, singular};
 
 /// ψ = m/2 (I − 3) − 3m/4 (J − 1) + l/2 (J − 1)² − m/2 ln((I + 1)/4) with m = 4/3 μ, l = λ + 5/6 μ, I = tr FᵀF in space and
 /// tr FᵀF + 1 in plane strain, J = det F; P = m (1 − 1/(I + 1)) F + (l (J − 1) − 3m/4) cof F.
@@ -57,15 +56,14 @@ impl<const D: usize> Material<D> for StableNeoHookean {
         })
     }
     #[inline(always)]
-    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (Singular<S, D>, Principal<S, D>) {
+    fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D> {
         let (m, l) = moduli(p);
-        let s = singular(f);
         let half = S::splat(0.5);
         let inverse = S::one() / (stretch(f) + S::one());
         let mut principal = Principal::zeros();
-        principal.add_stretch(&s.sigma, half * (m - m * inverse), half * m * inverse * inverse);
+        principal.add_stretch(sigma, half * (m - m * inverse), half * m * inverse * inverse);
         let first = l * (matrix::determinant(f) - S::one()) - S::splat(0.75) * m;
-        principal.add_volumetric(&s.sigma, first, l);
-        (s, principal)
+        principal.add_volumetric(sigma, first, l);
+        principal
     }
 }

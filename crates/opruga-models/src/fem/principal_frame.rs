@@ -1,0 +1,173 @@
+//! Tangents in the frame of the singular vectors, in passes of which only one knows the material.
+//!
+//! ```text
+//! F ──▶ U, V, σ ──▶ ψᵢⱼ, differences, sums ──▶ without negative eigenvalues ──▶ the whole tangent, where one asks for it
+//!      whatever the material  the material      whatever the material
+//! ```
+//! So singular vectors and eigenvalues are compiled once and not with every material. What the passes hand on lies in
+//! [`PRINCIPAL`] matrices for every pack of points: U, V, ψᵢⱼ (before: σ in its first row), and for pairs of axes a < b
+//! the parts of [`Principal::pair`] at [a][b] and [b][a] (before: the difference and the sum).
+
+use super::law::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};
+use super::material::{Material, Parameters, Principal, out_of_frame};
+use opruga_math::matrix::{self, Matrix};
+use opruga_math::singular::singular;
+use opruga_math::{Lane, Pack, Register, Twin, WIDTH, Work};
+
+/// Packs and parts of two registers: so many at a time, since singular vectors and eigenvalues wait for roots and divisions.
+type Two = [(usize, usize); 2];
+
+/// The two registers from one of `parts` on, the last of an odd number twice.
+#[inline(always)]
+fn two<P: Pack>(first: usize, parts: usize) -> Two {
+    let second = (first + 1).min(parts - 1);
+    [(first / P::PARTS, first % P::PARTS), (second / P::PARTS, second % P::PARTS)]
+}
+
+/// One of the [`PRINCIPAL`] matrices of two parts.
+#[inline(always)]
+fn read_twin<R: Register, const D: usize>(from: &[f64], number: usize, at: Two) -> Matrix<Twin<R>, D> {
+    let [(pack, part), (other_pack, other_part)] = at;
+    let one = read_matrix::<R, D>(&from[(pack * PRINCIPAL + number) * D * D * WIDTH..], part);
+    let other = read_matrix::<R, D>(&from[(other_pack * PRINCIPAL + number) * D * D * WIDTH..], other_part);
+    twin(&one, &other)
+}
+
+/// Writes one of the [`PRINCIPAL`] matrices of two parts.
+#[inline(always)]
+fn write_twin<R: Register, const D: usize>(to: &mut [f64], number: usize, at: Two, matrix: &Matrix<Twin<R>, D>) {
+    let mut one = [[R::zero(); D]; D];
+    let mut other = one;
+    for i in 0..D {
+        for j in 0..D {
+            (one[i][j], other[i][j]) = (matrix[i][j].0, matrix[i][j].1);
+        }
+    }
+    let [(pack, part), (other_pack, other_part)] = at;
+    write_matrix(&mut to[(pack * PRINCIPAL + number) * D * D * WIDTH..], part, &one);
+    write_matrix(&mut to[(other_pack * PRINCIPAL + number) * D * D * WIDTH..], other_part, &other);
+}
+
+#[inline(always)]
+fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Matrix<Twin<R>, D> {
+    let mut out = [[Twin(one[0][0], other[0][0]); D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            out[i][j] = Twin(one[i][j], other[i][j]);
+        }
+    }
+    out
+}
+
+/// Singular vectors and values of F.
+pub(super) struct Frames<'a, const D: usize> {
+    pub(super) points: Points<'a>,
+    /// Whether the law knows of rotations; one that does not is the same in every frame, and has that of the unit vectors.
+    pub(super) turns: bool,
+    pub(super) out: &'a mut [f64],
+}
+impl<const D: usize> Work for Frames<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let parts = self.points.count * P::PARTS;
+        for first in (0..parts).step_by(2) {
+            let at = two::<P>(first, parts);
+            let (mut u, mut v) = (matrix::identity::<_, D>(), matrix::identity::<_, D>());
+            let mut sigma = [Twin::<P::Part>::one(); D];
+            if self.turns {
+                let (_, f) = read::<P::Part, D>(&self.points, at[0].0, at[0].1);
+                let (_, g) = read::<P::Part, D>(&self.points, at[1].0, at[1].1);
+                let singular = singular(&twin(&f, &g));
+                (u, v, sigma) = (singular.u, singular.v, singular.sigma);
+            }
+            let mut row = matrix::zeros::<Twin<P::Part>, D>();
+            row[0] = sigma;
+            write_twin(self.out, 0, at, &u);
+            write_twin(self.out, 1, at, &v);
+            write_twin(self.out, 2, at, &row);
+        }
+    }
+}
+
+/// What the material makes of the singular values.
+pub(super) struct InFrame<'a, M, const D: usize> {
+    pub(super) points: Points<'a>,
+    pub(super) out: &'a mut [f64],
+    #[allow(dead_code)] // says which material
+    pub(super) material: M,
+}
+impl<M: Material<D>, const D: usize> Work for InFrame<'_, M, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let parts = self.points.count * P::PARTS;
+        for first in (0..parts).step_by(2) {
+            let at = two::<P>(first, parts);
+            let (p, f) = read::<P::Part, D>(&self.points, at[0].0, at[0].1);
+            let (q, g) = read::<P::Part, D>(&self.points, at[1].0, at[1].1);
+            let parameters =
+                Parameters { mu: Twin(p.mu, q.mu), lambda: Twin(p.lambda, q.lambda), own: Twin(p.own, q.own) };
+            let sigma = read_twin::<P::Part, D>(self.out, 2, at)[0];
+            let principal = M::principal(&parameters, &twin(&f, &g), &sigma);
+            let mut pairs = matrix::zeros::<Twin<P::Part>, D>();
+            for a in 0..D {
+                for b in a + 1..D {
+                    (pairs[a][b], pairs[b][a]) = (principal.difference[a][b], principal.sum[a][b]);
+                }
+            }
+            write_twin(self.out, 2, at, &principal.second);
+            write_twin(self.out, 3, at, &pairs);
+        }
+    }
+}
+
+/// Leaves out negative eigenvalues.
+pub(super) struct Clamp<'a, const D: usize> {
+    pub(super) count: usize,
+    pub(super) out: &'a mut [f64],
+}
+impl<const D: usize> Work for Clamp<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        let parts = self.count * P::PARTS;
+        for first in (0..parts).step_by(2) {
+            let at = two::<P>(first, parts);
+            let mut principal = Principal::<Twin<P::Part>, D>::zeros();
+            principal.second = read_twin(self.out, 2, at);
+            let pairs = read_twin::<P::Part, D>(self.out, 3, at);
+            for a in 0..D {
+                for b in a + 1..D {
+                    (principal.difference[a][b], principal.sum[a][b]) = (pairs[a][b], pairs[b][a]);
+                }
+            }
+            let clamped = principal.clamped();
+            write_twin(self.out, 2, at, &clamped.second);
+            write_twin(self.out, 3, at, &clamped.pairs());
+        }
+    }
+}
+
+/// The whole tangents.
+pub(super) struct OutOfFrame<'a, const D: usize> {
+    pub(super) count: usize,
+    pub(super) principal: &'a [f64],
+    pub(super) tangent: &'a mut [f64],
+}
+impl<const D: usize> Work for OutOfFrame<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<P: Pack>(self) {
+        for pack in 0..self.count {
+            for part in 0..P::PARTS {
+                let mut found = [[[P::Part::zero(); D]; D]; PRINCIPAL];
+                for k in 0..PRINCIPAL {
+                    found[k] = read_matrix(&self.principal[(pack * PRINCIPAL + k) * D * D * WIDTH..], part);
+                }
+                let [u, v, second, pairs] = &found;
+                write_tangent(self.tangent, pack, part, &out_of_frame(u, v, second, pairs));
+            }
+        }
+    }
+}
