@@ -1,34 +1,39 @@
 //! The window of the keys.
 
 use super::Studio;
-use egui::{Align2, RichText, Ui};
+use egui::{Align2, Frame, Margin, RichText, Ui};
 
 impl Studio {
     /// What the keys and the pointer do.
     pub(super) fn help(&mut self, ui: &Ui) {
         let words = self.language;
         let mut open = self.help_open;
+        // In a low window what finds no room is scrolled to.
+        let tall = (ui.ctx().content_rect().height() - 90.0).max(60.0);
         egui::Window::new(words.help())
             .open(&mut open)
             .resizable(false)
+            .default_height(tall)
             .collapsible(false)
             .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
             .show(ui.ctx(), |ui| {
                 let room = (ui.ctx().content_rect().width() - 60.0).clamp(120.0, 560.0);
                 ui.set_max_width(room);
-                // In a low window what finds no room is scrolled to.
-                let tall = (ui.ctx().content_rect().height() - 90.0).max(60.0);
                 egui::ScrollArea::vertical().max_height(tall).show(ui, |ui| {
-                    egui::Grid::new("shortcuts").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
-                        for (keys, what) in words.shortcuts().lines().filter_map(|line| line.split_once('\t')) {
-                            for (text, share) in [(RichText::new(keys).strong(), 0.36), (RichText::new(what), 0.58)] {
-                                ui.scope(|ui| {
-                                    ui.set_max_width(share * room);
-                                    ui.add(egui::Label::new(text.size(13.5)).wrap());
-                                });
+                    // The bar lies beside the words.
+                    Frame::new().inner_margin(Margin { right: 12, ..Margin::ZERO }).show(ui, |ui| {
+                        egui::Grid::new("shortcuts").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
+                            for (keys, what) in words.shortcuts().lines().filter_map(|line| line.split_once('\t')) {
+                                for (text, share) in [(RichText::new(keys).strong(), 0.34), (RichText::new(what), 0.54)]
+                                {
+                                    ui.scope(|ui| {
+                                        ui.set_max_width(share * room);
+                                        ui.add(egui::Label::new(text.size(13.5)).wrap());
+                                    });
+                                }
+                                ui.end_row();
                             }
-                            ui.end_row();
-                        }
+                        });
                     });
                 });
             });
