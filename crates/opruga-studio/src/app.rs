@@ -57,7 +57,7 @@ pub struct Studio {
     /// Who spoke last.
     heard: message::Heard,
     /// What was told last, since when, and where: it goes by itself.
-    told: (String, f64, Align2),
+    told: (String, f64, message::Place),
     /// Pictures of the interface in a second.
     rate: f64,
     /// Whether time passed in the last picture.
@@ -95,7 +95,7 @@ impl Studio {
             presses: 0,
             closed: 0,
             heard: Default::default(),
-            told: (String::new(), 0.0, Align2::CENTER_BOTTOM),
+            told: (String::new(), 0.0, message::Place::default()),
             rate: 60.0,
             played: false,
             drawn_by: None,

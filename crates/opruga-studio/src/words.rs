@@ -188,6 +188,7 @@ words! {
     losses: "losses", "gubici";
     integration_error: "error of integration", "pogreška integracije";
     drag_me: "drag me", "povuci me";
+    away: "the bodies are this way: show them (F)", "tijela su onamo: prikaži ih (F)";
     drop_here: "Drop a scene, SVG, OBJ, STL, PLY or glTF here", "Ispusti ovdje prizor, SVG, OBJ, STL, PLY ili glTF";
     slower: "slower than real time", "sporije od stvarnog vremena";
     real_time: "real time", "stvarno vrijeme";
@@ -234,7 +235,7 @@ words! {
     recording_hint: "Up to the mark this is what was recorded; what lies behind it was computed since", "Do oznake je ono što je snimljeno; što je iza nje izračunato je poslije";
     warning: "Warning", "Upozorenje";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nMiddle drag, Space drag\tmove the view\nRight drag\tpush; in space, beside the bodies: turn the view\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\nEsc\tput a message away\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj; u prostoru, pokraj tijela: okreni pogled\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\nEsc\tskloni poruku\n?\tova pomoć";
+    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nDrag beside the bodies\tmove the view; in space turn it\nMiddle drag, Space drag\tmove the view\nRight drag\tpush\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\nEsc\tput a message away\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nPovuci pokraj tijela\tpomakni pogled; u prostoru ga okreni\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\nEsc\tskloni poruku\n?\tova pomoć";
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ use crate::said::Step;
 use crate::session::{Request, STEADY};
 use crate::shown::{Offer, Severity, Shown};
 use crate::words::Part;
-use egui::{Align2, Color32, CornerRadius, FontId, Frame, Key, Modifiers, Pos2, Rect, RichText, Stroke, Ui, Vec2};
+use egui::{
+    Align, Align2, Color32, CornerRadius, FontId, Frame, Key, Modifiers, Pos2, Rect, RichText, Stroke, Ui, Vec2,
+};
 use opruga::draw::format_value;
 
 /// How long it stays on the screen that something was done, and how much longer for every letter behind the first sixty [s].
@@ -21,6 +23,38 @@ const PLACES: [Align2; 6] = [
     Align2::LEFT_TOP,
     Align2::RIGHT_TOP,
 ];
+
+/// So many heights between the upper and the lower end are tried where all of these hide something.
+const HEIGHTS: u8 = 32;
+
+/// The widths of a message, as shares of the greatest one.
+const WIDTHS: [f32; 3] = [1.0, 0.6, 0.4];
+
+/// Where a message lies in what is free: by which of its sides it is held, how far down that is [0 … 1], and how wide it may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pivot: Align2,
+    down: f32,
+    room: f32,
+}
+
+impl Default for Place {
+    fn default() -> Place {
+        Place::at(PLACES[0])
+    }
+}
+
+impl Place {
+    /// At the border.
+    fn at(pivot: Align2) -> Place {
+        Place { pivot, down: if pivot.y() == Align::BOTTOM { 1.0 } else { 0.0 }, room: 620.0 }
+    }
+
+    /// The point by which it is held.
+    fn point(self, free: Rect) -> Pos2 {
+        Pos2::new(self.pivot.pos_in_rect(&free).x, free.top() + self.down * free.height())
+    }
+}
 
 /// Who speaks to the person, in the order in which they are heard where they speak at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,17 +135,30 @@ impl Studio {
         let refused = severity == Severity::Refused;
         let time = ui.input(|i| i.time);
         let told = format!("{speaker:?} {:?}: {text}", now[speaker as usize]);
-        let room = (rect.width() - 120.0).clamp(120.0, 620.0);
         // Between the tools and what stands at the lower border.
         let high = self.canvas.tools.map_or(rect.top(), |tools| tools.bottom()) + 8.0;
-        let low = rect.bottom() - if shown.beside.is_some() { 66.0 } else { 40.0 };
+        let low = rect.bottom()
+            - match &shown.beside {
+                None => 40.0,
+                Some(_) if rect.width() >= rect.height() => 66.0,
+                // One above the other, the lower one has nothing there.
+                Some(_) => 8.0,
+            };
         let free = Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)));
         if self.told.0 != told {
             // Bodies move: where it was put when it came, there it stays.
-            let galley = ui.painter().layout(text.clone(), FontId::proportional(13.0), edge(false), room);
-            let size = galley.size() + Vec2::new(16.0, 48.0);
             let covered = self.canvas.covered(shown);
-            self.told = (told, time, place(free, size, &covered));
+            let widest = (rect.width() - 120.0).clamp(120.0, 620.0);
+            // On more lines, where that hides less.
+            let places = WIDTHS.map(|share| {
+                let room = (share * widest).max(120.0);
+                let galley = ui.painter().layout(text.clone(), FontId::proportional(13.0), edge(false), room);
+                let size = galley.size() + Vec2::new(16.0, 48.0);
+                let (hidden, place) = place(free, size, &covered);
+                (hidden, Place { room, ..place })
+            });
+            let best = places.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+            self.told = (told, time, best.1);
         }
         let long = TOLD_FOR + TO_READ * text.chars().count().saturating_sub(60) as f64;
         // A menu that is open is what Escape closes first.
@@ -121,17 +168,17 @@ impl Studio {
             self.forget(speaker, message.map(|message| message.number));
             return;
         }
-        let align = self.told.2;
+        let place = self.told.2;
         egui::Area::new(egui::Id::unique("message"))
-            .pivot(align)
-            .fixed_pos(align.pos_in_rect(&free))
+            .pivot(place.pivot)
+            .fixed_pos(place.point(free))
             .order(egui::Order::Middle)
             .show(ui.ctx(), |ui| {
                 Frame::popup(ui.style())
                     .stroke(Stroke::new(1.5, edge(refused)))
                     .corner_radius(CornerRadius::same(6))
                     .show(ui, |ui| {
-                        ui.set_max_width(room);
+                        ui.set_max_width(place.room);
                         let lines: Vec<&str> = text.lines().collect();
                         let short = lines.iter().take(8).copied().collect::<Vec<_>>().join("\n");
                         let monospaced = lines.len() > 1;
@@ -187,15 +234,22 @@ fn edge(refused: bool) -> Color32 {
     if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) }
 }
 
-/// The place of a message of this size that hides least of what is there.
-fn place(free: Rect, size: Vec2, covered: &[Rect]) -> Align2 {
-    let hidden = |align: Align2| {
-        let place = align.anchor_size(align.pos_in_rect(&free), size).intersect(free);
+/// The place of a message of this size that hides least of what is there, and how much that is [square points].
+fn place(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Place) {
+    let hidden = |place: &Place| {
+        let place = place.pivot.anchor_size(place.point(free), size).intersect(free);
         let over =
             |other: &Rect| Some(other.intersect(place)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
         covered.iter().map(over).sum::<f32>()
     };
-    PLACES.into_iter().min_by(|a, b| hidden(*a).total_cmp(&hidden(*b))).unwrap_or(Align2::CENTER_BOTTOM)
+    // Bodies that lie apart leave strips free between them.
+    let most = (1.0 - size.y / free.height().max(1.0)).max(0.0);
+    let heights = (1..HEIGHTS).map(|k| f32::from(k) / f32::from(HEIGHTS) * most);
+    let between = heights.flat_map(|down| {
+        [Align2::CENTER_TOP, Align2::LEFT_TOP, Align2::RIGHT_TOP].map(|pivot| Place { down, ..Place::at(pivot) })
+    });
+    let all = PLACES.into_iter().map(Place::at).chain(between);
+    all.map(|place| (hidden(&place), place)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
 /// Units that stand behind numbers in messages.
@@ -244,14 +298,22 @@ mod tests {
         let body = |left: f32, top: f32, right: f32, bottom: f32| {
             Rect::from_min_max(Pos2::new(left, top), Pos2::new(right, bottom))
         };
-        assert_eq!(place(free, size, &[]), Align2::CENTER_BOTTOM);
-        assert_eq!(place(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Align2::CENTER_BOTTOM);
+        let place = |free: Rect, size: Vec2, covered: &[Rect]| super::place(free, size, covered).1;
+        assert_eq!(place(free, size, &[]), Place::at(Align2::CENTER_BOTTOM));
+        assert_eq!(place(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Place::at(Align2::CENTER_BOTTOM));
         // A flat body on the floor, one that hangs from above too, and one that fills the window but for a corner.
         let flat = body(200.0, 540.0, 800.0, 600.0);
-        assert_eq!(place(free, size, &[flat]), Align2::CENTER_TOP);
+        assert_eq!(place(free, size, &[flat]), Place::at(Align2::CENTER_TOP));
         let hanging = body(300.0, 60.0, 700.0, 200.0);
-        assert_eq!(place(free, size, &[body(300.0, 540.0, 500.0, 600.0), hanging]), Align2::RIGHT_BOTTOM);
-        assert_eq!(place(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Align2::CENTER_BOTTOM);
+        let lying = body(300.0, 540.0, 500.0, 600.0);
+        assert_eq!(place(free, size, &[lying, hanging]), Place::at(Align2::RIGHT_BOTTOM));
+        assert_eq!(place(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Place::at(Align2::CENTER_BOTTOM));
+        // Two scenes one above the other, with a strip between.
+        let scenes = [body(0.0, 60.0, 980.0, 260.0), body(0.0, 380.0, 980.0, 600.0)];
+        let (hidden, between) = super::place(free, size, &scenes);
+        assert_eq!(hidden, 0.0);
+        let strip = between.pivot.anchor_size(between.point(free), size);
+        assert!(scenes.iter().all(|scene| !scene.intersects(strip)) && free.contains_rect(strip), "{strip:?}");
     }
 
     #[test]

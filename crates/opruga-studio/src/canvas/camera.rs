@@ -15,26 +15,29 @@ pub(crate) struct Flat {
     center: [f64; 2],
     /// Points of the screen in a metre.
     pub(crate) scale: f64,
+    /// The room below a scene that captions take [points].
+    pub(crate) foot: f32,
 }
 
 impl Default for Flat {
     fn default() -> Flat {
-        Flat { center: [0.0; 2], scale: 100.0 }
+        Flat { center: [0.0; 2], scale: 100.0, foot: 0.0 }
     }
 }
 
 impl Flat {
-    /// Shows the whole of a view below the tools.
+    /// Shows the whole of a view below the tools and above what stands at its foot.
     pub(crate) fn fit(&mut self, view: &View, rect: Rect, tools: Option<Rect>) {
         let tools =
             tools.map_or(TOOLS, |tools| tools.bottom() - rect.top()).clamp(TOOLS, (0.5 * rect.height()).max(TOOLS));
         // Bodies move: there is room around them for that.
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
-        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from((rect.height() - BORDER - tools).max(8.0))];
+        let high = rect.height() - BORDER - tools - self.foot;
+        let room = [f64::from((rect.width() - BORDER).max(8.0)), f64::from(high.max(8.0))];
         self.scale = (room[0] / wide).min(room[1] / tall);
         let up = if view.y_down { -0.5 } else { 0.5 };
-        self.center = [view.center()[0], view.center()[1] + up * f64::from(tools) / self.scale];
+        self.center = [view.center()[0], view.center()[1] + up * f64::from(tools - self.foot) / self.scale];
     }
 
     /// Makes a view that nobody has moved wider where a body of the plane leaves what is seen, by no more than two sizes to each
@@ -247,7 +250,7 @@ mod tests {
     fn what_is_under_the_pointer_stays_there_while_zooming() {
         let rect = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(640.0, 480.0));
         for y_down in [false, true] {
-            let mut flat = Flat { center: [1.0, 2.0], scale: 100.0 };
+            let mut flat = Flat { center: [1.0, 2.0], scale: 100.0, foot: 0.0 };
             let at = Pos2::new(200.0, 300.0);
             let [x, y] = flat.to_world(rect, at, y_down);
             flat.zoom(3.7, rect, at, y_down);

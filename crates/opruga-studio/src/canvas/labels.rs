@@ -4,29 +4,59 @@ use super::look::Paper;
 use super::plane::RUBBER;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 
-/// The name of a body, below it or where else there is room beside it; where it is written is taken then. In a throng without
-/// room it is not written.
-pub(super) fn label(painter: &Painter, text: &str, spots: &[Pos2], paper: &Paper, taken: &mut Vec<Rect>) {
-    let height = |a: &&Pos2, b: &&Pos2| a.y.total_cmp(&b.y);
-    let ends = spots.iter().max_by(height).zip(spots.iter().min_by(height));
-    let Some((low, high)) = ends.filter(|_| !text.is_empty()) else { return };
-    let middle = spots.iter().map(|p| p.x).sum::<f32>() / spots.len() as f32;
-    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), paper.ink);
-    let Some(place) = free([low.y, high.y], middle, galley.size(), taken) else { return };
-    let ground = place.expand2(Vec2::new(4.0, 1.0));
-    taken.push(ground);
-    painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.6));
-    painter.galley(place.min, galley, paper.ink);
+/// Bodies up to which names keep off other bodies.
+const FEW: usize = 64;
+
+/// A body that has a name: what it takes on the screen, and the mean of its nodes from left to right.
+pub(super) struct Named<'a> {
+    text: &'a str,
+    rect: Rect,
+    middle: f32,
 }
 
-/// Where there is room for a name of this size: below a body that reaches from `low` up to `high`, above it, or a little farther.
-fn free([low, high]: [f32; 2], middle: f32, size: Vec2, taken: &[Rect]) -> Option<Rect> {
-    let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, low + 6.0), size);
-    let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, high - 6.0), size);
+impl<'a> Named<'a> {
+    /// A body of this name with its nodes here; none where there is nothing to write, or none of it is seen.
+    pub(super) fn of(text: &'a str, spots: impl Iterator<Item = Pos2>) -> Option<Named<'a>> {
+        let (mut rect, mut sum, mut count) = (Rect::NOTHING, 0.0, 0_u32);
+        for spot in spots {
+            rect.extend_with(spot);
+            (sum, count) = (sum + spot.x, count + 1);
+        }
+        (count > 0 && !text.is_empty()).then(|| Named { text, rect, middle: sum / count as f32 })
+    }
+}
+
+/// The names of bodies, below them or where else there is room beside them, and not where something is `taken`. In a throng without
+/// room they are not written.
+pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
+    let mut taken = taken.to_vec();
+    for (place, body) in named.iter().enumerate() {
+        let others = named.iter().enumerate().filter(|(other, _)| named.len() <= FEW && *other != place);
+        let others: Vec<Rect> = others.map(|(_, other)| other.rect).collect();
+        let galley = painter.layout_no_wrap(body.text.to_string(), FontId::proportional(12.0), paper.ink);
+        let Some(place) = free(body.rect, body.middle, galley.size(), &taken, &others) else { continue };
+        let ground = place.expand2(Vec2::new(4.0, 1.0));
+        taken.push(ground);
+        painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.6));
+        painter.galley(place.min, galley, paper.ink);
+    }
+}
+
+/// Where there is room for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther; where
+/// that can be, off the other bodies.
+fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) -> Option<Rect> {
+    let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, body.bottom() + 6.0), size);
+    let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, body.top() - 6.0), size);
+    let right = Align2::LEFT_CENTER.anchor_size(body.right_center() + Vec2::new(8.0, 0.0), size);
+    let left = Align2::RIGHT_CENTER.anchor_size(body.left_center() - Vec2::new(8.0, 0.0), size);
     let row = Vec2::new(0.0, size.y + 4.0);
-    let places = [below, above, below.translate(row), above.translate(-row), below.translate(2.0 * row)];
+    let aside = [0.25, -0.25, 0.5, -0.5].map(|share| below.translate(Vec2::new(share * size.x, 0.0)));
+    let farther = [above, right, left, below.translate(row), above.translate(-row), below.translate(2.0 * row)];
     let free = |place: &Rect| taken.iter().all(|other| !other.intersects(place.expand2(Vec2::new(4.0, 1.0))));
-    places.into_iter().find(free)
+    let mut places = std::iter::once(below).chain(aside).chain(farther).filter(free);
+    let first = places.next()?;
+    let off = |place: &Rect| !others.iter().any(|other| other.intersects(*place));
+    Some(std::iter::once(first).chain(places).find(off).unwrap_or(first))
 }
 
 /// The hint for the first pull, above a body.
@@ -63,16 +93,35 @@ mod tests {
     fn names_of_bodies_that_lie_close_cover_neither_one_another_nor_the_legend() {
         let legend = Rect::from_min_max(Pos2::new(500.0, 20.0), Pos2::new(610.0, 125.0));
         let (size, mut taken) = (Vec2::new(40.0, 14.0), vec![legend]);
-        let first = free([100.0, 60.0], 300.0, size, &taken).expect("room");
+        let at = |x: f32| Rect::from_center_size(Pos2::new(x, 80.0), Vec2::new(40.0, 40.0));
+        let first = free(at(300.0), 300.0, size, &taken, &[]).expect("room");
         assert!(first.top() > 100.0 && (first.center().x - 300.0).abs() < 0.1, "below, as long as nothing is there");
         taken.push(first);
         for middle in [310.0, 300.0, 320.0, 290.0, 495.0] {
-            let place = free([100.0, 60.0], middle, size, &taken).expect("room");
+            let place = free(at(middle), middle, size, &taken, &[]).expect("room");
             assert!(taken.iter().all(|other| !other.intersects(place)), "{middle}: {place:?} of {taken:?}");
             taken.push(place);
         }
-        // Where five lie over one another there is no room for a sixth.
-        assert_eq!(free([100.0, 60.0], 300.0, size, &taken), None);
+        // Where many lie over one another there is no room for one more.
+        while let Some(place) = free(at(300.0), 300.0, size, &taken, &[]) {
+            assert!(taken.len() < 12, "{taken:?}");
+            taken.push(place);
+        }
+    }
+
+    #[test]
+    fn the_name_of_a_body_lies_over_no_other_body_where_it_can_be_beside_it() {
+        let size = Vec2::new(80.0, 14.0);
+        let at = |x: f32, y: f32| Rect::from_center_size(Pos2::new(x, y), Vec2::splat(22.0));
+        let (body, above) = (at(220.0, 330.0), at(220.0, 288.0));
+        // What stands below leaves no room there, and over it is another body.
+        let taken = [Rect::from_min_max(Pos2::new(130.0, 342.0), Pos2::new(320.0, 400.0))];
+        let place = free(body, 220.0, size, &taken, &[above]).expect("room");
+        assert!(!place.intersects(above) && !place.intersects(taken[0]), "{place:?}");
+        // Within a large body there is no other place: it is written there.
+        let around = at(220.0, 330.0).expand(300.0);
+        let within = free(body, 220.0, size, &[], &[around]).expect("room");
+        assert!(within.top() > body.bottom());
     }
 
     #[test]

@@ -3,35 +3,71 @@
 use super::look::Look;
 use super::plane::{colour, on_paper};
 use crate::words::Language;
-use egui::{Align2, FontId, Mesh, Pos2, Rect, Shape, Stroke, Vec2};
+use egui::text::LayoutJob;
+use egui::{Align, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
+use std::sync::Arc;
 
-/// The bar of colours, and all that the legend takes; none where nothing has colours that mean something.
-fn places(look: &Look<'_>, tools: Option<Rect>) -> Option<[Rect; 2]> {
-    let Look { shown, rect, .. } = *look;
-    shown.picture.legend.as_ref()?;
+/// What there is room for at least above the bar, and what its name takes at most on one line [points].
+const NAME: [f32; 2] = [84.0, 240.0];
+
+/// Where the legend is: its bar of colours, what they mean, and all that it takes.
+struct Places {
+    bar: Rect,
+    name: Arc<Galley>,
+    whole: Rect,
+}
+
+/// Where the legend is; nowhere where nothing has colours that mean something.
+fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Places> {
+    let Look { painter, shown, rect, paper, .. } = *look;
+    let legend = shown.picture.legend.as_ref()?;
     let drawn = |body: &BodyPicture| shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some());
     if shown.picture.bodies.iter().all(|body| drawn(body) || body.scalar.iter().all(|s| !s.is_finite())) {
         return None;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    // Beside the tools, or where there is no room for that, below them.
-    let below = tools.filter(|tools| tools.right() > rect.right() - 110.0).map_or(rect.top(), |tools| tools.bottom());
-    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, below + 44.0), Vec2::new(12.0, tall));
-    let whole = Rect::from_min_max(bar.min - Vec2::new(24.0, 28.0), Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0));
-    Some([bar, whole])
+    // Beside the tools, or where there is no room for that, below them; of two scenes the lower one has none.
+    let tools = tools.filter(|tools| tools.intersects(rect));
+    let over = tools.filter(|tools| tools.right() > rect.right() - 110.0);
+    let below = over.map_or(rect.top(), |tools| tools.bottom());
+    let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
+    let left = if over.is_some() { rect.left() } else { tools.map_or(rect.left(), |tools| tools.right()) };
+    let room = (rect.right() - 24.0 - left).clamp(NAME[0], NAME[1]);
+    let text = format!("{}{unit}", language.quantity(&legend.label));
+    let mut job = LayoutJob::simple(text, FontId::proportional(12.0), paper.ink, room);
+    job.halign = Align::RIGHT;
+    let name = painter.layout_job(job);
+    // A name of two lines moves the bar down.
+    let more = name.size().y * (1.0 - 1.0 / name.rows.len().max(1) as f32);
+    let bar = Rect::from_min_size(Pos2::new(rect.right() - 70.0, below + 44.0 + more), Vec2::new(12.0, tall));
+    let left = (bar.left() - 24.0).min(rect.right() - 16.0 - name.size().x);
+    let whole = Rect::from_min_max(
+        Pos2::new(left, bar.top() - 28.0 - more),
+        Pos2::new(rect.right() - 4.0, bar.bottom() + 12.0),
+    );
+    Some(Places { bar, name, whole })
 }
 
 /// Where the legend is.
-pub(super) fn place(look: &Look<'_>, tools: Option<Rect>) -> Option<Rect> {
-    places(look, tools).map(|[_, whole]| whole)
+pub(super) fn place(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Rect> {
+    places(look, tools, language).map(|places| places.whole)
 }
 
 /// What the colours mean.
 pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range, .. } = *look;
-    let (Some(legend), Some([bar, behind])) = (&shown.picture.legend, places(look, tools)) else { return };
-    painter.rect_filled(behind, 6.0, paper.background.gamma_multiply(0.7));
+    let Some(legend) = &shown.picture.legend else { return };
+    let Some(Places { bar, name, whole: behind }) = places(look, tools, language) else { return };
+    // A long name is wider than the bar with its figures: what is below it beside these is not hidden.
+    let side = behind.with_min_x(bar.left() - 24.0);
+    let above = behind.with_max_y(bar.top() - 4.0);
+    let ground = paper.background.gamma_multiply(0.7);
+    if above.left() < side.left() - 1.0 {
+        let corners = CornerRadius { nw: 6, sw: 6, ..CornerRadius::ZERO };
+        painter.rect_filled(above.with_max_x(side.left()), corners, ground);
+    }
+    painter.rect_filled(side, 6.0, ground);
     let mut mesh = Mesh::default();
     let steps = 32;
     for k in 0..=steps {
@@ -48,10 +84,8 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
         }
     }
     painter.add(Shape::mesh(mesh));
-    let unit = if legend.unit.is_empty() { String::new() } else { format!(" [{}]", legend.unit) };
-    let name = format!("{}{unit}", language.quantity(&legend.label));
-    let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0);
-    painter.text(spot, Align2::RIGHT_BOTTOM, name, FontId::proportional(12.0), paper.ink);
+    let spot = Pos2::new(rect.right() - 10.0, bar.top() - 8.0 - name.size().y);
+    painter.galley(spot, name, paper.ink);
     for tick in nice_ticks(range[0], range[1], 4) {
         let share = ((tick - range[0]) / (range[1] - range[0])) as f32;
         if !(0.0..=1.0).contains(&share) {
@@ -81,7 +115,52 @@ fn figure(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::figure;
+    use super::*;
+    use crate::canvas::look::Paper;
+    use crate::shown::Shown;
+    use egui_kittest::Harness;
+    use opruga::draw::{Legend, Picture};
+
+    #[test]
+    fn the_name_of_what_is_shown_lies_within_the_legend_and_the_legend_in_its_part_of_the_window() {
+        let legend = |label: &str| Legend { label: label.into(), unit: "Pa".into(), ..Default::default() };
+        let shown = |label: &str| {
+            let body = BodyPicture { positions: vec![[0.0; 3]], scalar: vec![1.0], ..Default::default() };
+            let picture =
+                Picture { dimension: 2, bodies: vec![body], legend: Some(legend(label)), ..Default::default() };
+            Shown { dimension: 2, picture, ..Default::default() }
+        };
+        let tools = Rect::from_min_max(Pos2::new(10.0, 160.0), Pos2::new(314.0, 248.0));
+        // A phone, the lower one of two scenes on it, and a small laptop on which the tools leave room beside them.
+        let parts = [
+            (Rect::from_min_max(Pos2::new(0.0, 150.0), Pos2::new(360.0, 555.0)), tools),
+            (Rect::from_min_max(Pos2::new(0.0, 352.0), Pos2::new(360.0, 555.0)), tools),
+            (
+                Rect::from_min_max(Pos2::new(0.0, 55.0), Pos2::new(976.0, 686.0)),
+                Rect::from_min_max(Pos2::new(10.0, 66.0), Pos2::new(850.0, 100.0)),
+            ),
+        ];
+        let mut harness = Harness::new_ui(move |ui| {
+            for (rect, tools) in parts {
+                for label in ["strain", "volume over that at rest", "von Mises stress"] {
+                    for language in [Language::English, Language::Croatian] {
+                        let (shown, paper) = (shown(label), Paper::of(ui));
+                        let painter = ui.painter();
+                        let range = [0.0, 1.0];
+                        let look =
+                            Look { painter, shown: &shown, rect, paper: &paper, show: Default::default(), range };
+                        let Places { bar, name, whole } = places(&look, Some(tools), language).expect("a legend");
+                        let at = Vec2::new(rect.right() - 10.0, bar.top() - 8.0 - name.size().y);
+                        let named = name.rect.translate(at);
+                        let told = format!("{label}, {language:?}, {rect:?}: {named:?} of {whole:?}");
+                        assert!(whole.contains_rect(named.expand(2.0)) && whole.contains_rect(bar), "{told}");
+                        assert!(rect.contains_rect(whole) && !tools.intersects(named), "{told}");
+                    }
+                }
+            }
+        });
+        harness.run();
+    }
 
     #[test]
     fn figures_beside_the_bar_are_short_however_large_they_are() {

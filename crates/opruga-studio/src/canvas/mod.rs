@@ -1,9 +1,11 @@
 //! The scene on the screen, and what the pointer does there.
 
 mod arrows;
+mod away;
 mod brush;
 mod camera;
 mod detail;
+mod fitting;
 mod handles;
 mod labels;
 mod legend;
@@ -17,15 +19,14 @@ mod pressing;
 mod space;
 mod tool;
 
-use crate::said::Said;
 use crate::session::Request;
 use crate::shown::{Show, Shown};
 use crate::words::Language;
-use camera::{Flat, halves, with_floors};
+use camera::{Flat, halves};
 use egui::{Pos2, Rect, Sense, Ui, Vec2};
 use look::{Look, Paper};
-use opruga::WorldError;
 use opruga::draw::View;
+use overlays::Captions;
 use pick::Under;
 use std::sync::Arc;
 pub use tool::Tool;
@@ -65,8 +66,10 @@ pub struct Canvas {
     pub tools: Option<Rect>,
     /// What a person wants to see.
     pub wanted: Show,
-    /// Where the legend is.
-    legend: Option<Rect>,
+    /// Where legends and captions are.
+    written: Vec<Rect>,
+    /// Where the scene beside it is.
+    other: Option<Rect>,
     /// The longest arrow of every kind.
     arrows: arrows::Longest,
     flat: Flat,
@@ -77,8 +80,6 @@ pub struct Canvas {
     scales: Option<View>,
     /// The lowest and the highest corner of what was there when the view was fitted [m].
     first: [[f64; 3]; 2],
-    /// Whether two scenes were shown.
-    two: bool,
     fitted: u64,
     /// How often the state was replaced when it was seen last.
     replaced: u64,
@@ -156,12 +157,23 @@ impl Canvas {
 
     /// What of the canvas the bodies and the legend take: no message shall lie there.
     pub fn covered(&self, shown: &Shown) -> Vec<Rect> {
+        let left = self.rect.into_iter().flat_map(|rect| self.seen_in(rect, shown));
+        let right = self.other.zip(shown.beside.as_ref());
+        let right = right.into_iter().flat_map(|(other, beside)| self.seen_in(other, &beside.right));
+        left.chain(right).chain(self.written.iter().copied()).collect()
+    }
+
+    /// What of a part of the window bodies take; nothing of those that are out of sight there.
+    fn seen_in(&self, part: Rect, shown: &Shown) -> Vec<Rect> {
+        let by = self.rect.map_or(Vec2::ZERO, |rect| part.min - rect.min);
         let of = |extent: &crate::shown::Extent| {
             let corner = |k: usize| [0, 1, 2].map(|d| extent.corners[k >> d & 1][d]);
             let corners: Vec<Pos2> = (0..8).filter_map(|k| self.on_screen(shown, corner(k))).collect();
-            Rect::from_points(&corners)
+            Rect::from_points(&corners).translate(by).intersect(part)
         };
-        shown.extents.iter().map(of).chain(self.legend).collect()
+        // A chain that hangs straight down has no width.
+        let there = |seen: &Rect| seen.width() >= 0.0 && seen.height() >= 0.0;
+        shown.extents.iter().map(of).filter(there).collect()
     }
 
     /// Shows a scene in all the room that is left, and says what the pointer asks for.
@@ -173,12 +185,13 @@ impl Canvas {
             return Vec::new();
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
-        if self.two != other.is_some() {
+        if self.other.is_some() != other.is_some() {
             // There is half the room, or twice as much: everything is shown as it is now.
-            self.two = other.is_some();
             self.fit();
         }
-        self.rect = Some(rect);
+        let below = other.is_some_and(|other| other.top() > rect.top());
+        self.flat.foot = if other.is_some() { Captions::FOOT[usize::from(below)] } else { 0.0 };
+        (self.rect, self.other) = (Some(rect), other);
         let paper = Paper::of(ui);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, paper.background);
@@ -210,11 +223,20 @@ impl Canvas {
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
-        // Side by side both have the same colours: the legend stands at the right.
-        let taken = if other.is_none() { legend::place(&look, self.tools) } else { None };
-        self.legend = taken;
+        // Side by side both have the same colours: the legend stands with the second one.
+        let taken = if other.is_none() { legend::place(&look, self.tools, language) } else { None };
+        self.written = taken.into_iter().collect();
+        let pair = other.zip(shown.beside.as_ref());
+        let both = ui.painter_at(whole);
+        let mut of_right = None;
+        let captions = pair.map(|(other, beside)| {
+            of_right = legend::place(&Look { shown: &beside.right, rect: other, ..look }, self.tools, language);
+            Captions::of(&both, &paper, [rect, other], of_right, beside, language)
+        });
+        let captioned = captions.as_ref().map(Captions::places).unwrap_or_default();
+        self.written.extend(of_right.iter().chain(&captioned));
         self.arrows.follow(shown);
-        self.paint(ui, &look, shown, false, taken);
+        self.paint(ui, &look, shown, false, &self.written.clone());
         plane::credit(&look);
         if is_seen {
             arrows::key(&look, &self.arrows, self.points_of_arrows(shown, rect), language);
@@ -223,27 +245,31 @@ impl Canvas {
             legend::paint(&look, self.tools, language);
         }
         if is_seen {
-            self.overlays(&Look { shown: &seen, ..look }, under.as_ref().filter(|_| !beside), taken, language);
+            let under = under.as_ref().filter(|_| !beside);
+            self.overlays(&Look { shown: &seen, ..look }, under, taken, &captioned, language);
         }
         let on_right = beside;
-        if let (Some(other), Some(beside)) = (other, &shown.beside) {
+        if let (Some((other, beside)), Some(captions)) = (pair, captions) {
             let painter = ui.painter_at(other);
             painter.rect_filled(other, 0.0, paper.background);
             let look = Look { painter: &painter, shown: &beside.right, rect: other, ..look };
-            let taken = legend::place(&look, self.tools);
-            self.paint(ui, &look, &beside.right, true, taken);
+            self.paint(ui, &look, &beside.right, true, &self.written.clone());
             let seen = seen_right.as_ref().unwrap_or(&beside.right);
             legend::paint(&look, self.tools, language);
             if shown.dimension != 3 || self.beside.seen().is_some() {
-                self.overlays(&Look { shown: seen, ..look }, under.as_ref().filter(|_| on_right), taken, language);
+                let under = under.as_ref().filter(|_| on_right);
+                self.overlays(&Look { shown: seen, ..look }, under, of_right, &captioned, language);
             }
-            overlays::captions(&look, &ui.painter_at(whole), rect, beside, language);
+            captions.paint(&both, &paper, [rect, other]);
+        }
+        if is_seen && self.doing == Doing::Nothing {
+            self.point_to_bodies(ui, shown, taken, language);
         }
         asks
     }
 
-    /// Draws a scene; the second one has a painter of its own, and the eye of the first. Where the legend will be nothing is written.
-    fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool, legend: Option<Rect>) {
+    /// Draws a scene; the second one has a painter of its own, and the eye of the first. Where something else is `written` names are not.
+    fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool, written: &[Rect]) {
         let selected = self.selected.as_deref();
         if shown.dimension == 3 {
             let Some(scales) = &self.scales else { return };
@@ -254,7 +280,7 @@ impl Canvas {
             space.show(ui, look, shown, scales, (selected, &self.arrows));
         } else {
             let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
-            let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
+            let taken: Vec<Rect> = written.iter().copied().chain(self.tools).collect();
             plane::paint(look, &self.flat, kept, selected, &taken, &self.arrows);
             // Both sides are seen alike.
             if !beside {
@@ -294,106 +320,6 @@ impl Canvas {
         }
     }
 
-    /// Forgets what was fitted to states that are gone: the ends of the colours, and how far the view was widened where nobody has
-    /// moved it.
-    fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
-        if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
-            return;
-        }
-        self.range = None;
-        if std::mem::take(&mut self.far) {
-            self.fit();
-        } else if let (Some(_), Some(view)) = (self.fitted_size, &mut self.scales) {
-            [view.low, view.high] = self.first;
-            self.flat.fit(view, rect, self.tools);
-        }
-    }
-
-    /// Shows everything where a motion has just failed and its last good frame has left nothing in sight.
-    fn fit_if_lost(&mut self, shown: &Shown, rect: Rect) {
-        let failed = shown.message.as_ref().filter(|message| {
-            matches!(
-                message.said,
-                Said::World(WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. })
-            )
-        });
-        let Some(number) = failed.map(|message| message.number).filter(|number| self.failed != Some(*number)) else {
-            return;
-        };
-        self.failed = Some(number);
-        let in_sight = |point: [f64; 3]| self.on_screen(shown, point).is_some_and(|at| rect.contains(at));
-        let seen = shown.extents.iter().map(|extent| extent.corners).any(|[low, high]| {
-            let middle = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
-            in_sight(low) || in_sight(high) || in_sight(middle)
-        });
-        if !seen {
-            self.far = true;
-            self.fit();
-        }
-    }
-
-    fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
-        self.fit_if_replaced(shown, rect);
-        self.fit_if_lost(shown, rect);
-        if self.fitted == shown.opened && self.scales.is_some() {
-            // The view follows the window until somebody moves it.
-            if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
-                if size != rect.size() {
-                    self.flat.fit(view, rect, self.tools);
-                    self.space.look_at_all(view, rect.size());
-                    self.fitted_size = Some(rect.size());
-                } else if matches!(self.doing, Doing::Nothing) && self.flat.widen(view, &self.first, shown, rect) {
-                    self.flat.fit(view, rect, self.tools);
-                }
-            }
-            return;
-        }
-        self.fitted_size = Some(rect.size());
-        let first = self.fitted != 0;
-        self.fitted = shown.opened;
-        let beside = shown.beside.iter().map(|beside| &beside.right.picture);
-        self.scales = View::fit([&shown.picture].into_iter().chain(beside)).ok().map(|view| with_floors(view, shown));
-        if let Some(view) = &self.scales {
-            self.flat.fit(view, rect, self.tools);
-            self.space.fit(view, rect.size());
-            self.first = [view.low, view.high];
-        }
-        self.range = None;
-        self.kept.forget();
-        self.kept_beside.forget();
-        if first {
-            self.selected = None;
-        }
-        let only = (shown.bodies.len() == 1).then(|| shown.bodies[0].name.clone());
-        self.selected = self.selected.take().or(only);
-        self.doing = Doing::Nothing;
-    }
-
-    /// The ends of the colours follow what is there: at once outwards, slowly inwards.
-    fn fit_colours(&mut self, shown: &Shown) {
-        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
-        let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
-        let (low, high) = colours.fold((f64::MAX, f64::MIN), |(low, high), [a, b]| (low.min(a), high.max(b)));
-        if low > high {
-            return;
-        }
-        // What is nearly nothing is not spread over all colours.
-        let least = match shown.picture.legend.as_ref().map_or("", |legend| &legend.unit) {
-            "%" | "Pa" => 1.0,
-            _ => 0.01,
-        };
-        let least = f64::max(least, 1e-3 * low.abs().max(high.abs()));
-        let now = [low, high.max(low + least)];
-        let slowly = |old: f64, new: f64| old + 0.01 * (new - old);
-        self.range = Some(match self.range {
-            Some([a, b]) if a <= now[1] && b >= now[0] => [
-                if now[0] < a { now[0] } else { slowly(a, now[0]) },
-                if now[1] > b { now[1] } else { slowly(b, now[1]) },
-            ],
-            _ => now,
-        });
-    }
-
     /// Forgets the ends of the colours: another quantity has others.
     pub fn forget_colours(&mut self) {
         self.range = None;
@@ -425,66 +351,5 @@ impl Canvas {
             let [x, y] = self.flat.to_world(rect, at, shown.picture.y_down);
             Some([x, y, 0.0])
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::shown::{Extent, Message, Severity};
-
-    const RECT: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(600.0, 500.0) };
-
-    /// A ball of a metre at this place, in colours up to this.
-    fn ball(x: f64, most: f64) -> Shown {
-        let body = opruga::draw::BodyPicture {
-            positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
-            ..Default::default()
-        };
-        let extent = Extent { colours: [0.0, most], ..Extent::of(&body) };
-        let picture = opruga::draw::Picture { dimension: 2, bodies: vec![body], ..Default::default() };
-        Shown { dimension: 2, opened: 1, extents: vec![extent], picture, ..Default::default() }
-    }
-
-    fn seen(canvas: &mut Canvas, shown: &Shown) {
-        canvas.rect = Some(RECT);
-        canvas.fit_if_new(shown, RECT);
-        canvas.fit_colours(shown);
-    }
-
-    #[test]
-    fn what_was_fitted_to_states_that_are_gone_is_fitted_anew_at_once() {
-        let mut canvas = Canvas::default();
-        seen(&mut canvas, &ball(0.0, 20.0));
-        let first = (canvas.flat.scale, canvas.range);
-        for _ in 0..3 {
-            seen(&mut canvas, &ball(1.5, 15_000.0));
-        }
-        assert!(canvas.flat.scale < first.0 && canvas.range > first.1);
-        seen(&mut canvas, &ball(0.0, 20.0));
-        assert!(canvas.range > first.1, "slowly, while nothing is replaced");
-        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
-        assert_eq!((canvas.flat.scale, canvas.range), first);
-        // A view that somebody has moved stays.
-        (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
-        seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
-        assert_eq!(canvas.flat.scale, 7.0);
-    }
-
-    #[test]
-    fn the_last_good_frame_of_a_motion_that_failed_is_in_sight_and_so_is_what_is_undone_to() {
-        let mut canvas = Canvas::default();
-        seen(&mut canvas, &ball(0.0, 20.0));
-        let first = canvas.flat.scale;
-        let error = WorldError::Diverged { body: "ball".into(), node: 0, time: 0.2, last: 0.1, range: None };
-        let said = Said::World(error);
-        let text = said.to_string();
-        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
-        let lost = Shown { message: Some(message), ..ball(5e5, 20.0) };
-        seen(&mut canvas, &lost);
-        assert!(RECT.contains(canvas.on_screen(&lost, [5e5, 0.5, 0.0]).expect("a place")));
-        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
-        assert!((canvas.flat.scale / first - 1.0).abs() < 1e-9);
-        assert!(RECT.contains(canvas.on_screen(&ball(0.0, 20.0), [0.0, 0.5, 0.0]).expect("a place")));
     }
 }

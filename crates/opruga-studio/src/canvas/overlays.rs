@@ -1,13 +1,15 @@
 //! What is drawn over the scene: pins, pulls with their force, what the hand is doing, the hint for the first pull.
 
-use super::look::Look;
+use super::labels::{self, Named};
+use super::look::{Look, Paper};
 use super::pick::Under;
 use super::tool::Tool;
-use super::{Canvas, Doing, handles, labels, plane};
+use super::{Canvas, Doing, handles, plane};
 use crate::shown::{Beside, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2};
 use opruga::draw::{Lens, format_value};
+use std::sync::Arc;
 
 impl Canvas {
     /// The place of a point in the window; in space none behind the camera.
@@ -21,7 +23,14 @@ impl Canvas {
     }
 
     /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull; nothing is written where the legend is.
-    pub(super) fn overlays(&self, look: &Look<'_>, under: Option<&Under>, legend: Option<Rect>, language: Language) {
+    pub(super) fn overlays(
+        &self,
+        look: &Look<'_>,
+        under: Option<&Under>,
+        legend: Option<Rect>,
+        captions: &[Rect],
+        language: Language,
+    ) {
         let Look { painter, shown, rect, paper, .. } = *look;
         let lens = self.scales.as_ref().and_then(|scales| self.space.lens(scales, rect));
         let project = |point: [f64; 3]| self.project(lens.as_ref(), shown, rect, point);
@@ -31,13 +40,12 @@ impl Canvas {
         {
             painter.circle_stroke(at, 7.0, Stroke::new(1.5, paper.ink));
         }
-        let taken: Vec<Rect> = legend.into_iter().chain(self.tools).collect();
+        let taken: Vec<Rect> = legend.into_iter().chain(self.tools).chain(captions.iter().copied()).collect();
         if shown.dimension == 3 {
-            let mut names = taken.clone();
-            for body in shown.picture.bodies.iter().filter(|body| !body.label.is_empty()) {
-                let spots: Vec<Pos2> = body.positions.iter().filter_map(|p| project(*p)).collect();
-                labels::label(painter, &body.label, &spots, paper, &mut names);
-            }
+            let labelled = shown.picture.bodies.iter().filter(|body| !body.label.is_empty());
+            let named =
+                labelled.filter_map(|body| Named::of(&body.label, body.positions.iter().filter_map(|p| project(*p))));
+            labels::names(painter, &named.collect::<Vec<_>>(), paper, &taken);
         }
         for (_, _, place) in &shown.pins {
             if let Some(at) = project(*place) {
@@ -103,44 +111,81 @@ impl Canvas {
     }
 }
 
-/// What the two scenes are, how far they are from one another, and why the second one has stopped.
-pub(super) fn captions(look: &Look<'_>, whole: &Painter, first: Rect, beside: &Beside, language: Language) {
-    let Look { rect, paper, .. } = *look;
-    let border = Stroke::new(1.5, paper.solid_edge);
-    if rect.left() > first.left() {
-        whole.vline(rect.left(), rect.y_range(), border);
-    } else {
-        whole.hline(rect.x_range(), rect.top(), border);
-    }
-    let caption = |spot: Pos2, align: Align2, text: String, ink: Color32, width: f32| {
-        let galley = whole.layout(text, FontId::proportional(12.5), ink, width);
-        let place = align.anchor_size(spot, galley.size());
-        whole.rect_filled(place.expand2(Vec2::new(7.0, 4.0)), 5.0, paper.background.gamma_multiply(0.85));
-        whole.galley(place.min, galley, ink);
-    };
-    let room = (rect.width() - 40.0).max(40.0);
-    let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 12.0);
-    caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
-    let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
-    let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
-    let far = match (beside.distances, beside.center) {
-        (Some([mean, largest]), _) => {
-            let [mean, largest] = [mean, largest].map(format_value);
-            format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
+/// What is written over two scenes: where, what, and in which colour.
+pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
+
+impl Captions {
+    /// The room below a scene for them, and for the names of its lowest bodies above them: next to one another, one above the other
+    /// [points].
+    pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
+
+    /// What the two scenes are, how far they are from one another, and why the second one has stopped. The lower one of two, which has
+    /// no tools above it, has it there, beside its legend.
+    pub(super) fn of(
+        painter: &Painter,
+        paper: &Paper,
+        [first, second]: [Rect; 2],
+        legend: Option<Rect>,
+        beside: &Beside,
+        language: Language,
+    ) -> Captions {
+        let mut all = Vec::new();
+        let below = second.top() > first.top();
+        let free = if below { legend.map_or(second.right(), |legend| legend.left()) } else { second.right() };
+        let room = (free - second.left() - if below { 30.0 } else { 40.0 }).max(40.0);
+        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32| {
+            let galley = painter.layout(text, FontId::proportional(12.5), ink, room);
+            let place = align.anchor_size(spot, galley.size());
+            all.push((place, galley, ink));
+            place
+        };
+        let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 8.0);
+        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink);
+        let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
+        let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
+        let far = match (beside.distances, beside.center) {
+            (Some([mean, largest]), _) => {
+                let [mean, largest] = [mean, largest].map(format_value);
+                format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
+            }
+            // Where the nodes are others, their distances are none.
+            (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
+            (None, None) => String::new(),
+        };
+        let high = second.left_top() + Vec2::new(14.0, 10.0);
+        let (spot, align) = if below { (high, Align2::LEFT_TOP) } else { (low(second), Align2::CENTER_BOTTOM) };
+        let told = caption(spot, align, format!("{words}{far}"), paper.ink);
+        if let Some(reason) = &beside.stopped {
+            let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
+            let middle = second.center_top() + Vec2::new(0.0, 70.0);
+            let under = Pos2::new(told.left(), told.bottom() + 12.0);
+            let (spot, align) = if below { (under, Align2::LEFT_TOP) } else { (middle, Align2::CENTER_TOP) };
+            caption(spot, align, text, Color32::from_rgb(230, 110, 60));
         }
-        // Where the nodes are others, their distances are none.
-        (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
-        (None, None) => String::new(),
-    };
-    caption(low(rect), Align2::CENTER_BOTTOM, format!("{words}{far}"), paper.ink, room);
-    if let Some(reason) = &beside.stopped {
-        let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
-        caption(
-            rect.center_top() + Vec2::new(0.0, 70.0),
-            Align2::CENTER_TOP,
-            text,
-            Color32::from_rgb(230, 110, 60),
-            room,
-        );
+        Captions(all)
     }
+
+    /// What they take.
+    pub(super) fn places(&self) -> Vec<Rect> {
+        self.0.iter().map(|(place, ..)| ground(*place)).collect()
+    }
+
+    /// Writes them, and draws the line between the two scenes.
+    pub(super) fn paint(self, painter: &Painter, paper: &Paper, [first, second]: [Rect; 2]) {
+        let border = Stroke::new(1.5, paper.solid_edge);
+        if second.left() > first.left() {
+            painter.vline(second.left(), second.y_range(), border);
+        } else {
+            painter.hline(second.x_range(), second.top(), border);
+        }
+        for (place, galley, ink) in self.0 {
+            painter.rect_filled(ground(place), 5.0, paper.background.gamma_multiply(0.85));
+            painter.galley(place.min, galley, ink);
+        }
+    }
+}
+
+/// What is behind a caption.
+fn ground(place: Rect) -> Rect {
+    place.expand2(Vec2::new(7.0, 4.0))
 }

@@ -4,7 +4,7 @@ use super::arrows::{self, Longest};
 use super::brush::Brush;
 use super::camera::Flat;
 use super::detail::{Detail, apart, corners};
-use super::labels;
+use super::labels::{self, Named};
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, Part, fill};
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
@@ -126,14 +126,14 @@ pub(crate) fn paint(
     }
     kept.brush.end(painter);
     // What is written and marked lies over all bodies.
-    let mut taken = taken.to_vec();
-    for body in picture.bodies.iter().filter(|body| !body.label.is_empty() || !body.pinned.is_empty()) {
+    for body in &picture.bodies {
         body.pinned.iter().filter_map(|node| body.positions.get(*node as usize)).for_each(|p| {
             pin(painter, project(*p), paper);
         });
-        let spots: Vec<Pos2> = body.positions.iter().map(|p| project(*p)).collect();
-        labels::label(painter, &body.label, &spots, paper, &mut taken);
     }
+    let labelled = picture.bodies.iter().filter(|body| !body.label.is_empty());
+    let named = labelled.filter_map(|body| Named::of(&body.label, body.positions.iter().map(|p| project(*p))));
+    labels::names(painter, &named.collect::<Vec<_>>(), paper, taken);
     arrows::paint(look, flat, longest, &project);
 }
 
@@ -199,8 +199,10 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
             brush.line([a.0, b.0], width, [a.1, b.1].map(|colour| colour.lerp_to_gamma(paper.ink, share)));
         }
     }
-    // Springs along an outline make it thick.
-    let width = if wide { 3.2 } else { 2.2 } - if show.springs { 0.0 } else { 1.2 };
+    // Springs along an outline make it thick; a body that has none has the same outline without them.
+    let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.kind() == "mass_spring");
+    let thin = !show.springs && shown.bodies.get(place).is_some_and(sprung);
+    let width = if wide { 3.2 } else { 2.2 } - if thin { 1.2 } else { 0.0 };
     for line in closed {
         brush.ring(line.iter().map(of), width);
     }

@@ -98,11 +98,12 @@ impl Language {
             }
             Said::AtTheEnd(time, list) => {
                 let list: Vec<String> = list.iter().map(|said| self.detail(said).to_string()).collect();
-                let list = list.join(" · ");
+                let (count, list) = (list.len(), list.join(" · "));
+                let warnings = if count == 1 { "1 warning".into() } else { format!("{count} warnings") };
                 either!(
                     self,
-                    "The scene ends here, at t = {time:.2} s. Warning: {list}",
-                    "Prizor ovdje završava, u t = {time:.2} s. Upozorenje: {list}"
+                    "The command line ends here, at t = {time:.2} s, with {warnings}: {list}. In the window time goes on",
+                    "Naredbeni redak ovdje završava, u t = {time:.2} s; upozorenja ({count}): {list}. U prozoru vrijeme teče dalje"
                 )
             }
             Said::RecordingEnds(time) => either!(

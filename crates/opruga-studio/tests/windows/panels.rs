@@ -170,3 +170,53 @@ fn the_keys_fit_into_a_low_window() {
     let last = window.harness.get_by_label("this help").rect();
     assert!(last.top() > 0.0 && last.bottom() < 400.0, "{last:?}");
 }
+
+/// On a phone held upright two scenes stand one above the other, and each has half of the little that is left.
+#[test]
+fn two_scenes_one_above_the_other_hide_nothing_of_one_another() {
+    let mut window = Window::open("implicit-integrators", [400.0, 720.0]);
+    window.click("Hrvatski");
+    for _ in 0..30 {
+        window.studio().ask(Request::Step);
+    }
+    window.until("thirty frames", |shown| shown.frames == 30);
+    window.click("Usporedi");
+    window.until("two scenes", |shown| shown.beside.is_some() && shown.frames == 30);
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("one scene", |shown| shown.beside.is_none() && shown.message.is_some());
+    window.key(Modifiers::COMMAND, Key::Y);
+    window.until("two scenes", |shown| shown.beside.is_some() && shown.frames == 30);
+    // What was done is told between the bodies, and not over them.
+    let close = window.harness.get_by_label("Zatvori").rect();
+    let canvas = window.canvas();
+    let down = Vec2::new(0.0, 0.5 * canvas.height());
+    for body in &window.shown().picture.bodies {
+        for position in &body.positions {
+            let at = window.studio().on_screen(*position).expect("in sight");
+            let free = |at: egui::Pos2| !close.expand(8.0).contains(at) && canvas.contains(at);
+            assert!(free(at) && free(at + down), "{at:?}");
+        }
+    }
+    window.rest();
+    window.picture().assert_like("beside-phone");
+}
+
+#[test]
+fn the_keys_are_seen_without_scrolling_on_a_small_laptop() {
+    for language in ["English", "Hrvatski"] {
+        let mut window = Window::open("ball", SIZE);
+        if language == "Hrvatski" {
+            window.click(language);
+        }
+        window.click("?");
+        window.frames(5);
+        let last = if language == "Hrvatski" { "ova pomoć" } else { "this help" };
+        let low = window.harness.get_by_label(last).rect().bottom();
+        let first =
+            window.harness.get_by_label_contains(if language == "Hrvatski" { "pokreni ili" } else { "play or" });
+        let high = first.rect().top();
+        // The window lies in the middle of the screen with all of them: what would be scrolled to is below it.
+        let off = 0.5 * (low + high) - 0.5 * SIZE[1];
+        assert!(low < SIZE[1] && low - high > 300.0 && off.abs() < 30.0, "from {high} to {low}");
+    }
+}

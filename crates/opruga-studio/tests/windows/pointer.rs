@@ -216,3 +216,26 @@ fn the_space_bar_takes_the_view_along_and_lets_time_pass_when_it_is_pressed_by_i
         window.until("the start", |shown| shown.frames == 0 && !shown.playing);
     }
 }
+
+/// A body of the plane and one of space: the view is taken along by the middle button until nothing is seen any more.
+#[test]
+fn where_no_body_is_in_sight_an_arrow_points_to_them_and_a_press_shows_them() {
+    for scene in ["ball", "balloons"] {
+        let mut window = Window::open(scene, SIZE);
+        window.rest();
+        let away = |window: &Window| window.harness.query_by_label_contains("the bodies are this way").is_some();
+        assert!(!away(&window), "{scene}");
+        let canvas = window.canvas();
+        let (low, high) =
+            (canvas.left_bottom() + Vec2::new(60.0, -60.0), canvas.right_top() + Vec2::new(-150.0, 120.0));
+        for _ in 0..3 {
+            window.drag(&[low, low.lerp(high, 0.5), high], PointerButton::Middle, Modifiers::NONE);
+        }
+        window.rest();
+        assert!(away(&window) && !canvas.contains(top_of(&window)), "{scene}");
+        window.harness.get_by_label_contains("the bodies are this way").click();
+        window.frames(3);
+        window.rest();
+        assert!(!away(&window) && canvas.contains(top_of(&window)), "{scene}");
+    }
+}

@@ -1,0 +1,173 @@
+//! What of a scene is seen: everything at first, and what comes to it until somebody moves the view.
+
+use super::camera::with_floors;
+use super::{Canvas, Doing};
+use crate::said::Said;
+use crate::shown::Shown;
+use egui::Rect;
+use opruga::WorldError;
+use opruga::draw::View;
+
+impl Canvas {
+    /// Forgets what was fitted to states that are gone: the ends of the colours, and how far the view was widened where nobody has
+    /// moved it.
+    fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
+        if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
+            return;
+        }
+        self.range = None;
+        if std::mem::take(&mut self.far) {
+            self.fit();
+        } else if let (Some(_), Some(view)) = (self.fitted_size, &mut self.scales) {
+            [view.low, view.high] = self.first;
+            self.flat.fit(view, rect, self.tools);
+        }
+    }
+
+    /// Shows everything where a motion has just failed and its last good frame has left nothing in sight.
+    fn fit_if_lost(&mut self, shown: &Shown, rect: Rect) {
+        let failed = shown.message.as_ref().filter(|message| {
+            matches!(
+                message.said,
+                Said::World(WorldError::Diverged { .. } | WorldError::Step { .. } | WorldError::NotConverged { .. })
+            )
+        });
+        let Some(number) = failed.map(|message| message.number).filter(|number| self.failed != Some(*number)) else {
+            return;
+        };
+        self.failed = Some(number);
+        let in_sight = |point: [f64; 3]| self.on_screen(shown, point).is_some_and(|at| rect.contains(at));
+        let seen = shown.extents.iter().map(|extent| extent.corners).any(|[low, high]| {
+            let middle = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
+            in_sight(low) || in_sight(high) || in_sight(middle)
+        });
+        if !seen {
+            self.far = true;
+            self.fit();
+        }
+    }
+
+    pub(super) fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
+        self.fit_if_replaced(shown, rect);
+        self.fit_if_lost(shown, rect);
+        if self.fitted == shown.opened && self.scales.is_some() {
+            // The view follows the window until somebody moves it.
+            if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
+                if size != rect.size() {
+                    self.flat.fit(view, rect, self.tools);
+                    self.space.look_at_all(view, rect.size());
+                    self.fitted_size = Some(rect.size());
+                } else if matches!(self.doing, Doing::Nothing) && self.flat.widen(view, &self.first, shown, rect) {
+                    self.flat.fit(view, rect, self.tools);
+                }
+            }
+            return;
+        }
+        self.fitted_size = Some(rect.size());
+        let first = self.fitted != 0;
+        self.fitted = shown.opened;
+        let beside = shown.beside.iter().map(|beside| &beside.right.picture);
+        self.scales = View::fit([&shown.picture].into_iter().chain(beside)).ok().map(|view| with_floors(view, shown));
+        if let Some(view) = &self.scales {
+            self.flat.fit(view, rect, self.tools);
+            self.space.fit(view, rect.size());
+            self.first = [view.low, view.high];
+        }
+        self.range = None;
+        self.kept.forget();
+        self.kept_beside.forget();
+        if first {
+            self.selected = None;
+        }
+        let only = (shown.bodies.len() == 1).then(|| shown.bodies[0].name.clone());
+        self.selected = self.selected.take().or(only);
+        self.doing = Doing::Nothing;
+    }
+
+    /// The ends of the colours follow what is there: at once outwards, slowly inwards.
+    pub(super) fn fit_colours(&mut self, shown: &Shown) {
+        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
+        let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
+        let (low, high) = colours.fold((f64::MAX, f64::MIN), |(low, high), [a, b]| (low.min(a), high.max(b)));
+        if low > high {
+            return;
+        }
+        // What is nearly nothing is not spread over all colours.
+        let least = match shown.picture.legend.as_ref().map_or("", |legend| &legend.unit) {
+            "%" | "Pa" => 1.0,
+            _ => 0.01,
+        };
+        let least = f64::max(least, 1e-3 * low.abs().max(high.abs()));
+        let now = [low, high.max(low + least)];
+        let slowly = |old: f64, new: f64| old + 0.01 * (new - old);
+        self.range = Some(match self.range {
+            Some([a, b]) if a <= now[1] && b >= now[0] => [
+                if now[0] < a { now[0] } else { slowly(a, now[0]) },
+                if now[1] > b { now[1] } else { slowly(b, now[1]) },
+            ],
+            _ => now,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shown::{Extent, Message, Severity};
+    use egui::Pos2;
+
+    const RECT: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(600.0, 500.0) };
+
+    /// A ball of a metre at this place, in colours up to this.
+    fn ball(x: f64, most: f64) -> Shown {
+        let body = opruga::draw::BodyPicture {
+            positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
+            ..Default::default()
+        };
+        let extent = Extent { colours: [0.0, most], ..Extent::of(&body) };
+        let picture = opruga::draw::Picture { dimension: 2, bodies: vec![body], ..Default::default() };
+        Shown { dimension: 2, opened: 1, extents: vec![extent], picture, ..Default::default() }
+    }
+
+    fn seen(canvas: &mut Canvas, shown: &Shown) {
+        canvas.rect = Some(RECT);
+        canvas.fit_if_new(shown, RECT);
+        canvas.fit_colours(shown);
+    }
+
+    #[test]
+    fn what_was_fitted_to_states_that_are_gone_is_fitted_anew_at_once() {
+        let mut canvas = Canvas::default();
+        seen(&mut canvas, &ball(0.0, 20.0));
+        let first = (canvas.flat.scale, canvas.range);
+        for _ in 0..3 {
+            seen(&mut canvas, &ball(1.5, 15_000.0));
+        }
+        assert!(canvas.flat.scale < first.0 && canvas.range > first.1);
+        seen(&mut canvas, &ball(0.0, 20.0));
+        assert!(canvas.range > first.1, "slowly, while nothing is replaced");
+        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
+        assert_eq!((canvas.flat.scale, canvas.range), first);
+        // A view that somebody has moved stays.
+        (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
+        seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
+        assert_eq!(canvas.flat.scale, 7.0);
+    }
+
+    #[test]
+    fn the_last_good_frame_of_a_motion_that_failed_is_in_sight_and_so_is_what_is_undone_to() {
+        let mut canvas = Canvas::default();
+        seen(&mut canvas, &ball(0.0, 20.0));
+        let first = canvas.flat.scale;
+        let error = WorldError::Diverged { body: "ball".into(), node: 0, time: 0.2, last: 0.1, range: None };
+        let said = Said::World(error);
+        let text = said.to_string();
+        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
+        let lost = Shown { message: Some(message), ..ball(5e5, 20.0) };
+        seen(&mut canvas, &lost);
+        assert!(RECT.contains(canvas.on_screen(&lost, [5e5, 0.5, 0.0]).expect("a place")));
+        seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
+        assert!((canvas.flat.scale / first - 1.0).abs() < 1e-9);
+        assert!(RECT.contains(canvas.on_screen(&ball(0.0, 20.0), [0.0, 0.5, 0.0]).expect("a place")));
+    }
+}
