@@ -135,3 +135,41 @@ fn thin_triangles_of_fillings_are_told() {
     let (angle, notices) = of("<circle r=\"1\"/>");
     assert!(angle >= 25.0 && notices.is_empty(), "{angle}");
 }
+
+/// A disc that another element paints on a square is seen as a disc on a square, and taken for a hole: told, unless the scene says which of
+/// the two is meant. A ring whose hole is its own, and an island in a hole of another, are no such thing.
+#[test]
+fn an_element_painted_within_another_is_a_hole_and_counted() {
+    let square = "<rect width=\"10\" height=\"10\"/>";
+    let disc = |x: f64| format!("<circle cx=\"{x}\" cy=\"5\" r=\"1\"/>");
+    let ring = "<path fill-rule=\"evenodd\" d=\"M0 0h10v10h-10z M1 1h8v8h-8z\"/>";
+    let dot = "<circle cx=\"3\" cy=\"5\" r=\"0.4\"/>";
+    for (inside, told) in [
+        (format!("{square}{}", disc(5.0)), Some(("1", "1 outline lies within one of another element"))),
+        (format!("{}{square}\n{}", disc(3.0), disc(7.0)), Some(("2", "2 outlines lie within those of other elements"))),
+        // A dot on the disc is an area again.
+        (format!("{square}{}{dot}", disc(3.0)), Some(("1", "1 outline lies"))),
+        (ring.to_string(), None),
+        (format!("{ring}{}", disc(5.0)), None),
+        (format!("{square}<circle cx=\"15\" cy=\"5\" r=\"1\"/>"), None),
+    ] {
+        let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.05, size = 2.0";
+        let read = |more: &str| {
+            let (mesh, notices) = plane(&format!("{shape}{more}"), "a.svg", drawing(&inside).as_bytes())
+                .unwrap_or_else(|e| panic!("{inside}: {}", e[0]));
+            let nested = notices.into_iter().map(|n| n.about).filter(|about| about.code == "shape.nested");
+            (area(&mesh), nested.collect::<Vec<_>>())
+        };
+        let (holed, found) = read("");
+        match told {
+            Some((count, message)) => {
+                let about = &found[0];
+                assert!(found.len() == 1 && about.value.as_deref() == Some(count), "{inside}: {about}");
+                assert!(about.message.contains(message) && about.line.is_some() && about.hint.is_some(), "{about}");
+                assert!(read(", overlap = \"union\"").0 > holed + 0.01, "{inside}");
+            }
+            None => assert!(found.is_empty(), "{inside}: {}", found[0]),
+        }
+        assert!(read(", overlap = \"even_odd\"").1.is_empty() && read(", overlap = \"union\"").1.is_empty());
+    }
+}

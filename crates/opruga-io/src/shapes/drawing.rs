@@ -123,6 +123,13 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     // What is left of borders that nearly coincide.
     rings.retain(|ring| ring.area().abs() > 1e-12 * extent * extent || shape.text("overlap") == Some("refuse"));
     let mut rings = place(rings, &mut painted, &drawing, shape)?;
+    if how.is_none()
+        && !drawing.rules.is_empty()
+        && let Some((part, notice)) = told::nested(&rings)
+    {
+        let notice = drawing.at(part, notice);
+        drawing.notices.push(notice);
+    }
 
     let least = shape.number("drop_below").unwrap_or(0.0);
     let before = rings.len();

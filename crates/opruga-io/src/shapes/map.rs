@@ -371,7 +371,7 @@ impl<'a> Reader<'a, '_> {
 }
 
 /// Whether a point lies inside of a ring: an odd number of edges cross the ray to its right.
-fn encloses(ring: &[Point], point: Point) -> bool {
+pub(super) fn encloses(ring: &[Point], point: Point) -> bool {
     let mut inside = false;
     for (k, a) in ring.iter().enumerate() {
         let b = ring[(k + 1) % ring.len()];

@@ -1,9 +1,10 @@
 //! What the making of a body has lost, and where it is worse than promised: said in figures.
 
+use super::map::encloses;
 use crate::problem::SceneError;
 use opruga_math::words::{counted, number, rounded};
 use opruga_mesh::Mesh;
-use opruga_mesh::outline::{Cause, Ring, SMALLEST_ANGLE, Thin};
+use opruga_mesh::outline::{self, Cause, Ring, SMALLEST_ANGLE, Thin};
 use opruga_world::shapes::{LOST_AND_TOLD, Loss};
 
 /// An outline that has so many times more points in its file than nodes loses detail that one may look for.
@@ -60,6 +61,37 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
         let value = if many { given.to_string() } else { rounded(left / whole, 3) };
         SceneError::new("shape.thinned", message).value(value).hint(hint)
     })
+}
+
+/// How many outlines of a drawing are holes since they lie within one of another element, which paints there too; and the first of these
+/// elements. Rings are nested, holes run clockwise.
+pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
+    let boxes: Vec<_> = rings.iter().map(|ring| outline::bounds(core::slice::from_ref(ring))).collect();
+    let areas: Vec<f64> = rings.iter().map(Ring::area).collect();
+    let within = |number: usize| {
+        let point = *rings[number].points.first()?;
+        let around = |other: &usize| {
+            let inside = |(low, high): ([f64; 2], [f64; 2])| (0..2).all(|a| low[a] <= point[a] && point[a] <= high[a]);
+            *other != number && boxes[*other].is_some_and(inside) && encloses(&rings[*other].points, point)
+        };
+        // The innermost of those around it is what it is a hole of.
+        (0..rings.len()).filter(around).min_by(|a, b| areas[*a].abs().total_cmp(&areas[*b].abs()))
+    };
+    let holes = (0..rings.len()).filter(|number| areas[*number] < 0.0);
+    let foreign: Vec<u32> = holes
+        .filter(|number| within(*number).is_some_and(|outer| rings[outer].part != rings[*number].part))
+        .map(|number| rings[number].part)
+        .collect();
+    let first = *foreign.first()?;
+    let count = foreign.len();
+    let message = if count == 1 {
+        format!("{count} outline lies within one of another element and is a hole there")
+    } else {
+        format!("{count} outlines lie within those of other elements and are holes there")
+    };
+    let hint =
+        "`overlap = \"union\"` keeps what any element paints, `overlap = \"even_odd\"` says that holes are meant";
+    Some((first, SceneError::new("shape.nested", message).value(count.to_string()).hint(hint)))
 }
 
 /// That triangles have sharper angles than fillings promise.

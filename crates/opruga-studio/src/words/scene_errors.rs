@@ -41,6 +41,7 @@ const CODES: &[(&str, &str)] = &[
     ("shape.outside", "datoteka leži izvan mape prizora"),
     ("shape.format", "nepoznat zapis oblika"),
     ("shape.lost_volume", "ispuna mijenja obujam"),
+    ("shape.nested", "obris je unutar obrisa drugog elementa"),
     ("shape.thinned", "obris gubi pojedinosti"),
     ("shape.thin_triangles", "ispuna ima uske trokute"),
     ("shape.no_area", "oblik ne obuhvaća površinu"),

@@ -4,6 +4,18 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     // Drawings.
     ("{} outlines without area are left out", "izostavljeno obrisa bez površine: {}"),
     ("{} outline without area is left out", "izostavljeno obrisa bez površine: {}"),
+    (
+        "{} outline lies within one of another element and is a hole there",
+        "obrisa unutar obrisa drugog elementa, koji su ondje rupe: {}",
+    ),
+    (
+        "{} outlines lie within those of other elements and are holes there",
+        "obrisa unutar obrisa drugih elemenata, koji su ondje rupe: {}",
+    ),
+    (
+        "`overlap = \"union\"` keeps what any element paints, `overlap = \"even_odd\"` says that holes are meant",
+        "`overlap = \"union\"` zadržava što bilo koji element boji, `overlap = \"even_odd\"` kaže da se misli na rupe",
+    ),
     ("{} of {} outlines have less than {} m² and are left out", "{} od {} obrisa manje je od {} m² i izostavljeno"),
     ("{} of {} outlines has less than {} m² and is left out", "{} od {} obrisa manji je od {} m² i izostavljen"),
     (
