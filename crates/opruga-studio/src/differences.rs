@@ -111,11 +111,11 @@ fn write(scene: &mut Document, difference: &Difference) -> bool {
     };
     match difference {
         Difference::Models(_, models) => {
-            let list = models.iter().map(|m| Toml::InlineTable(kind_table(m, None)));
+            let list = models.iter().map(|m| Toml::InlineTable(kind_table(m, scene.dimension())));
             table.insert("models", Toml::Array(list.collect()));
         }
         Difference::Integrator(_, values) => {
-            table.insert("integrator", Toml::InlineTable(kind_table(values, None)));
+            table.insert("integrator", Toml::InlineTable(kind_table(values, scene.dimension())));
         }
         Difference::Shape(_, field, value) => {
             let Some(shape) = table.get_mut("shape").and_then(Toml::as_inline_table_mut) else { return false };

@@ -1,8 +1,10 @@
 //! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
 //! runs what was done here.
 
+mod kinds;
 mod overrides;
 
+pub use kinds::kind_table;
 use opruga::blueprint::{Action, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::io::{Files, SceneError, scene};
@@ -334,9 +336,15 @@ impl Document {
         table.is_some_and(|table| table.remove(field).is_some())
     }
 
+    /// Of how many dimensions the scene is.
+    pub fn dimension(&self) -> usize {
+        let written = self.text.get("dimension").and_then(Item::as_integer);
+        written.and_then(|dimension| usize::try_from(dimension).ok()).unwrap_or(2)
+    }
+
     /// Gives the scene another integrator.
     pub fn set_integrator(&mut self, values: &Values) {
-        let mut table = kind_table(values, None).into_table();
+        let mut table = kind_table(values, self.dimension()).into_table();
         if let Some(old) = self.text.get("integrator").and_then(Item::as_table) {
             *table.decor_mut() = old.decor().clone();
         } else {
@@ -401,18 +409,6 @@ pub fn toml(value: &Value) -> Toml {
     }
 }
 
-/// A model or an integrator as a table; with its defaults only what differs from them.
-pub fn kind_table(values: &Values, defaults: Option<&Values>) -> InlineTable {
-    let mut table = InlineTable::new();
-    table.insert("kind", values.kind().into());
-    for (name, value) in values.iter() {
-        if defaults.and_then(|defaults| defaults.get(name)) != Some(value) {
-            table.insert(name, toml(value));
-        }
-    }
-    table
-}
-
 /// A command as the scene file writes it, on the body of this name; none for what has no such form.
 pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) -> Option<Table> {
     let mut table = Table::new();
@@ -467,11 +463,11 @@ pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) 
         }
         Action::Change { models, integrator, .. } => {
             if let Some(models) = models {
-                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, None))).collect();
+                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, D))).collect();
                 table["models"] = toml_edit::value(list);
             }
             if let Some(integrator) = integrator {
-                table["integrator"] = toml_edit::value(kind_table(integrator, None));
+                table["integrator"] = toml_edit::value(kind_table(integrator, D));
             }
         }
         Action::Remove { .. } | Action::Add(_) => {}

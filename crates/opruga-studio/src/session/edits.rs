@@ -120,11 +120,12 @@ impl Session {
         let mut document = self.document.clone();
         if let Some(mut table) = own {
             if let Some(models) = &models {
-                let list: toml_edit::Array = models.iter().map(|m| Toml::InlineTable(kind_table(m, None))).collect();
+                let table_of = |model| Toml::InlineTable(kind_table(model, document.dimension()));
+                let list: toml_edit::Array = models.iter().map(table_of).collect();
                 table.insert("models", Toml::Array(list));
             }
             if let Some(integrator) = &integrator {
-                table.insert("integrator", Toml::InlineTable(kind_table(integrator, None)));
+                table.insert("integrator", Toml::InlineTable(kind_table(integrator, document.dimension())));
             }
             if document.replace_body(&name, &table) {
                 self.begin_with(document, self.own_commands)?;

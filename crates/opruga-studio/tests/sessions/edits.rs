@@ -196,3 +196,22 @@ fn a_turn_and_a_scaling_are_undone_by_their_names() {
         assert_eq!(session.shown().undo, Some(step));
     }
 }
+
+/// A model whose fields a person gives and takes away is written anew: fields without effect, which nobody has set, are not.
+#[test]
+fn models_that_are_written_anew_bring_no_warnings() {
+    for frames in [0, 10] {
+        let mut session = open("ball");
+        pass(&mut session, frames);
+        let body = session.shown().bodies[0].clone();
+        session.handle(Request::Models(body.number, body.models.clone()));
+        no_refusal(&mut session);
+        pass(&mut session, 5);
+        assert_replays(&session);
+        let (text, files) = (session.saved(), opruga::scenes::files());
+        let mut again = Session::open("ball", &text, files, opruga::Options::default()).expect("it opens");
+        for warnings in [session.shown().warnings, again.shown().warnings] {
+            assert!(warnings.is_empty(), "after {frames} frames: {:?}\n{text}", warnings[0].message);
+        }
+    }
+}
