@@ -90,6 +90,8 @@ pub struct Canvas {
     /// The size of the window for which the scene was fitted; none once somebody has moved the view.
     fitted_size: Option<Vec2>,
     doing: Doing,
+    /// A pull that begins when the pointer moves, or time.
+    waiting: Option<pressing::Waiting>,
     /// From where the pointer is to where it is on the side to the left.
     offset: Vec2,
     kept: plane::Kept,

@@ -21,6 +21,22 @@ struct Press {
     beside: bool,
 }
 
+/// A pull of which nothing has come yet. While time stands still, a press alone selects a body, and whatever was recorded behind this
+/// moment stays.
+#[derive(Clone, Debug)]
+pub(super) struct Waiting {
+    grab: Request,
+    at: Pos2,
+    frames: u64,
+}
+
+impl Waiting {
+    /// Whether the pointer has gone on since, or time has.
+    fn is_over(&self, shown: &Shown, at: Pos2) -> bool {
+        (at - self.at).length() > 2.0 || shown.playing || shown.frames != self.frames
+    }
+}
+
 /// Where a button was pressed since the last picture: on a slow screen the pointer has gone on since.
 pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     let press = |event: &egui::Event| match event {
@@ -130,13 +146,17 @@ impl Canvas {
                 None => {}
             }
         }
+        let holds = matches!(self.doing, Doing::Holding(..));
+        if self.waiting.as_ref().is_some_and(|waiting| !holds || waiting.is_over(shown, at)) {
+            asks.extend(self.waiting.take().filter(|_| holds).map(|waiting| waiting.grab));
+        }
         // On a slow screen a press comes together with the way to it, which does not count.
         let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
             Doing::Holding(distance, push) => {
                 let (distance, push) = (*distance, *push);
-                if let Some(point) = self.point(shown, rect, at, distance) {
+                if let Some(point) = self.point(shown, rect, at, distance).filter(|_| self.waiting.is_none()) {
                     asks.push(Request::Lead(match push {
                         Some([pressed, hold]) => [0, 1, 2].map(|d| hold[d] + (point[d] - pressed[d])),
                         None => point,
@@ -221,18 +241,25 @@ impl Canvas {
             let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
             of_left.map_or(pin.2, |left| left.2)
         });
-        asks.push(match (pinned, beside) {
+        let grab = match (pinned, beside) {
             (Some(place), _) => Request::Grab(grip, under.body, place),
             (None, true) => Request::GrabBeside(grip, under.body, under.point),
             (None, false) => Request::Grab(grip, under.body, under.point),
-        });
+        };
+        if grip == Grip::Pull && !shown.playing {
+            self.waiting = Some(Waiting { grab, at, frames: shown.frames });
+        } else {
+            asks.push(grab);
+        }
         // A push begins without force, though the pointer is somewhere beside the node; what is pulled comes to the pointer.
         let pressed = self.point(shown, rect, at, under.distance).filter(|_| grip == Grip::Push);
         self.doing = Doing::Holding(under.distance, pressed.map(|pressed| [pressed, under.point]));
     }
 
     fn end(&mut self, shown: &Shown, rect: Rect, at: Pos2, asks: &mut Vec<Request>) {
+        let waited = self.waiting.take().is_some();
         match std::mem::take(&mut self.doing) {
+            Doing::Holding(..) if waited => {}
             Doing::Holding(..) => asks.push(Request::Release),
             Doing::Shifting(name, start, distance) => {
                 if let Some(end) = self.point(shown, rect, at, distance) {

@@ -197,8 +197,6 @@ fn two_scenes_one_above_the_other_hide_nothing_of_one_another() {
             assert!(free(at) && free(at + down), "{at:?}");
         }
     }
-    window.rest();
-    window.picture().assert_like("beside-phone");
 }
 
 #[test]

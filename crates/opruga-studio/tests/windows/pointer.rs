@@ -239,3 +239,27 @@ fn where_no_body_is_in_sight_an_arrow_points_to_them_and_a_press_shows_them() {
         assert!(!away(&window) && canvas.contains(top_of(&window)), "{scene}");
     }
 }
+
+/// Whoever looks at the past, and presses a body to see its properties, has done nothing to it.
+#[test]
+fn while_time_stands_still_a_press_selects_a_body_and_leaves_what_was_recorded() {
+    let mut window = Window::open("two-chambers", SIZE);
+    for _ in 0..20 {
+        window.studio().ask(Request::Step);
+    }
+    window.until("twenty frames", |shown| shown.frames == 20);
+    window.studio().ask(Request::Seek(5));
+    window.until("the past", |shown| shown.frames == 5);
+    let top = top_of(&window);
+    window.pointer(top);
+    window.button(top, PointerButton::Primary, true, Modifiers::NONE);
+    window.frames(3);
+    window.button(top, PointerButton::Primary, false, Modifiers::NONE);
+    window.frames(3);
+    assert!(window.harness.query_by_role_and_label(egui::Role::Slider, "stiffness [N/m]").is_some(), "its properties");
+    let shown = window.shown();
+    assert_eq!((shown.recorded, shown.frames, shown.latest), (0, 5, 20));
+    // Drawn away, it is pulled, and what came later is replaced.
+    window.drag(&[top, top + Vec2::new(10.0, -20.0)], PointerButton::Primary, Modifiers::NONE);
+    window.until("a pull", |shown| shown.recorded == 1 && shown.latest == 5);
+}
