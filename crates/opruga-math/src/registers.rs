@@ -5,7 +5,6 @@
 #![allow(unsafe_code)]
 
 use crate::lane::{Lane, Pack, Register, WIDTH};
-use core::mem::MaybeUninit;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Eight numbers in `N` registers.
@@ -13,53 +12,15 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(64))]
 pub(crate) struct Registers<R, const N: usize>([R; N]);
 
-/// Does the same for every register, one after the other; a macro, since closures are not inlined reliably.
-///
-/// Written out and not a loop: formulas are hundreds of such operations, and the compiler takes a third of its time to
-/// see that their loops are none. A processor takes one, two or four registers; eight are plain numbers.
-macro_rules! for_each {
-    ($r:ident => $do:stmt) => {
-        for_each!(@ $r 0 $do);
-        if N > 1 {
-            for_each!(@ $r 1 $do);
-        }
-        if N > 2 {
-            for_each!(@ $r 2 $do);
-            for_each!(@ $r 3 $do);
-        }
-        if N > 4 {
-            for_each!(@ $r 4 $do);
-            for_each!(@ $r 5 $do);
-            for_each!(@ $r 6 $do);
-            for_each!(@ $r 7 $do);
-        }
-        const { assert!(N == 1 || N == 2 || N == 4 || N == 8, "what is written out above") };
-    };
-    (@ $r:ident $number:literal $do:stmt) => {{
-        let $r = $number;
-        $do
-    }};
-}
-
-/// A value for every register, as an array; one that was filled with zeros first would be a loop again.
-macro_rules! array {
-    ($type:ty, $r:ident => $value:expr) => {{
-        let mut out = MaybeUninit::<[$type; N]>::uninit();
-        let first = out.as_mut_ptr().cast::<$type>();
-        for_each!($r => {
-            let value = $value;
-            // SAFETY: it is one of the array's N.
-            unsafe { first.add($r).write(value) }
-        });
-        // SAFETY: all N were written.
-        unsafe { out.assume_init() }
-    }};
-}
-/// The same as registers.
+/// One register after the other; a macro, since closures are not inlined reliably.
 macro_rules! each {
-    ($r:ident => $value:expr) => {
-        Registers(array!(R, $r => $value))
-    };
+    ($r:ident => $value:expr) => {{
+        let mut out = [R::zero(); N];
+        for $r in 0..N {
+            out[$r] = $value;
+        }
+        Registers(out)
+    }};
 }
 
 macro_rules! operator {
@@ -102,7 +63,7 @@ impl<R: Register, const N: usize> Lane for Registers<R, N> {
     type Mask = [R::Mask; N];
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        each!(_r => R::splat(value))
+        Registers([R::splat(value); N])
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -122,11 +83,19 @@ impl<R: Register, const N: usize> Lane for Registers<R, N> {
     }
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {
-        array!(R::Mask, r => self.0[r].less(other.0[r]))
+        let mut out = [R::zero().less(R::zero()); N];
+        for r in 0..N {
+            out[r] = self.0[r].less(other.0[r]);
+        }
+        out
     }
     #[inline(always)]
     fn less_or_equal(self, other: Self) -> Self::Mask {
-        array!(R::Mask, r => self.0[r].less_or_equal(other.0[r]))
+        let mut out = [R::zero().less(R::zero()); N];
+        for r in 0..N {
+            out[r] = self.0[r].less_or_equal(other.0[r]);
+        }
+        out
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -134,12 +103,18 @@ impl<R: Register, const N: usize> Lane for Registers<R, N> {
     }
     #[inline(always)]
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        array!(R::Mask, r => R::both(a[r], b[r]))
+        let mut out = a;
+        for r in 0..N {
+            out[r] = R::both(a[r], b[r]);
+        }
+        out
     }
     #[inline(always)]
     fn any(mask: Self::Mask) -> bool {
         let mut out = false;
-        for_each!(r => out |= R::any(mask[r]));
+        for m in mask {
+            out |= R::any(m);
+        }
         out
     }
     #[inline(always)]
@@ -180,8 +155,10 @@ impl<R: Register, const N: usize> Pack for Registers<R, N> {
     }
     #[inline(always)]
     unsafe fn write(self, to: *mut f64) {
-        // SAFETY: the caller promises room for eight numbers.
-        for_each!(r => unsafe { self.0[r].write(to.add(R::NUMBERS * r)) });
+        for r in 0..N {
+            // SAFETY: the caller promises room for eight numbers.
+            unsafe { self.0[r].write(to.add(R::NUMBERS * r)) }
+        }
     }
     #[inline(always)]
     fn gather(from: &[f64], places: &[u32]) -> Self {
@@ -207,6 +184,10 @@ impl<R: Register, const N: usize> Pack for Registers<R, N> {
     }
     #[inline(always)]
     fn first(count: usize) -> Self::Mask {
-        array!(R::Mask, r => R::first(count.saturating_sub(r * R::NUMBERS)))
+        let mut out = [R::zero().less(R::zero()); N];
+        for r in 0..N {
+            out[r] = R::first(count.saturating_sub(r * R::NUMBERS));
+        }
+        out
     }
 }
