@@ -1,26 +1,27 @@
-//! The pass over a tile of nodes.
+//! All colliders against the nodes of a tile.
 
 use crate::bounds::Bounds;
-use crate::collider::{Collider, Law, Part};
-use crate::entries::{Found, Ways, arrays};
+use crate::collider::{Collider, Part};
+use crate::entries::numbers;
 use crate::facet_contacts::{Placed, hold_back_by_facets};
-use crate::motion::{Carry, Frame, Pose};
+use crate::motion::Frame;
+use crate::pass::Pass;
 use crate::picture::{Picture, picture};
-use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
-use crate::shape::{Shape, close_to};
 use crate::touch::{Faces, Way};
-use crate::vector::{dot, subtract};
 use core::any::Any;
 use opruga_core::contacts::{Contacts, Moved, Touch};
 use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
 use opruga_core::tile::TILE;
-use opruga_math::{Lane, Pack, RepeatStrip, Simd, Strip, StripMut, WIDTH, Work, lanes};
+use opruga_math::{Lane, Register, Simd, WIDTH};
 use std::sync::Arc;
 
+// Never copied into other crates, with which all passes would be compiled then.
+#[inline(never)]
 fn of_the_plane(colliders: Arc<Colliders<2>>) -> Arc<dyn Contacts<2>> {
     colliders
 }
+#[inline(never)]
 fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
     colliders
 }
@@ -203,23 +204,23 @@ pub(crate) enum Meets {
 pub(crate) struct Held(pub(crate) [u8; TILE / WIDTH]);
 
 impl Held {
-    /// The eight nodes from `k` on: 1 if held, else 0.
+    /// The nodes from `k` and so many more on, until the end of the pack at `k`: 1 if held, else 0.
     #[inline(always)]
-    fn pack<P: Pack>(&self, k: usize) -> P {
-        let bits = self.0.get(k / WIDTH).copied().unwrap_or(0);
+    pub(crate) fn numbers(&self, k: usize, offset: usize) -> [f64; WIDTH] {
+        let bits = self.0.get(k / WIDTH).copied().unwrap_or(0) >> offset;
         let mut out = [0.0; WIDTH];
         for l in 0..WIDTH {
             out[l] = f64::from(bits >> l & 1);
         }
-        P::from_array(out)
+        out
     }
-    /// Notes the nodes for which `hit` is above 0.
+    /// Notes the nodes, from `k` and so many more on, for which `hit` is above 0.
     #[inline(always)]
-    fn note<P: Pack>(&mut self, k: usize, hit: P) {
-        let hit = hit.to_array();
+    pub(crate) fn note<R: Register>(&mut self, k: usize, offset: usize, hit: R) {
+        let hit = numbers(hit);
         if let Some(bits) = self.0.get_mut(k / WIDTH) {
-            for l in 0..WIDTH {
-                *bits |= u8::from(hit[l] > 0.0) << l;
+            for l in 0..R::NUMBERS {
+                *bits |= u8::from(hit[l] > 0.0) << (offset + l);
             }
         }
     }
@@ -250,201 +251,5 @@ fn hold_back<const D: usize>(
         Part::Facets(facets) => {
             hold_back_by_facets(&Placed { facets, pose, margin: law.thickness }, law, carry, moved, held, used, meets)
         }
-    }
-}
-
-/// A shape with the distance that nodes keep from it.
-struct Around<'a, T> {
-    shape: &'a T,
-    thickness: f64,
-}
-
-impl<S: Lane, T: Shape<D>, const D: usize> Surface<S, D> for Around<'_, T> {
-    #[inline(always)]
-    fn find(&self, x: &[S; D], _before: &[S; D], _reach: S) -> (S, [S; D]) {
-        let (gap, normal) = self.shape.gap_and_normal(x);
-        (gap - S::splat(self.thickness), normal)
-    }
-}
-
-/// One shape against the nodes of a tile, eight at a time.
-struct Pass<'a, 'm, T, const D: usize> {
-    shape: T,
-    law: &'a Law,
-    pose: &'a Pose<D>,
-    carry: &'a Carry<D>,
-    moved: &'a mut Moved<'m, D>,
-    held: &'a mut Held,
-    used: usize,
-    meets: Meets,
-}
-
-/// The columns of a tile.
-struct Tile<'a, const D: usize> {
-    x: StripMut<'a, D>,
-    v: StripMut<'a, D>,
-    before: Strip<'a, D>,
-    force: Strip<'a, D>,
-    mass: RepeatStrip<'a>,
-}
-
-impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
-    type Output = bool;
-    #[inline(always)]
-    fn run<P: Pack>(self) -> bool {
-        let (shape, law, used) = (&self.shape, self.law, self.used);
-        let Moved {
-            range,
-            before,
-            x,
-            v,
-            force,
-            mass,
-            h,
-            loss_contact,
-            loss_friction,
-            work_colliders,
-            work_correction,
-            ..
-        } = self.moved;
-        let (start, length) = (range.start, range.len());
-        let mut tile = Tile {
-            x: x.strip_mut(start, length),
-            v: v.strip_mut(start, length),
-            before: Strip::new(before, 0, length),
-            force: Strip::new(force, 0, length),
-            mass: mass.strip(start, length),
-        };
-        let thickness = P::splat(law.thickness);
-        // A node that moves so far in a step could come out on the far side of the shape.
-        let far = 0.5 * shape.half_width();
-        let has_far_side = far < f64::INFINITY;
-        let far = P::splat(far * far);
-
-        // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
-        let look =
-            Look { shape, carry: self.carry, near: P::splat(law.thickness + largest_rounding(law)), far, has_far_side };
-        let lies = self.meets == Meets::WhatItLiesOn;
-        let mut k = 0;
-        // Who lay on the surface may be beside it now.
-        let mut near = lies;
-        while k + 4 * WIDTH <= used && !near {
-            near = look.any_near::<4>(&tile, k, P::first(WIDTH));
-            k += 4 * WIDTH;
-        }
-        while k < used && !near {
-            near = look.any_near::<1>(&tile, k, P::first(used - k));
-            k += WIDTH;
-        }
-        if !near {
-            return false;
-        }
-
-        let (mut losses, mut frictions, mut works, mut corrections) = (
-            P::load(&**loss_contact),
-            P::load(&**loss_friction),
-            P::load(&**work_colliders),
-            P::load(&**work_correction),
-        );
-        let mut touched = false;
-        for k in (0..used).step_by(WIDTH) {
-            let x = lanes!(P, d => tile.x.load::<P>(d, k));
-            let nodes = P::first(used - k);
-            let close = P::both((shape.gap(&x) - thickness).less(P::splat(largest_rounding(law))), nodes);
-            let from = lanes!(P, d => tile.before.load::<P>(d, k));
-            let before = self.carry.along(&from);
-            let way = subtract(&x, &before);
-            // Who goes far may come out elsewhere, and who came in by a face may be nearer to another one.
-            let fast = P::both(far.less(dot(&way, &way)), nodes);
-            let mut asked = P::select(fast, P::one(), P::zero());
-            if lies {
-                let lay = P::splat(close_to(shape, law.thickness)).larger(rounding(law, &before));
-                let on = P::both((shape.gap(&before) - thickness).abs().less_or_equal(lay), nodes);
-                asked = P::select(on, P::one(), P::zero());
-            } else if T::FACES {
-                let inside = P::both((shape.gap(&x) - thickness).less_or_equal(rounding(law, &x)), nodes);
-                asked = P::select(inside, P::one(), asked);
-            }
-            let any_asked = (lies || has_far_side) && P::any(P::zero().less(asked));
-            if !any_asked && (lies || !P::any(close)) {
-                continue;
-            }
-            let (mut gap, mut normal) = shape.gap_and_normal(&x);
-            gap -= thickness;
-            if any_asked {
-                let mut found = Found { gap: gap.to_array(), normal: arrays(&normal) };
-                let ways = Ways {
-                    ends: [arrays(&before), arrays(&x)],
-                    asked: asked.to_array(),
-                    held: self.held.pack::<P>(k).to_array(),
-                    small: rounding(law, if lies { &before } else { &x }).to_array(),
-                };
-                if lies {
-                    ways.look_for_supports(shape, law.thickness, &mut found);
-                } else {
-                    ways.look_for_entries(shape, law.thickness, &mut found);
-                }
-                gap = P::from_array(found.gap);
-                normal = lanes!(P, d => P::from_array(found.normal[d]));
-            }
-            let v = lanes!(P, d => tile.v.load::<P>(d, k));
-            let mass = tile.mass.load::<P>(k);
-            let obstacle = self.pose.velocity_at(&x);
-            let force = lanes!(P, d => tile.force.load::<P>(d, k));
-            let held = self.held.pack(k);
-            let meeting = Meeting { x, v, before, from, force, mass, gap, normal, obstacle, held, h: P::splat(*h) };
-            let hit = P::both(meets(law, &meeting), nodes);
-            if !P::any(hit) {
-                continue;
-            }
-            touched = true;
-            self.held.note(k, P::select(hit, P::one(), P::zero()));
-            let parting = if T::FACES {
-                respond(&Face { x, gap, normal }, law, hit, &meeting)
-            } else {
-                respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting)
-            };
-            for d in 0..D {
-                tile.x.store(d, k, P::select(hit, parting.x[d], x[d]));
-                tile.v.store(d, k, P::select(hit, parting.v[d], v[d]));
-            }
-            losses += P::select(hit, parting.loss_contact, P::zero());
-            frictions += P::select(hit, parting.loss_friction, P::zero());
-            works += P::select(hit, parting.work, P::zero());
-            corrections += P::select(hit, parting.correction, P::zero());
-        }
-        losses.store(&mut **loss_contact);
-        frictions.store(&mut **loss_friction);
-        works.store(&mut **work_colliders);
-        corrections.store(&mut **work_correction);
-        touched
-    }
-}
-
-/// The first look at the nodes of a tile.
-struct Look<'a, P, T, const D: usize> {
-    shape: &'a T,
-    carry: &'a Carry<D>,
-    near: P,
-    far: P,
-    has_far_side: bool,
-}
-
-impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
-    /// Whether any node of `N` packs deserves a second look: near the shape, or fast.
-    #[inline(always)]
-    fn any_near<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
-        let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
-        for n in 0..N {
-            let k = start + n * WIDTH;
-            let x = lanes!(P, d => tile.x.load::<P>(d, k));
-            least = self.shape.gap(&x).smaller(least);
-            if self.has_far_side {
-                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
-                most = dot(&way, &way).larger(most);
-            }
-        }
-        P::any(P::both(least.less(self.near), nodes))
-            || (self.has_far_side && P::any(P::both(self.far.less(most), nodes)))
     }
 }

@@ -1,9 +1,9 @@
-//! Nodes of a pack that are looked at one by one: by which face they came in, and what they lay on.
+//! Nodes of a register that are looked at one by one: by which face they came in, and what they lay on.
 
 use crate::shape::{Shape, entry, is_on_edge, support};
-use opruga_math::{Pack, WIDTH, lanes};
+use opruga_math::{Register, WIDTH, lanes};
 
-/// The gaps and normals of the nodes of a pack.
+/// The gaps and normals of the nodes of a register.
 pub(crate) struct Found<const D: usize> {
     pub(crate) gap: [f64; WIDTH],
     pub(crate) normal: [[f64; WIDTH]; D],
@@ -18,17 +18,25 @@ impl<const D: usize> Found<D> {
     }
 }
 
-/// The numbers of packs.
+/// The numbers of a register, and zeros.
 #[inline(always)]
-pub(crate) fn arrays<P: Pack, const D: usize>(packs: &[P; D]) -> [[f64; WIDTH]; D] {
+pub(crate) fn numbers<R: Register>(register: R) -> [f64; WIDTH] {
+    let mut out = [0.0; WIDTH];
+    register.store(&mut out);
+    out
+}
+
+/// The numbers of registers, and zeros.
+#[inline(always)]
+pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; WIDTH]; D] {
     let mut out = [[0.0; WIDTH]; D];
     for d in 0..D {
-        out[d] = packs[d].to_array();
+        out[d] = numbers(registers[d]);
     }
     out
 }
 
-/// The nodes of a pack on their ways.
+/// The nodes of a register on their ways.
 pub(crate) struct Ways<const D: usize> {
     /// Where they began, carried along with the shape, and where they are [m].
     pub(crate) ends: [[[f64; WIDTH]; D]; 2],

@@ -61,6 +61,7 @@ mod facets;
 mod hull;
 mod inside;
 mod motion;
+mod pass;
 mod picture;
 mod response;
 mod shape;

@@ -23,10 +23,10 @@ pub use dual::Dual;
 pub use kernel::{Blocks, Kernel};
 
 use crate::potential::{Definiteness, Potential, Sink, Views};
-use crate::state::{At, Layout, OrderedSum, Parameter, View};
+use crate::state::{Layout, OrderedSum, Parameter, View};
 use crate::tile::{TILE, Tile};
 use core::marker::PhantomData;
-use opruga_math::{Pack, Simd, WIDTH, Work};
+use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
 /// All stencils of one kernel on one body, or on eight alike ones.
 #[derive(Debug)]
@@ -144,7 +144,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
 
     /// Adds the forces of one block on its nodes in the range of the tile.
     #[inline(always)]
-    fn add_block<P: Pack, const DAMPED: bool, const D: usize>(&self, block: usize, view: &View<D>, tile: &mut Tile<D>)
+    fn add_block<P: Pack, const D: usize>(&self, block: usize, view: &View<D>, tile: &mut Tile<D>)
     where
         L: Kernel<D, N, K>,
     {
@@ -156,46 +156,46 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
 
         // Forces of all elements into slots.
         let step = if self.layout == Layout::Single { WIDTH } else { 1 };
+        let mut eight = Eight::new();
         for k in (0..count).step_by(step) {
             let items = &self.list[from + k..from + k + step];
-            let (p, x, v) = match self.layout {
-                Layout::Single if self.straight[(from + k) / WIDTH] => {
-                    self.load::<P, DAMPED, D>(view, self.elements[items[0] as usize], 1, items[0] as usize)
-                }
-                Layout::Single => self.gather::<P, DAMPED, D>(view, items),
-                Layout::Batch => {
-                    self.load::<P, DAMPED, D>(view, self.elements[items[0] as usize], WIDTH, items[0] as usize * WIDTH)
-                }
-            };
-            let gradient = L::gradient::<P>(&p, &x);
-            let mut force = [[P::zero(); D]; N];
-            for a in 0..N {
-                for d in 0..D {
-                    force[a][d] = -gradient[a][d];
-                }
-            }
-            if DAMPED {
-                let (drag, power) = L::damping::<P>(&p, &x, &v);
+            let straight = self.layout == Layout::Batch || self.straight[(from + k) / WIDTH];
+            self.read(view, items, straight, self.damped, &mut eight);
+            for part in 0..P::PARTS {
+                let offset = part * P::Part::NUMBERS;
+                let (p, x) = (eight.parameters::<P>(part), Eight::<D, N, K>::vectors::<P>(&eight.x, part));
+                let gradient = L::gradient::<P::Part>(&p, &x);
+                let mut force = [[P::Part::zero(); D]; N];
                 for a in 0..N {
                     for d in 0..D {
-                        force[a][d] += drag[a][d];
+                        force[a][d] = -gradient[a][d];
                     }
                 }
+                if self.damped {
+                    let (drag, power) = L::damping::<P::Part>(&p, &x, &Eight::<D, N, K>::vectors::<P>(&eight.v, part));
+                    for a in 0..N {
+                        for d in 0..D {
+                            force[a][d] += drag[a][d];
+                        }
+                    }
+                    power.store(&mut eight.power[offset..]);
+                }
+                for a in 0..N {
+                    for d in 0..D {
+                        force[a][d].store(&mut slots[((a * D + d) * count + k) * stride + offset..]);
+                    }
+                }
+            }
+            if self.damped {
                 // The block of its first node enters the power of an element, if the tile covers it.
                 let own = (block * TILE).max(tile.range.start)..((block + 1) * TILE).min(tile.range.end);
-                let each = power.to_array();
                 for l in 0..WIDTH {
                     let item = items[l.min(step - 1)];
                     let filling = step > 1 && l > 0 && item == items[l - 1];
                     let owner = self.elements[item as usize][0] as usize * stride;
                     if own.contains(&owner) && !filling {
-                        tile.power[l] += each[l];
+                        tile.power[l] += eight.power[l];
                     }
-                }
-            }
-            for a in 0..N {
-                for d in 0..D {
-                    force[a][d].store(&mut slots[((a * D + d) * count + k) * stride..]);
                 }
             }
         }
@@ -229,62 +229,43 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         }
     }
 
-    /// Eight neighbouring elements of one body, or one element of eight bodies.
-    #[inline(always)]
-    #[allow(clippy::type_complexity)] // inner part of a loop
-    fn load<P: Pack, const MOVING: bool, const D: usize>(
-        &self,
-        view: &View<D>,
-        nodes: [u32; N],
-        stride: usize,
-        item: usize,
-    ) -> ([P; K], [[P; D]; N], [[P; D]; N]) {
-        let mut p = [P::zero(); K];
-        for k in 0..K {
-            p[k] = self.parameters[k].load(item);
-        }
-        let (mut x, mut v) = ([[P::zero(); D]; N], [[P::zero(); D]; N]);
-        for a in 0..N {
-            let place = nodes[a] as usize * stride;
-            for d in 0..D {
-                x[a][d] = P::load(&view.x[d][place..]);
-                if MOVING {
-                    v[a][d] = P::load(&view.v[d][place..]);
-                }
-            }
-        }
-        (p, x, v)
-    }
-
-    /// Eight elements of one body, wherever they lie.
-    #[inline(always)]
-    #[allow(clippy::type_complexity)] // inner part of a loop
-    fn gather<P: Pack, const MOVING: bool, const D: usize>(
+    /// Copies what the kernel asks of eight elements of one body, wherever they lie, or of one element of eight bodies.
+    ///
+    /// `straight` says that the first of `items` stands for all: their numbers lie one after the other.
+    fn read<const D: usize>(
         &self,
         view: &View<D>,
         items: &[u32],
-    ) -> ([P; K], [[P; D]; N], [[P; D]; N]) {
-        let mut places = [[0u32; WIDTH]; N];
-        for l in 0..WIDTH {
-            let nodes = &self.elements[items[l] as usize];
-            for a in 0..N {
-                places[a][l] = nodes[a];
+        straight: bool,
+        moving: bool,
+        eight: &mut Eight<D, N, K>,
+    ) {
+        let stride = self.layout.stride();
+        let item = |l: usize| if straight { items[0] as usize * stride + l } else { items[l] as usize };
+        for k in 0..K {
+            for l in 0..WIDTH {
+                eight.p[k][l] = self.parameters[k].at(item(l));
             }
         }
-        let mut p = [P::zero(); K];
-        for k in 0..K {
-            p[k] = self.parameters[k].load_at(At::Each(items));
-        }
-        let (mut x, mut v) = ([[P::zero(); D]; N], [[P::zero(); D]; N]);
         for a in 0..N {
+            let node = |l: usize| self.elements[items[l] as usize][a] as usize * stride;
             for d in 0..D {
-                x[a][d] = P::gather(view.x[d], &places[a]);
-                if MOVING {
-                    v[a][d] = P::gather(view.v[d], &places[a]);
+                if straight {
+                    eight.x[a][d].copy_from_slice(&view.x[d][node(0)..][..WIDTH]);
+                } else {
+                    for l in 0..WIDTH {
+                        eight.x[a][d][l] = view.x[d][node(l)];
+                    }
+                }
+                if moving && straight {
+                    eight.v[a][d].copy_from_slice(&view.v[d][node(0)..][..WIDTH]);
+                } else if moving {
+                    for l in 0..WIDTH {
+                        eight.v[a][d][l] = view.v[d][node(l)];
+                    }
                 }
             }
         }
-        (p, x, v)
     }
 
     /// The energy of all elements, with bits that do not depend on the layout.
@@ -295,25 +276,56 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
     {
         let mut sum = OrderedSum::<P>::new(self.layout);
         let count = self.elements.len();
-        match self.layout {
-            Layout::Single => {
-                for k in (0..count).step_by(WIDTH) {
-                    let mut items = [0u32; WIDTH];
-                    for l in 0..WIDTH {
-                        items[l] = (k + l).min(count - 1) as u32;
-                    }
-                    let (p, x, _) = self.gather::<P, false, D>(view, &items);
-                    sum.add(k, count, L::energy::<P>(&p, &x));
-                }
+        let (step, width) = if self.layout == Layout::Single { (WIDTH, 1) } else { (1, WIDTH) };
+        let mut eight = Eight::new();
+        let mut energy = [0.0; WIDTH];
+        for k in (0..count).step_by(step) {
+            let items: [u32; WIDTH] = core::array::from_fn(|l| (k + l).min(count - 1) as u32);
+            self.read(view, &items, self.layout == Layout::Batch, false, &mut eight);
+            for part in 0..P::PARTS {
+                let (p, x) = (eight.parameters::<P>(part), Eight::<D, N, K>::vectors::<P>(&eight.x, part));
+                L::energy::<P::Part>(&p, &x).store(&mut energy[part * P::Part::NUMBERS..]);
             }
-            Layout::Batch => {
-                for k in 0..count {
-                    let (p, x, _) = self.load::<P, false, D>(view, self.elements[k], WIDTH, k * WIDTH);
-                    sum.add(k * WIDTH, count * WIDTH, L::energy::<P>(&p, &x));
-                }
-            }
+            sum.add(k * width, count * width, P::from_array(energy));
         }
         sum.total()
+    }
+}
+
+/// What the kernel is asked for, of eight elements of one body or of one element of eight bodies.
+///
+/// Kernels need more values at a time than there are registers, and are run register by register.
+struct Eight<const D: usize, const N: usize, const K: usize> {
+    p: [[f64; WIDTH]; K],
+    x: [[[f64; WIDTH]; D]; N],
+    v: [[[f64; WIDTH]; D]; N],
+    power: [f64; WIDTH],
+}
+
+impl<const D: usize, const N: usize, const K: usize> Eight<D, N, K> {
+    fn new() -> Self {
+        let (p, power) = ([[0.0; WIDTH]; K], [0.0; WIDTH]);
+        Eight { p, x: [[[0.0; WIDTH]; D]; N], v: [[[0.0; WIDTH]; D]; N], power }
+    }
+    /// The parameters of one register.
+    #[inline(always)]
+    fn parameters<P: Pack>(&self, part: usize) -> [P::Part; K] {
+        let mut out = [P::Part::zero(); K];
+        for k in 0..K {
+            out[k] = P::Part::load(&self.p[k][part * P::Part::NUMBERS..]);
+        }
+        out
+    }
+    /// One vector per node of one register.
+    #[inline(always)]
+    fn vectors<P: Pack>(vectors: &[[[f64; WIDTH]; D]; N], part: usize) -> [[P::Part; D]; N] {
+        let mut out = [[P::Part::zero(); D]; N];
+        for a in 0..N {
+            for d in 0..D {
+                out[a][d] = P::Part::load(&vectors[a][d][part * P::Part::NUMBERS..]);
+            }
+        }
+        out
     }
 }
 
@@ -409,11 +421,7 @@ impl<L: Kernel<D, N, K>, const D: usize, const N: usize, const K: usize> Work fo
         let blocks = self.stencils.blocks.len() - 1;
         let last = self.tile.range.end.div_ceil(TILE).min(blocks);
         for block in self.tile.range.start / TILE..last {
-            if self.stencils.damped {
-                self.stencils.add_block::<P, true, D>(block, self.view, self.tile);
-            } else {
-                self.stencils.add_block::<P, false, D>(block, self.view, self.tile);
-            }
+            self.stencils.add_block::<P, D>(block, self.view, self.tile);
         }
     }
 }

@@ -108,13 +108,14 @@ pub trait Work {
     fn run<P: Pack>(self) -> Self::Output;
 }
 
+// Functions of their own: callers stay small, and crates that ask for the same work use what one of them has compiled.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
+#[inline(never)]
 fn run_avx512<W: Work>(work: W) -> W::Output {
     work.run::<Registers<crate::x86_64::Avx512, 1>>()
 }
 
-/// A function of its own, so that callers stay small.
 #[cfg(target_arch = "x86_64")]
 #[inline(never)]
 fn run_sse2<W: Work>(work: W) -> W::Output {
@@ -123,6 +124,7 @@ fn run_sse2<W: Work>(work: W) -> W::Output {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2")]
+#[inline(never)]
 fn run_avx2<W: Work>(work: W) -> W::Output {
     work.run::<Registers<crate::x86_64::Avx2, 2>>()
 }

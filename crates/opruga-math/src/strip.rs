@@ -70,6 +70,20 @@ impl<'a, const N: usize> StripMut<'a, N> {
         // SAFETY: see the head of the file.
         unsafe { P::read(self.start[column].add(k)) }
     }
+    /// One part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn load_part<P: Pack>(&self, column: usize, k: usize, part: usize) -> P::Part {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { P::Part::read(self.start[column].add(k + part * P::Part::NUMBERS)) }
+    }
+    /// Writes one part of the eight numbers of a column from place `k` on.
+    #[inline(always)]
+    pub fn store_part<P: Pack>(&mut self, column: usize, k: usize, part: usize, value: P::Part) {
+        assert!(k + WIDTH <= self.length && part < P::PARTS);
+        // SAFETY: see the head of the file.
+        unsafe { value.write(self.start[column].add(k + part * P::Part::NUMBERS)) }
+    }
     /// Writes eight numbers of a column from place `k` on.
     #[inline(always)]
     pub fn store<P: Pack>(&mut self, column: usize, k: usize, value: P) {

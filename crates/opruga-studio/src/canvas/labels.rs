@@ -30,8 +30,9 @@ impl<'a> Named<'a> {
 /// room they are not written.
 pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
     let mut taken = taken.to_vec();
+    let compared = if named.len() <= FEW { named } else { &[] };
     for (place, body) in named.iter().enumerate() {
-        let others = named.iter().enumerate().filter(|(other, _)| named.len() <= FEW && *other != place);
+        let others = compared.iter().enumerate().filter(|(other, _)| *other != place);
         let others: Vec<Rect> = others.map(|(_, other)| other.rect).collect();
         let galley = painter.layout_no_wrap(body.text.to_string(), FontId::proportional(12.0), paper.ink);
         let Some(place) = free(body.rect, body.middle, galley.size(), &taken, &others) else { continue };

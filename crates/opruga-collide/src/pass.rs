@@ -1,0 +1,259 @@
+//! One shape against the nodes of a tile.
+
+use crate::collider::Law;
+use crate::contacts::{Held, Meets};
+use crate::entries::{Found, Ways, arrays, numbers};
+use crate::motion::{Carry, Pose};
+use crate::response::{Face, Meeting, Surface, largest_rounding, meets, respond, rounding};
+use crate::shape::{Shape, close_to};
+use crate::vector::{dot, subtract};
+use opruga_core::contacts::Moved;
+use opruga_math::{Lane, Pack, Register, RepeatStrip, Strip, StripMut, WIDTH, Work, lanes};
+
+/// A shape with the distance that nodes keep from it.
+struct Around<'a, T> {
+    shape: &'a T,
+    thickness: f64,
+}
+
+impl<S: Lane, T: Shape<D>, const D: usize> Surface<S, D> for Around<'_, T> {
+    #[inline(always)]
+    fn find(&self, x: &[S; D], _before: &[S; D], _reach: S) -> (S, [S; D]) {
+        let (gap, normal) = self.shape.gap_and_normal(x);
+        (gap - S::splat(self.thickness), normal)
+    }
+}
+
+/// One shape against the nodes of a tile, eight at a time.
+pub(crate) struct Pass<'a, 'm, T, const D: usize> {
+    pub(crate) shape: T,
+    pub(crate) law: &'a Law,
+    pub(crate) pose: &'a Pose<D>,
+    pub(crate) carry: &'a Carry<D>,
+    pub(crate) moved: &'a mut Moved<'m, D>,
+    pub(crate) held: &'a mut Held,
+    pub(crate) used: usize,
+    pub(crate) meets: Meets,
+}
+
+/// The columns of a tile.
+struct Tile<'a, const D: usize> {
+    x: StripMut<'a, D>,
+    v: StripMut<'a, D>,
+    before: Strip<'a, D>,
+    force: Strip<'a, D>,
+    mass: RepeatStrip<'a>,
+}
+
+impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<P: Pack>(self) -> bool {
+        let (shape, law, used) = (&self.shape, self.law, self.used);
+        let Moved {
+            range,
+            before,
+            x,
+            v,
+            force,
+            mass,
+            h,
+            loss_contact,
+            loss_friction,
+            work_colliders,
+            work_correction,
+            ..
+        } = self.moved;
+        let (start, length) = (range.start, range.len());
+        let mut tile = Tile {
+            x: x.strip_mut(start, length),
+            v: v.strip_mut(start, length),
+            before: Strip::new(before, 0, length),
+            force: Strip::new(force, 0, length),
+            mass: mass.strip(start, length),
+        };
+        // A node that moves so far in a step could come out on the far side of the shape.
+        let far = 0.5 * shape.half_width();
+        let has_far_side = far < f64::INFINITY;
+        let far = far * far;
+
+        // One look at all nodes; mostly that is all. Four packs at once, which need not wait for the four before.
+        let look = Look {
+            shape,
+            carry: self.carry,
+            near: P::splat(law.thickness + largest_rounding(law)),
+            far: P::splat(far),
+            has_far_side,
+        };
+        let lies = self.meets == Meets::WhatItLiesOn;
+        let mut k = 0;
+        // Who lay on the surface may be beside it now.
+        let mut near = lies;
+        while k + 4 * WIDTH <= used && !near {
+            near = look.any_near::<4>(&tile, k, P::first(WIDTH));
+            k += 4 * WIDTH;
+        }
+        while k < used && !near {
+            near = look.any_near::<1>(&tile, k, P::first(used - k));
+            k += WIDTH;
+        }
+        if !near {
+            return false;
+        }
+
+        // The few that are near, register by register: more values at a time than there are registers.
+        let second = SecondLook { shape, law, pose: self.pose, carry: self.carry, h: *h, far, has_far_side, lies };
+        let mut taken = Taken { loss_contact, loss_friction, work: work_colliders, correction: work_correction };
+        let mut touched = false;
+        for k in (0..used).step_by(WIDTH) {
+            for part in 0..P::PARTS {
+                touched |= second.hold_back::<P, P::Part>(&mut tile, k, part, used - k, self.held, &mut taken);
+            }
+        }
+        touched
+    }
+}
+
+/// The first look at the nodes of a tile.
+struct Look<'a, P, T, const D: usize> {
+    shape: &'a T,
+    carry: &'a Carry<D>,
+    near: P,
+    far: P,
+    has_far_side: bool,
+}
+
+impl<P: Pack, T: Shape<D>, const D: usize> Look<'_, P, T, D> {
+    /// Whether any node of `N` packs deserves a second look: near the shape, or fast.
+    #[inline(always)]
+    fn any_near<const N: usize>(&self, tile: &Tile<D>, start: usize, nodes: P::Mask) -> bool {
+        let (mut least, mut most) = (P::splat(f64::INFINITY), P::zero());
+        for n in 0..N {
+            let k = start + n * WIDTH;
+            let x = lanes!(P, d => tile.x.load::<P>(d, k));
+            least = self.shape.gap(&x).smaller(least);
+            if self.has_far_side {
+                let way = subtract(&x, &self.carry.along(&lanes!(P, d => tile.before.load::<P>(d, k))));
+                most = dot(&way, &way).larger(most);
+            }
+        }
+        P::any(P::both(least.less(self.near), nodes))
+            || (self.has_far_side && P::any(P::both(self.far.less(most), nodes)))
+    }
+}
+
+/// What the contacts of a tile have taken and given, for each place in a pack [J].
+struct Taken<'a> {
+    loss_contact: &'a mut [f64; WIDTH],
+    loss_friction: &'a mut [f64; WIDTH],
+    work: &'a mut [f64; WIDTH],
+    correction: &'a mut [f64; WIDTH],
+}
+
+/// Adds to the numbers of one register.
+#[inline(always)]
+fn add_to<R: Register>(sums: &mut [f64; WIDTH], offset: usize, more: R) {
+    let sums = &mut sums[offset..];
+    (R::load(sums) + more).store(sums);
+}
+
+/// The look at nodes that may be touched, and what the touch does to them.
+struct SecondLook<'a, T, const D: usize> {
+    shape: &'a T,
+    law: &'a Law,
+    pose: &'a Pose<D>,
+    carry: &'a Carry<D>,
+    /// The substep [s].
+    h: f64,
+    /// The square of how far a node may go without a look at its way [m²], and whether there is such a limit.
+    far: f64,
+    has_far_side: bool,
+    /// Whether only what lay on the shape is met.
+    lies: bool,
+}
+
+impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
+    /// Holds back the nodes of one register, the part of the pack at `k` of which `count` places are used; says whether it
+    /// touched any.
+    #[inline(always)]
+    fn hold_back<P: Pack<Part = R>, R: Register>(
+        &self,
+        tile: &mut Tile<D>,
+        k: usize,
+        part: usize,
+        count: usize,
+        held: &mut Held,
+        taken: &mut Taken,
+    ) -> bool {
+        let SecondLook { shape, law, lies, .. } = *self;
+        let offset = part * R::NUMBERS;
+        let nodes = R::first(count.saturating_sub(offset));
+        let thickness = R::splat(law.thickness);
+
+        let x = lanes!(R, d => tile.x.load_part::<P>(d, k, part));
+        let close = R::both((shape.gap(&x) - thickness).less(R::splat(largest_rounding(law))), nodes);
+        let from = lanes!(R, d => tile.before.load_part::<P>(d, k, part));
+        let before = self.carry.along(&from);
+        let way = subtract(&x, &before);
+        // Who goes far may come out elsewhere, and who came in by a face may be nearer to another one.
+        let fast = R::both(R::splat(self.far).less(dot(&way, &way)), nodes);
+        let mut asked = R::select(fast, R::one(), R::zero());
+        if lies {
+            let lay = R::splat(close_to(shape, law.thickness)).larger(rounding(law, &before));
+            let on = R::both((shape.gap(&before) - thickness).abs().less_or_equal(lay), nodes);
+            asked = R::select(on, R::one(), R::zero());
+        } else if T::FACES {
+            let inside = R::both((shape.gap(&x) - thickness).less_or_equal(rounding(law, &x)), nodes);
+            asked = R::select(inside, R::one(), asked);
+        }
+        let any_asked = (lies || self.has_far_side) && R::any(R::zero().less(asked));
+        if !any_asked && (lies || !R::any(close)) {
+            return false;
+        }
+        let (mut gap, mut normal) = shape.gap_and_normal(&x);
+        gap -= thickness;
+        let held_before = held.numbers(k, offset);
+        if any_asked {
+            let mut found = Found { gap: numbers(gap), normal: arrays(&normal) };
+            let ways = Ways {
+                ends: [arrays(&before), arrays(&x)],
+                asked: numbers(asked),
+                held: held_before,
+                small: numbers(rounding(law, if lies { &before } else { &x })),
+            };
+            if lies {
+                ways.look_for_supports(shape, law.thickness, &mut found);
+            } else {
+                ways.look_for_entries(shape, law.thickness, &mut found);
+            }
+            gap = R::load(&found.gap);
+            normal = lanes!(R, d => R::load(&found.normal[d]));
+        }
+        let v = lanes!(R, d => tile.v.load_part::<P>(d, k, part));
+        let mass = tile.mass.load_part::<P>(k, part);
+        let obstacle = self.pose.velocity_at(&x);
+        let force = lanes!(R, d => tile.force.load_part::<P>(d, k, part));
+        let (held_before, h) = (R::load(&held_before), R::splat(self.h));
+        let meeting = Meeting { x, v, before, from, force, mass, gap, normal, obstacle, held: held_before, h };
+        let hit = R::both(meets(law, &meeting), nodes);
+        if !R::any(hit) {
+            return false;
+        }
+        held.note(k, offset, R::select(hit, R::one(), R::zero()));
+        let parting = if T::FACES {
+            respond(&Face { x, gap, normal }, law, hit, &meeting)
+        } else {
+            respond(&Around { shape, thickness: law.thickness }, law, hit, &meeting)
+        };
+        for d in 0..D {
+            tile.x.store_part::<P>(d, k, part, R::select(hit, parting.x[d], x[d]));
+            tile.v.store_part::<P>(d, k, part, R::select(hit, parting.v[d], v[d]));
+        }
+        let zero = R::zero();
+        add_to(taken.loss_contact, offset, R::select(hit, parting.loss_contact, zero));
+        add_to(taken.loss_friction, offset, R::select(hit, parting.loss_friction, zero));
+        add_to(taken.work, offset, R::select(hit, parting.work, zero));
+        add_to(taken.correction, offset, R::select(hit, parting.correction, zero));
+        true
+    }
+}
