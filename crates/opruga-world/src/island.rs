@@ -227,11 +227,7 @@ impl<const D: usize> Island<D> {
         }
         for substep in 0..plan.substeps {
             self.system.go_on()?;
-            self.system.time = plan.start + f64::from(substep) * plan.h;
-            self.system.lead_pins(plan.h);
-            if substep == 0 {
-                self.system.take_hold();
-            }
+            self.set_out(plan, substep);
             self.integrator.step(&mut self.system, plan.h)?;
             let done = substep + 1;
             if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {
@@ -248,15 +244,21 @@ impl<const D: usize> Island<D> {
         Err(self.culprit(plan.start).unwrap_or(StepError::Diverged { body: 0, node: 0, time: plan.start, range }))
     }
 
+    /// The system at the beginning of a substep.
+    fn set_out(&mut self, plan: &FramePlan<D>, substep: u32) {
+        self.system.time = plan.start + f64::from(substep) * plan.h;
+        self.system.lead_pins(plan.h);
+        if substep == 0 {
+            self.system.take_hold();
+        }
+    }
+
     /// Repeats the frame, looking at every substep.
     fn name_culprit(&mut self, plan: &FramePlan<D>) -> Option<StepError> {
         self.system.contacts = plan.colliders.map(|c| Arc::clone(c).into_contacts());
         for substep in 0..plan.substeps {
-            let time = plan.start + f64::from(substep) * plan.h;
-            self.system.time = time;
-            if substep == 0 {
-                self.system.take_hold();
-            }
+            self.set_out(plan, substep);
+            let time = self.system.time;
             if let Err(error) = self.integrator.step(&mut self.system, plan.h) {
                 return Some(error);
             }
