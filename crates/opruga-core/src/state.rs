@@ -1,6 +1,6 @@
 //! Where positions and velocities live: one column per coordinate, one body or eight alike bodies side by side.
 
-use opruga_math::{Column, Pack, RepeatStrip, StripMut, WIDTH, lanes};
+use opruga_math::{Column, Pack, Register, RepeatStrip, StripMut, WIDTH, lanes};
 
 /// How the nodes of a block lie in its columns.
 ///
@@ -172,6 +172,15 @@ impl Parameter {
                 Numbers::Repeated(eight) => P::load(&eight.0),
                 Numbers::Each(column) => P::gather(column, places),
             },
+        }
+    }
+    /// The numbers of those of eight items from `offset` on that are computed at once.
+    #[inline(always)]
+    pub fn load_part<R: Register>(&self, items: At, offset: usize) -> R {
+        match (&self.0, items) {
+            (Numbers::Repeated(eight), _) => R::load(&eight.0[offset..]),
+            (Numbers::Each(column), At::Run(place)) => R::load(&column[place + offset..]),
+            (Numbers::Each(column), At::Each(places)) => R::gather(column, &places[offset..]),
         }
     }
     /// The number at one place.

@@ -23,7 +23,7 @@ pub use dual::Dual;
 pub use kernel::{Blocks, Kernel};
 
 use crate::potential::{Definiteness, Potential, Sink, Views};
-use crate::state::{Layout, OrderedSum, Parameter, View};
+use crate::state::{At, Layout, OrderedSum, Parameter, View};
 use crate::tile::{TILE, Tile};
 use core::marker::PhantomData;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
@@ -156,14 +156,17 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
 
         // Forces of all elements into slots.
         let step = if self.layout == Layout::Single { WIDTH } else { 1 };
-        let mut eight = Eight::new();
         for k in (0..count).step_by(step) {
             let items = &self.list[from + k..from + k + step];
-            let straight = self.layout == Layout::Batch || self.straight[(from + k) / WIDTH];
-            self.read(view, items, straight, self.damped, &mut eight);
+            let eight = match self.layout {
+                Layout::Single if !self.straight[(from + k) / WIDTH] => self.scattered(items),
+                _ => self.in_a_row(items[0]),
+            };
+            let mut powers = [0.0; WIDTH];
+            // Register by register: kernels need more values at a time than there are registers.
             for part in 0..P::PARTS {
                 let offset = part * P::Part::NUMBERS;
-                let (p, x) = (eight.parameters::<P>(part), Eight::<D, N, K>::vectors::<P>(&eight.x, part));
+                let (p, x) = (eight.parameters(&self.parameters, offset), eight.read::<P::Part, D>(&view.x, offset));
                 let gradient = L::gradient::<P::Part>(&p, &x);
                 let mut force = [[P::Part::zero(); D]; N];
                 for a in 0..N {
@@ -172,13 +175,13 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
                     }
                 }
                 if self.damped {
-                    let (drag, power) = L::damping::<P::Part>(&p, &x, &Eight::<D, N, K>::vectors::<P>(&eight.v, part));
+                    let (drag, power) = L::damping::<P::Part>(&p, &x, &eight.read::<P::Part, D>(&view.v, offset));
                     for a in 0..N {
                         for d in 0..D {
                             force[a][d] += drag[a][d];
                         }
                     }
-                    power.store(&mut eight.power[offset..]);
+                    power.store(&mut powers[offset..]);
                 }
                 for a in 0..N {
                     for d in 0..D {
@@ -194,7 +197,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
                     let filling = step > 1 && l > 0 && item == items[l - 1];
                     let owner = self.elements[item as usize][0] as usize * stride;
                     if own.contains(&owner) && !filling {
-                        tile.power[l] += eight.power[l];
+                        tile.power[l] += powers[l];
                     }
                 }
             }
@@ -229,43 +232,25 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         }
     }
 
-    /// Copies what the kernel asks of eight elements of one body, wherever they lie, or of one element of eight bodies.
-    ///
-    /// `straight` says that the first of `items` stands for all: their numbers lie one after the other.
-    fn read<const D: usize>(
-        &self,
-        view: &View<D>,
-        items: &[u32],
-        straight: bool,
-        moving: bool,
-        eight: &mut Eight<D, N, K>,
-    ) {
+    /// Eight neighbouring elements from one on, whose nodes are neighbours too, or one element of eight bodies.
+    #[inline(always)]
+    fn in_a_row(&self, first: u32) -> Eight<'_, N> {
         let stride = self.layout.stride();
-        let item = |l: usize| if straight { items[0] as usize * stride + l } else { items[l] as usize };
-        for k in 0..K {
-            for l in 0..WIDTH {
-                eight.p[k][l] = self.parameters[k].at(item(l));
+        let nodes = self.elements[first as usize].map(|node| node as usize * stride);
+        Eight { items: At::Run(first as usize * stride), nodes: Nodes::InARow(nodes) }
+    }
+
+    /// Eight elements of one body, wherever they lie.
+    #[inline(always)]
+    fn scattered<'a>(&self, items: &'a [u32]) -> Eight<'a, N> {
+        let mut nodes = [[0u32; WIDTH]; N];
+        for l in 0..WIDTH {
+            let element = &self.elements[items[l] as usize];
+            for a in 0..N {
+                nodes[a][l] = element[a];
             }
         }
-        for a in 0..N {
-            let node = |l: usize| self.elements[items[l] as usize][a] as usize * stride;
-            for d in 0..D {
-                if straight {
-                    eight.x[a][d].copy_from_slice(&view.x[d][node(0)..][..WIDTH]);
-                } else {
-                    for l in 0..WIDTH {
-                        eight.x[a][d][l] = view.x[d][node(l)];
-                    }
-                }
-                if moving && straight {
-                    eight.v[a][d].copy_from_slice(&view.v[d][node(0)..][..WIDTH]);
-                } else if moving {
-                    for l in 0..WIDTH {
-                        eight.v[a][d][l] = view.v[d][node(l)];
-                    }
-                }
-            }
-        }
+        Eight { items: At::Each(items), nodes: Nodes::Scattered(nodes) }
     }
 
     /// The energy of all elements, with bits that do not depend on the layout.
@@ -277,14 +262,17 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
         let mut sum = OrderedSum::<P>::new(self.layout);
         let count = self.elements.len();
         let (step, width) = if self.layout == Layout::Single { (WIDTH, 1) } else { (1, WIDTH) };
-        let mut eight = Eight::new();
         let mut energy = [0.0; WIDTH];
         for k in (0..count).step_by(step) {
             let items: [u32; WIDTH] = core::array::from_fn(|l| (k + l).min(count - 1) as u32);
-            self.read(view, &items, self.layout == Layout::Batch, false, &mut eight);
+            let eight = match self.layout {
+                Layout::Single => self.scattered(&items),
+                Layout::Batch => self.in_a_row(items[0]),
+            };
             for part in 0..P::PARTS {
-                let (p, x) = (eight.parameters::<P>(part), Eight::<D, N, K>::vectors::<P>(&eight.x, part));
-                L::energy::<P::Part>(&p, &x).store(&mut energy[part * P::Part::NUMBERS..]);
+                let offset = part * P::Part::NUMBERS;
+                let (p, x) = (eight.parameters(&self.parameters, offset), eight.read::<P::Part, D>(&view.x, offset));
+                L::energy::<P::Part>(&p, &x).store(&mut energy[offset..]);
             }
             sum.add(k * width, count * width, P::from_array(energy));
         }
@@ -292,37 +280,46 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
     }
 }
 
-/// What the kernel is asked for, of eight elements of one body or of one element of eight bodies.
-///
-/// Kernels need more values at a time than there are registers, and are run register by register.
-struct Eight<const D: usize, const N: usize, const K: usize> {
-    p: [[f64; WIDTH]; K],
-    x: [[[f64; WIDTH]; D]; N],
-    v: [[[f64; WIDTH]; D]; N],
-    power: [f64; WIDTH],
+/// Eight elements of one body, or one of eight bodies.
+struct Eight<'a, const N: usize> {
+    items: At<'a>,
+    nodes: Nodes<N>,
 }
 
-impl<const D: usize, const N: usize, const K: usize> Eight<D, N, K> {
-    fn new() -> Self {
-        let (p, power) = ([[0.0; WIDTH]; K], [0.0; WIDTH]);
-        Eight { p, x: [[[0.0; WIDTH]; D]; N], v: [[[0.0; WIDTH]; D]; N], power }
-    }
-    /// The parameters of one register.
+/// The places of their nodes: the first of eight neighbours, or each.
+enum Nodes<const N: usize> {
+    InARow([usize; N]),
+    Scattered([[u32; WIDTH]; N]),
+}
+
+impl<const N: usize> Eight<'_, N> {
+    /// The parameters of those from `offset` on.
     #[inline(always)]
-    fn parameters<P: Pack>(&self, part: usize) -> [P::Part; K] {
-        let mut out = [P::Part::zero(); K];
+    fn parameters<R: Register, const K: usize>(&self, parameters: &[Parameter; K], offset: usize) -> [R; K] {
+        let mut out = [R::zero(); K];
         for k in 0..K {
-            out[k] = P::Part::load(&self.p[k][part * P::Part::NUMBERS..]);
+            out[k] = parameters[k].load_part(self.items, offset);
         }
         out
     }
-    /// One vector per node of one register.
+    /// A vector of every node of those from `offset` on.
     #[inline(always)]
-    fn vectors<P: Pack>(vectors: &[[[f64; WIDTH]; D]; N], part: usize) -> [[P::Part; D]; N] {
-        let mut out = [[P::Part::zero(); D]; N];
-        for a in 0..N {
-            for d in 0..D {
-                out[a][d] = P::Part::load(&vectors[a][d][part * P::Part::NUMBERS..]);
+    fn read<R: Register, const D: usize>(&self, columns: &[&[f64]; D], offset: usize) -> [[R; D]; N] {
+        let mut out = [[R::zero(); D]; N];
+        match &self.nodes {
+            Nodes::InARow(first) => {
+                for a in 0..N {
+                    for d in 0..D {
+                        out[a][d] = R::load(&columns[d][first[a] + offset..]);
+                    }
+                }
+            }
+            Nodes::Scattered(places) => {
+                for a in 0..N {
+                    for d in 0..D {
+                        out[a][d] = R::gather(columns[d], &places[a][offset..]);
+                    }
+                }
             }
         }
         out
