@@ -264,22 +264,23 @@ fn while_time_stands_still_a_press_selects_a_body_and_leaves_what_was_recorded()
     window.until("a pull", |shown| shown.recorded == 1 && shown.latest == 5);
 }
 
-/// A body that is held while time stands still is pulled from where time begins to pass.
+/// A body that is held while time stands still is pulled from where time begins to pass, also where something was undone before.
 #[test]
 fn a_body_that_is_held_is_pulled_when_time_begins_to_pass() {
-    let mut window = Window::open("ball", SIZE);
-    let top = top_of(&window);
-    window.pointer(top);
-    window.button(top, PointerButton::Primary, true, Modifiers::NONE);
-    window.studio().ask(Request::Play(true));
-    for _ in 0..200 {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-        window.frames(1);
-        if window.shown().recorded == 1 {
-            break;
+    for undoes in [false, true] {
+        let mut window = Window::open("ball", SIZE);
+        let top = top_of(&window);
+        if undoes {
+            window.drag(&[top, top], PointerButton::Primary, Modifiers::SHIFT);
+            window.until("a pin", |shown| shown.recorded == 1);
+            window.studio().ask(Request::Undo);
+            window.until("that it is undone", |shown| shown.recorded == 0);
         }
+        window.pointer(top);
+        window.button(top, PointerButton::Primary, true, Modifiers::NONE);
+        window.studio().ask(Request::Play(true));
+        window.until("a pull", |shown| shown.recorded == 1 && shown.frames > 5);
+        window.studio().ask(Request::Play(false));
+        window.button(top, PointerButton::Primary, false, Modifiers::NONE);
     }
-    assert_eq!(window.shown().recorded, 1);
-    window.studio().ask(Request::Play(false));
-    window.button(top, PointerButton::Primary, false, Modifiers::NONE);
 }
