@@ -277,3 +277,42 @@ fn vast_shapes_and_angles_are_refused_at_their_field() {
         assert_eq!(code, 0, "{said}");
     }
 }
+
+/// Three squares in a row, each of a material of its own by the names of a mesh file: a force of 6 N through 1 m lengthens them by 6 (1/100 +
+/// 1/200 + 1/400) m. Where one has no material, that is said once, of all models together.
+#[test]
+fn materials_by_groups_of_a_mesh_file_stretch_in_series_and_a_missing_one_is_one_error() {
+    let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"soft\"\n2 2 \"firm\"\n2 3 \"hard\"\n$EndPhysicalNames\n\
+                $Nodes\n8\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 3 0 0\n5 0 1 0\n6 1 1 0\n7 2 1 0\n8 3 1 0\n$EndNodes\n\
+                $Elements\n3\n1 3 2 1 1 1 2 6 5\n2 3 2 2 2 2 3 7 6\n3 3 2 3 3 3 4 8 7\n$EndElements\n";
+    let model = |(group, modulus): &(&str, f64)| {
+        format!(
+            "{{ kind = \"fem\", material = \"linear\", youngs_modulus = {modulus}, poissons_ratio = 0.0, cells = \"{group}\" }}"
+        )
+    };
+    let scene = |materials: &[(&str, f64)]| {
+        let models: Vec<String> = materials.iter().map(model).collect();
+        let body = format!(
+            "[[body]]\nname = \"b\"\ndensity = 1.0\nshape = {{ kind = \"mesh\", file = \"bar.msh\" }}\nmodels = [{}]\n\
+             pin = [{{ select = {{ nodes = [0, 4] }} }}]\n\
+             [[load]]\nkind = \"force\"\nbody = \"b\"\nselect = {{ nodes = [3, 7] }}\nvalue = [3.0, 0.0]\n",
+            models.join(", ")
+        );
+        plane(STATICS, &body).replace("[0.0, -9.81]", "[0.0, 0.0]")
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("bar.msh"), mesh).expect("a mesh");
+    write(folder.path(), &scene(&[("soft", 100.0), ("firm", 200.0), ("hard", 400.0)]));
+    summary(folder.path(), &["run", "s.toml", "--out", "o"]);
+    let table = std::fs::read_to_string(folder.path().join("o/final.csv")).expect("a table");
+    let end: f64 = table.lines().nth(4).and_then(|row| row.split(',').nth(2)).and_then(|x| x.parse().ok()).expect("x");
+    assert!((end - 3.105).abs() < 1e-9, "{end}: {table}");
+
+    write(folder.path(), &scene(&[("soft", 100.0), ("firm", 200.0)]));
+    let said = said(&opruga(folder.path(), &["check", "s.toml"]));
+    assert_eq!(said.matches("error[").count(), 1, "{said}");
+    assert!(
+        said.contains("1 of 3 cells, the first of them cell 2, are in none of the groups `soft`, `firm`"),
+        "{said}"
+    );
+}

@@ -58,11 +58,12 @@ impl<const D: usize> World<D> {
             let place = problems.len();
             for model in &body.models {
                 let alone = BodyBlueprint { models: vec![model.clone()], pins: Vec::new(), ..body.clone() };
-                problems.extend(
-                    refused(part(vec![alone], Vec::new(), Vec::new())).filter(
-                        |error| matches!(error, WorldError::Build { source, .. } if source.kind == model.kind()),
-                    ),
-                );
+                // Cells that it leaves to the others are no fault of its own.
+                let own = |error: &WorldError| {
+                    matches!(error, WorldError::Build { source, .. } if source.kind == model.kind())
+                        && error.code() != "model.uncovered_cells"
+                };
+                problems.extend(refused(part(vec![alone], Vec::new(), Vec::new())).filter(own));
             }
             if !problems[place..].contains(&first) {
                 problems.insert(place, first);
