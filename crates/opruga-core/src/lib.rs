@@ -2,6 +2,7 @@
 
 pub mod accumulator;
 mod advance;
+pub mod break_off;
 pub mod check;
 pub mod contacts;
 pub mod error;

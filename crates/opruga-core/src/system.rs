@@ -85,8 +85,8 @@ pub struct Member<const D: usize> {
 pub struct System<const D: usize> {
     /// The vector instructions in force.
     pub simd: Simd,
-    /// Set from outside, it ends a step that takes long, with [`crate::error::StepError::BrokenOff`].
-    pub break_off: std::sync::Arc<std::sync::atomic::AtomicBool>,
+    /// What ends a step that takes long, with [`crate::error::StepError::BrokenOff`].
+    pub break_off: std::sync::Arc<crate::break_off::BreakOff>,
     /// Threads that the work on this system may be spread over; it then runs in a pool of them. They change no bits.
     pub threads: usize,
     /// One body or eight.
@@ -190,7 +190,7 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// [`StepError::BrokenOff`] where it shall end: what was made of it is to be taken back.
     pub fn go_on(&self) -> Result<(), StepError> {
-        match self.break_off.load(std::sync::atomic::Ordering::Relaxed) {
+        match self.break_off.is_wanted() {
             true => Err(StepError::BrokenOff),
             false => Ok(()),
         }

@@ -6,7 +6,7 @@ use crate::engine;
 use crate::measure::Watch;
 use crate::runner::Copied;
 use crate::said::Said;
-use crate::session::{Request, Session};
+use crate::session::{self, Request, Session};
 use crate::share;
 use crate::{browser, shown::Severity};
 use eframe::{Renderer, WebOptions, WebRunner};
@@ -19,6 +19,10 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
+
+/// How long a frame may take before the person is asked whether it shall be waited for [s]: browsers offer to end pages that hear nothing
+/// for some five seconds.
+const PATIENCE: f64 = 2.0;
 
 /// The studio on a canvas of a page. It outlives what it is drawn on: a graphics device may be lost.
 #[wasm_bindgen]
@@ -129,9 +133,15 @@ impl Screen {
 
 /// The scene of the address; where that is refused, the first scene, and why.
 fn first_session() -> Result<(Session, Option<Said>), Said> {
+    let open = |name: &str, text: &str, files| {
+        let options = Options { break_off: session::by_the_clock(), ..Options::default() };
+        let mut session = Session::open(name, text, files, options)?;
+        session.wait_for_frames(PATIENCE);
+        Ok(session)
+    };
     let opened = share::of_fragment(&browser::fragment()).and_then(|shared| {
         let Some(share::Shared { name, text, files }) = shared else { return Ok(None) };
-        Session::open(&name, &text, files, Options::default()).map(Some)
+        open(&name, &text, files).map(Some)
     });
     let refused = match opened {
         Ok(Some(session)) => return Ok((session, None)),
@@ -139,7 +149,7 @@ fn first_session() -> Result<(Session, Option<Said>), Said> {
         Err(refused) => Some(refused),
     };
     let text = opruga::scenes::find(FIRST_SCENE).unwrap_or_default();
-    Session::open(FIRST_SCENE, text, opruga::scenes::files(), Options::default()).map(|session| (session, refused))
+    open(FIRST_SCENE, text, opruga::scenes::files()).map(|session| (session, refused))
 }
 
 impl Page {

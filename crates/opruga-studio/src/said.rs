@@ -67,6 +67,8 @@ pub enum Said {
     RecordingEnds(f64),
     /// What was done begins a new course at this time of the recording \[s\].
     OwnCourse(f64),
+    /// A frame takes longer than so many seconds, and nothing can be asked for meanwhile.
+    TakesLong(f64),
     /// There is no body of this name.
     NoBody(String),
     /// A body of this name has no shape that could be changed.

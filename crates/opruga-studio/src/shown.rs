@@ -157,6 +157,8 @@ pub enum Offer {
     Coarser(String, &'static str, i64),
     /// Go on behind the end of a recording.
     GoOn,
+    /// Wait for frames up to so long \[s\], and do again what was broken off.
+    Wait(f64),
 }
 
 /// A message.

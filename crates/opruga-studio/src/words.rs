@@ -231,6 +231,7 @@ words! {
     no: "no", "ne";
     unsaid: "default", "inače";
     go_on: "Go on as a new course", "Nastavi kao novi tijek";
+    wait_longer: "Wait for up to {} s", "Čekaj do {} s";
     recording_until: "recording until", "snimka do";
     recording_hint: "Up to the mark this is what was recorded; what lies behind it was computed since", "Do oznake je ono što je snimljeno; što je iza nje izračunato je poslije";
     warning: "Warning", "Upozorenje";

@@ -36,5 +36,6 @@ pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
+pub use opruga_core::break_off::BreakOff;
 pub use registry::Registry;
 pub use world::{BodyHandle, Options, Warning, World};

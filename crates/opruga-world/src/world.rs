@@ -13,6 +13,7 @@ use crate::looks::Looks;
 use crate::rebuild::Touched;
 use crate::registry::Registry;
 use opruga_collide::Colliders;
+use opruga_core::break_off::BreakOff;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::stability::Stability;
@@ -21,7 +22,7 @@ use opruga_core::threads::together;
 use opruga_math::Simd;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The largest number of threads.
@@ -38,9 +39,9 @@ pub struct Options {
     pub allow_unstable: bool,
     /// Alike bodies are stepped eight at a time.
     pub batches: bool,
-    /// Set from outside, it ends a frame that takes long within a substep, with [`WorldError::BrokenOff`] and at the last good frame. It
-    /// is taken back from outside too.
-    pub break_off: Arc<AtomicBool>,
+    /// What ends a frame that takes long within a substep, with [`WorldError::BrokenOff`] and at the last good frame: asked for, and
+    /// no longer asked for, from outside.
+    pub break_off: Arc<BreakOff>,
 }
 
 impl Default for Options {

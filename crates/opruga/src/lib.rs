@@ -36,7 +36,9 @@ pub use opruga_math::Simd;
 pub use opruga_mesh as mesh;
 pub use opruga_world as world;
 pub use opruga_world::shapes;
-pub use opruga_world::{BodyHandle, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint};
+pub use opruga_world::{
+    BodyHandle, BreakOff, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint,
+};
 
 /// What scenes can name: the models, integrators and colliders of this library.
 pub fn catalogue() -> io::Catalogue {

@@ -3,9 +3,9 @@
 
 mod common;
 
-use opruga::{Options, World, WorldError};
+use opruga::{BreakOff, Options, World, WorldError};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A cantilever of finite elements under its weight.
 fn scene(integrator: &str, substeps: u32) -> opruga::blueprint::Blueprint<2> {
@@ -19,15 +19,15 @@ fn scene(integrator: &str, substeps: u32) -> opruga::blueprint::Blueprint<2> {
 }
 
 /// A world in which a law that does nothing counts how often it is asked; at a number of times that break the frame off.
-fn world(integrator: &str, substeps: u32, at: u32) -> (World<2>, Arc<AtomicBool>, Arc<AtomicU32>) {
-    let break_off = Arc::new(AtomicBool::new(false));
+fn world(integrator: &str, substeps: u32, at: u32) -> (World<2>, Arc<BreakOff>, Arc<AtomicU32>) {
+    let break_off = Arc::new(BreakOff::default());
     let options = Options { break_off: Arc::clone(&break_off), ..Options::default() };
     let mut world = World::new(scene(integrator, substeps), options).expect("a world");
     let asked = Arc::new(AtomicU32::new(0));
     let (count, flag) = (Arc::clone(&asked), Arc::clone(&break_off));
     let law = move |_, _, _, _| {
         if count.fetch_add(1, Ordering::Relaxed) + 1 == at {
-            flag.store(true, Ordering::Relaxed);
+            flag.ask(true);
         }
         [0.0; 2]
     };
@@ -68,7 +68,7 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         assert_eq!((broken.frames(), broken.state_hash()), (u64::from(good), hash), "{rule}");
         // As long as it is wanted nothing goes on.
         assert_eq!(broken.frame(), Err(WorldError::BrokenOff), "{rule}");
-        flag.store(false, Ordering::Relaxed);
+        flag.ask(false);
         (0..2).for_each(|_| broken.frame().expect("it goes on"));
         assert_eq!(broken.state_hash(), whole.state_hash(), "{rule}");
         assert_eq!(broken.energy(), whole.energy(), "{rule}");

@@ -81,6 +81,7 @@ impl Trial {
         self.phone()?;
         self.browser.size([1280, 720], 1.0, false)?;
         self.slows_down_honestly()?;
+        self.asks_about_long_frames()?;
         self.refuses_what_no_memory_holds()?;
         self.says_where_nothing_draws()?;
         self.goes_on_on_another_device()?;

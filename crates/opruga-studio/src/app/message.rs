@@ -197,6 +197,7 @@ impl Studio {
                                         words.take_coarser().replace("{}", &format!("{field} {value}"))
                                     }
                                     Offer::GoOn => words.go_on().to_string(),
+                                    Offer::Wait(seconds) => words.wait_longer().replace("{}", &seconds.to_string()),
                                 };
                                 if ui.button(name).clicked() {
                                     asks.push(Request::Accept(offer.clone()));

@@ -3,7 +3,7 @@
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
 use crate::shown::Shown;
-use std::sync::atomic::{AtomicBool, Ordering};
+use opruga::BreakOff;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ pub struct Link {
     /// When the thread began what it does now; none while it waits.
     since: Arc<Mutex<Option<Instant>>>,
     /// Ends a frame that takes long.
-    break_off: Arc<AtomicBool>,
+    break_off: Arc<BreakOff>,
 }
 
 /// Pictures that the thread has made and somebody may still look at. They are taken apart here once nobody does: to free what a
@@ -63,7 +63,7 @@ impl Link {
     pub fn ask(&self, request: Request) {
         // The thread takes this back once it has heard of what comes next.
         if request.breaks_off() && self.busy().is_some_and(|busy| busy > PATIENCE) {
-            self.break_off.store(true, Ordering::Relaxed);
+            self.break_off.ask(true);
         }
         // Where the thread has ended there is nobody to ask: the last picture stays.
         let _ = self.asks.send(Ask::Do(request));
@@ -115,7 +115,7 @@ fn run(
             }
         };
         set(Some(Instant::now()));
-        break_off.store(false, Ordering::Relaxed);
+        break_off.ask(false);
         let news = course.turn(first.into_iter().chain(asked.try_iter()), BUDGET);
         set(None);
         if let Some(shown) = news {

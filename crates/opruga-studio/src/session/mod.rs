@@ -10,6 +10,7 @@ mod edits;
 mod ends;
 mod offers;
 mod opening;
+mod patience;
 mod pointer;
 mod recorded;
 mod seen;
@@ -20,6 +21,7 @@ mod travel;
 
 pub use edits::{Edit, Placed};
 pub use offers::STEADY;
+pub use patience::by_the_clock;
 pub use pointer::Grip;
 
 use crate::differences::{Difference, add_difference};
@@ -36,9 +38,9 @@ use crate::words::Language;
 use opruga::core::spec::{Value, Values};
 use opruga::io::Files;
 use opruga::{Options, WorldError};
+use patience::Patience;
 use pointer::Held;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
@@ -177,8 +179,9 @@ pub struct Session {
     ends: ends::Ends,
     /// A mark of the text of the scene as it was opened or saved.
     clean: u64,
-    /// What was refused because its step was too long.
+    /// What was refused because its step was too long, or was broken off because a frame of it took too long.
     refused: Option<Request>,
+    patience: Patience,
     /// The recording that it was opened from.
     recording: Option<recorded::Viewed>,
     /// The session before another scene was opened, where something had been done in it.
@@ -241,6 +244,7 @@ impl Session {
             opened: 1,
             replaced: 0,
             refused: None,
+            patience: Patience::ENDLESS,
             recording: None,
             before: None,
         };
@@ -326,8 +330,8 @@ impl Session {
             Ok(()) if edits && self.messages == before => {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
-            // Who broke it off has asked for something else.
-            Ok(()) | Err(Said::World(WorldError::BrokenOff)) => {}
+            Ok(()) => {}
+            Err(Said::World(WorldError::BrokenOff)) => self.broken_off(again),
             Err(Said::World(error)) => self.refuse(&error, Some(again)),
             Err(said) => self.tell(Severity::Refused, said, None),
         }
@@ -344,7 +348,7 @@ impl Session {
                     self.arrive();
                 } else if let Err(error) = self.frame() {
                     if error == WorldError::BrokenOff {
-                        return;
+                        return self.broken_off(Request::Seek(goal));
                     }
                     self.goal = None;
                     self.refuse(&error, None);
@@ -366,11 +370,13 @@ impl Session {
             self.frame().map(|()| clock().saturating_sub(start)).map_err(Some)
         });
         self.pacing = pacing;
-        if let Err(Some(error)) = outcome
-            && error != WorldError::BrokenOff
-        {
-            self.playing = false;
-            self.refuse(&error, None);
+        match outcome {
+            Err(Some(WorldError::BrokenOff)) => self.broken_off(Request::Play(true)),
+            Err(Some(error)) => {
+                self.playing = false;
+                self.refuse(&error, None);
+            }
+            Ok(_) | Err(None) => {}
         }
     }
 
@@ -382,6 +388,7 @@ impl Session {
             return Ok(());
         }
         self.lead_held();
+        self.look_at_the_clock();
         self.engine.frame()?;
         self.latest = self.latest.max(self.engine.frames());
         self.keep();
@@ -427,11 +434,6 @@ impl Session {
     /// In what the scene on the right differs, where there is one.
     pub fn differences(&self) -> Option<&[Difference]> {
         self.differences.as_deref()
-    }
-
-    /// Set from outside, it ends a frame that takes long.
-    pub fn break_off(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.options.break_off)
     }
 
     /// Whether anything was edited or recorded since it was opened or saved.

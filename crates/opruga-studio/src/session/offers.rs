@@ -77,6 +77,10 @@ impl Session {
                     _ => Ok(()),
                 }
             }
+            Offer::Wait(seconds) => {
+                self.wait_longer(*seconds);
+                Ok(())
+            }
             Offer::GoOn => {
                 self.leave_the_recording(self.latest);
                 self.playing = true;

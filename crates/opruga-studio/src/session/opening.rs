@@ -25,7 +25,7 @@ impl Session {
     fn go_over_to(&mut self, mut next: Session, playing: bool) {
         self.release();
         (next.show, next.speed, next.playing) = (self.show, self.speed, playing);
-        (next.opened, next.messages) = (self.opened + 1, self.messages);
+        (next.opened, next.messages, next.patience) = (self.opened + 1, self.messages, self.patience.anew());
         let before = std::mem::replace(self, next);
         // One way back and no more: every session holds its states.
         let worked_on = before.document.commands() > before.own_commands || !before.undo.is_empty();

@@ -116,6 +116,13 @@ impl Language {
                 "From t = {time:.2} s on this is a new course; the file of the recording stays as it is",
                 "Od t = {time:.2} s ovo je novi tijek; datoteka snimke ostaje kakva jest"
             ),
+            Said::TakesLong(seconds) => either!(
+                self,
+                "A frame takes longer than {seconds} s, and nothing can be asked for meanwhile: time stands at the last good frame. \
+                 Fewer substeps or vertices take less; the program with a window and `opruga run` are not bound by this",
+                "Sličica traje dulje od {seconds} s, a dotle se ništa ne može tražiti: vrijeme stoji na zadnjoj dobroj sličici. \
+                 Manje podkoraka ili vrhova traje kraće; program s prozorom i `opruga run` nisu time vezani"
+            ),
             Said::NoBody(name) => either!(self, "there is no body `{name}`", "nema tijela `{name}`"),
             Said::NoShape(name) => {
                 either!(self, "body `{name}` has no shape to change", "tijelo `{name}` nema oblik koji bi se mijenjao")

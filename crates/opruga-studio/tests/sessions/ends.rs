@@ -6,8 +6,8 @@ use opruga::core::spec::Value;
 use opruga::io::Files;
 use opruga_studio::runner::{Copied, Link};
 use opruga_studio::said::Said;
-use opruga_studio::session::{Edit, Request, Session};
-use opruga_studio::shown::{Severity, Show};
+use opruga_studio::session::{Edit, Request, Session, by_the_clock};
+use opruga_studio::shown::{Offer, Severity, Show};
 use std::time::{Duration, Instant};
 
 fn of(text: &str) -> Session {
@@ -152,4 +152,45 @@ fn a_frame_that_takes_long_is_broken_off_for_what_cannot_wait_and_made_again_lat
     link.ask(Request::Open { name: "ball".into(), text, files });
     until("another scene moves", &|| link.shown().name == "ball" && link.shown().frames > 3);
     assert!(link.shown().message.is_none());
+}
+
+#[test]
+fn where_nobody_can_be_asked_meanwhile_a_frame_that_takes_long_ends_by_the_clock_and_the_person_is_asked() {
+    // Minutes of steps in one frame.
+    let text = CALM.replace("substeps = 40", "substeps = 400000").replace("cells = [4, 4]", "cells = [40, 40]");
+    let options = Options { break_off: by_the_clock(), ..Options::default() };
+    let mut session = Session::open("it", &text, Files::default(), options).expect("it opens");
+    session.wait_for_frames(0.25);
+    let asked = |session: &mut Session| {
+        let shown = session.shown();
+        let message = shown.message.expect("a message");
+        assert_eq!((shown.playing, shown.frames, message.severity), (false, 0, Severity::Refused));
+        (message.said, message.offer.expect("an offer"))
+    };
+    session.handle(Request::Play(true));
+    let begin = Instant::now();
+    session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
+    assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
+    assert_eq!(asked(&mut session), (Said::TakesLong(0.25), Offer::Wait(1.0)));
+    // It is waited for longer, for what was wanted, and still in vain; a single step waits as long then.
+    session.handle(Request::Accept(Offer::Wait(1.0)));
+    assert!(session.shown().playing && session.shown().message.is_none());
+    session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
+    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    session.handle(Request::Step);
+    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    // What is on the way to a moment is broken off as well.
+    session.handle(Request::Seek(3));
+    session.tick(Duration::ZERO, Duration::from_millis(8), &|| begin.elapsed());
+    assert!(!session.is_seeking());
+    assert_eq!(asked(&mut session), (Said::TakesLong(1.0), Offer::Wait(4.0)));
+    // Fewer substeps take no time, and nothing is asked.
+    session.handle(Request::Set("time.substeps".into(), Value::Integer(40)));
+    no_refusal(&mut session);
+    pass(&mut session, 2);
+    assert!(session.shown().message.is_none());
+    // Another scene is waited for as the first one was.
+    session.handle(Request::Open { name: "it".into(), text, files: Files::default() });
+    session.handle(Request::Step);
+    assert_eq!(asked(&mut session).0, Said::TakesLong(0.25));
 }

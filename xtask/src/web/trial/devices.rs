@@ -38,6 +38,22 @@ const DIFFER: &str = "async (first, second) => { \
     for (let k = 0; k < a.length; k += 4) \
       count += [0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 48); \
     return 4 * count / a.length; }";
+/// A scene of which one frame takes minutes.
+const LONG: &str = r#"
+format = "opruga-1"
+dimension = 2
+[time]
+seconds = 1.0
+frame = 0.02
+substeps = 400000
+[integrator]
+kind = "symplectic_euler"
+[[body]]
+name = "square"
+mass = 1.0
+shape = { kind = "grid", corner = [0.0, 0.0], size = [1.0, 1.0], cells = [40, 40] }
+models = [{ kind = "fem", youngs_modulus = 100.0, poissons_ratio = 0.3 }]
+"#;
 /// The letters of a picture in which nothing is drawn are fewer.
 const FEWEST_LETTERS: usize = 60_000;
 
@@ -173,6 +189,24 @@ impl Trial {
         let told = told.iter().sum::<f64>() / told.len() as f64;
         println!("a thousand balls: {measured:.2} of real time, {told:.2} as the page says");
         holds((measured - told).abs() < 0.1 + 0.25 * measured, || format!("{measured} is told as {told}"))
+    }
+
+    /// A frame of minutes stands in nobody's way: the page gives it up, says so, and hears what comes next.
+    pub(super) fn asks_about_long_frames(&mut self) -> Outcome {
+        self.fresh("")?;
+        self.browser.value(&format!("opruga.show('long', {})", json!(LONG)))?;
+        let says = |state: &Value, seconds: &str| {
+            let said = state["message"].as_str().unwrap_or_default();
+            state["name"] == "long" && state["playing"] == false && said.contains(seconds)
+        };
+        self.until("a long frame is given up", |state| says(state, "longer than 2 s"))?;
+        self.keep_picture("web-long-frame")?;
+        self.click("Wait for up to 8 s")?;
+        self.until("it was waited for", |state| says(state, "longer than 8 s"))?;
+        self.browser.value("location.hash = '#ball'")?;
+        self.until("another scene", |state| state["name"] == "ball" && state["frames"].as_u64() > Some(5))?;
+        println!("frames of minutes are given up after 2 s, or 8 s where the person waits");
+        Ok(())
     }
 
     /// Opens the page anew, without what the last one kept.
