@@ -2,14 +2,14 @@
 
 use crate::error::DrawError;
 use crate::image::Image;
+use crate::palette::Palette;
 use std::io::Write;
 
 /// Writes an animated GIF frame by frame.
 pub struct GifWriter<W: Write> {
     encoder: gif::Encoder<W>,
     size: [u32; 2],
-    /// The palette entry of every colour of five bits a channel.
-    nearest: Vec<u8>,
+    palette: Palette,
     last: Option<Vec<u8>>,
     /// The length of a frame in hundredths of a second, which are what GIF counts.
     delay: f64,
@@ -22,18 +22,8 @@ impl<W: Write> core::fmt::Debug for GifWriter<W> {
     }
 }
 
-/// The number of a colour at five bits a channel.
-fn coarse(pixel: &[u8]) -> usize {
-    (usize::from(pixel[0] >> 3) << 10) | (usize::from(pixel[1] >> 3) << 5) | usize::from(pixel[2] >> 3)
-}
-
-/// The middle of a coarse colour.
-fn fine(number: usize) -> [i32; 3] {
-    [number >> 10, (number >> 5) & 31, number & 31].map(|c| (c as i32 * 255 + 15) / 31)
-}
-
 impl<W: Write> GifWriter<W> {
-    /// Begins an animation that repeats for ever; the palette holds the 256 most frequent colours of some sample frames.
+    /// Begins an animation that repeats for ever; its palette is made for some sample frames.
     ///
     /// # Errors
     /// [`DrawError`] if there is no sample, an image is larger than a GIF may be, or `out` cannot be written.
@@ -46,31 +36,12 @@ impl<W: Write> GifWriter<W> {
         if !(frames_per_second > 0.0 && frames_per_second.is_finite()) {
             return Err(DrawError::Rate(frames_per_second));
         }
-        let mut counts = vec![0u64; 1 << 15];
-        for sample in samples {
-            for pixel in sample.pixels().chunks_exact(4) {
-                counts[coarse(pixel)] += 1;
-            }
-        }
-        let mut order: Vec<usize> = (0..counts.len()).filter(|c| counts[*c] > 0).collect();
-        order.sort_by_key(|c| (u64::MAX - counts[*c], *c));
-        order.truncate(256);
-        let nearest = (0..counts.len())
-            .map(|number| {
-                let wanted = fine(number);
-                let distance = |place: &usize| -> i32 {
-                    let colour = fine(order[*place]);
-                    (0..3).map(|c| (wanted[c] - colour[c]) * (wanted[c] - colour[c])).sum()
-                };
-                (0..order.len()).min_by_key(distance).unwrap_or(0) as u8
-            })
-            .collect();
-        let palette: Vec<u8> = order.iter().flat_map(|c| fine(*c).map(|x| x as u8)).collect();
-        let mut encoder = gif::Encoder::new(out, width, height, &palette).map_err(failed)?;
+        let palette = Palette::of(samples);
+        let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(failed)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
         // Viewers play frames of less than two hundredths slowly.
         let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
-        Ok(GifWriter { encoder, size, nearest, last: None, delay, frames: 0 })
+        Ok(GifWriter { encoder, size, palette, last: None, delay, frames: 0 })
     }
 
     /// Adds a frame.
@@ -81,7 +52,7 @@ impl<W: Write> GifWriter<W> {
         if [image.width(), image.height()] != self.size {
             return Err(DrawError::FrameSize { expected: self.size, found: [image.width(), image.height()] });
         }
-        let pixels: Vec<u8> = image.pixels().chunks_exact(4).map(|p| self.nearest[coarse(p)]).collect();
+        let pixels: Vec<u8> = image.pixels().chunks_exact(4).map(|p| self.palette.nearest(p)).collect();
         let (width, height) = (self.size[0] as usize, self.size[1] as usize);
         let [left, top, right, bottom] = match &self.last {
             Some(last) => changed(last, &pixels, width),

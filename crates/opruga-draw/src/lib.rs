@@ -15,6 +15,7 @@ mod flat;
 mod image;
 mod layout;
 mod marks;
+mod palette;
 mod picture;
 mod plot;
 mod solid;
