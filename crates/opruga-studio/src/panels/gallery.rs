@@ -102,12 +102,12 @@ impl Gallery {
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
             ui.label(RichText::new(name).strong());
             let title = words.scene_title(name);
-            ui.add(egui::Label::new(RichText::new(&title).size(11.5).weak()).wrap());
+            ui.add(egui::Label::new(RichText::new(title).size(11.5).weak()).wrap());
             let credit = opruga::scenes::credit(opruga::scenes::find(name).unwrap_or_default());
             if !credit.is_empty() {
                 ui.add(egui::Label::new(RichText::new(credit).size(9.5).weak()).wrap());
             }
-            response.on_hover_text(title).clicked()
+            response.clicked()
         })
         .inner
     }
