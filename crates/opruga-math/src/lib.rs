@@ -3,6 +3,7 @@
 pub mod calibration;
 mod column;
 pub mod elementary;
+mod fetch;
 pub mod lane;
 pub mod matrix;
 mod portable;
@@ -19,6 +20,7 @@ pub mod words;
 mod x86_64;
 
 pub use column::Column;
+pub use fetch::fetch_early;
 pub use lane::{Lane, Pack, ROW, Register, WIDTH, sum_in_fixed_order};
 pub use simd::{Simd, Work};
 pub use strip::{RepeatStrip, Strip, StripMut};

@@ -10,7 +10,7 @@ use super::section::{Group, NUMBERS};
 use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::matrix::{self, Matrix};
-use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
+use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work, fetch_early};
 
 /// (∂X/∂ξ)⁻¹ and the measure of a point.
 #[inline(always)]
@@ -216,6 +216,19 @@ fn integrate<P: Pack, const D: usize>(group: &Group<'_>, k: usize, density: &mut
     }
 }
 
+impl<E, const D: usize, const N: usize> Forces<'_, E, D, N> {
+    /// Brings near what the next group reads of a pack: more than a cache holds passes by with every step, and not a line of it while the law
+    /// works.
+    #[inline(always)]
+    fn fetch(&self, pack: usize) {
+        if self.group.layout == Layout::Single {
+            let (places, numbers) = (N * WIDTH, self.group.points * (D * D + 1) * WIDTH);
+            fetch_early(self.group.places, pack * places..(pack + 1) * places);
+            fetch_early(self.group.geometry, pack * numbers..(pack + 1) * numbers);
+        }
+    }
+}
+
 impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N> {
     type Output = ();
     #[inline(always)]
@@ -224,6 +237,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Forces<'_, E, D, N
         let mut slots = [[P::zero(); D]; N];
         for k in 0..self.group.packs {
             let pack = self.group.first + k;
+            self.fetch(pack + self.group.packs);
             integrate::<P, D>(&self.group, k, self.density);
             if let Some(power) = &mut self.power {
                 integrate::<P, D>(&self.group, k, power);
