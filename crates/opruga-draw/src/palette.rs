@@ -7,6 +7,8 @@ use color_quant::NeuQuant;
 const BITS: u32 = 6;
 /// The most colours of a palette.
 const MOST: usize = 256;
+/// Those of them that are the most frequent colours themselves: backgrounds, lines, arrows.
+const KEPT: usize = 64;
 
 /// The colours of an animation, and which of them stands for a colour.
 pub(crate) struct Palette {
@@ -22,8 +24,8 @@ fn coarse(pixel: &[u8]) -> usize {
 }
 
 impl Palette {
-    /// The palette for some frames: their own colours where these are few, else those that a network learns from them (Dekker 1994,
-    /// "Kohonen neural networks for optimal colour quantization").
+    /// The palette for some frames: their own colours where these are few, else the most frequent ones, and those that a network learns from the
+    /// others (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
     pub(crate) fn of(samples: &[Image]) -> Palette {
         // How often each coarse colour is there, and the sums of its channels.
         let mut sums = vec![[0u64; 4]; 1 << (3 * BITS)];
@@ -37,8 +39,10 @@ impl Palette {
         let colours = if sums.len() <= MOST {
             sums.iter().flat_map(mean).collect()
         } else {
-            // By the roots of their numbers: a plain background would else take what the shades of bodies need.
-            let learnt: Vec<u8> = sums
+            sums.sort_by_key(|sum| std::cmp::Reverse(sum[0]));
+            let (kept, others) = sums.split_at(KEPT);
+            // By the roots of their numbers: plain squares of a floor would else take what the shades of bodies need.
+            let learnt: Vec<u8> = others
                 .iter()
                 .flat_map(|sum| {
                     let [red, green, blue] = mean(sum);
@@ -46,7 +50,8 @@ impl Palette {
                 })
                 .flatten()
                 .collect();
-            NeuQuant::new(1, MOST, &learnt).color_map_rgb()
+            let learnt = NeuQuant::new(1, MOST - KEPT, &learnt).color_map_rgb();
+            kept.iter().flat_map(mean).chain(learnt).collect()
         };
         Palette { colours, nearest: vec![None; 1 << (3 * BITS)] }
     }
@@ -118,5 +123,8 @@ mod tests {
         let far = off(&small, &mut palette);
         assert!(far < 15.0, "{far}");
         assert!(off(&whole, &mut palette) < 2.0, "{}", off(&whole, &mut palette));
+        // The background is none of its neighbours.
+        let number = usize::from(palette.nearest(&[252, 252, 253]));
+        assert_eq!(palette.colours()[3 * number..3 * number + 3], [252, 252, 253]);
     }
 }
