@@ -3,7 +3,7 @@
 use crate::canvas::{Anchor, Canvas, text_width};
 use crate::colour::{FRAME, INK, SOFT_INK};
 use crate::marks::{arrow_colour, arrow_name, arrow_unit};
-use crate::picture::{ColliderPicture, Legend, Picture};
+use crate::picture::{ArrowKind, ColliderPicture, Legend, Picture};
 use crate::ticks::{format_tick, format_value, nice_length, nice_ticks};
 use crate::view::View;
 
@@ -60,10 +60,7 @@ impl Layout {
         let top = if style.header { 38.0 * unit } else { margin };
         let bottom = if style.footer { 40.0 * unit } else { margin };
         let bottom = bottom + Layout::credit_space(&picture.credit, unit);
-        let right = match &picture.legend {
-            Some(legend) if style.legend => margin + legend_width(legend, view.range(picture), unit),
-            _ => margin,
-        };
+        let right = margin + Layout::legend_space(picture, view, unit, style.legend);
         let (width, height) = (style.width as f32, style.height as f32);
         let scene = [margin, top, (width - margin - right).max(8.0), (height - top - bottom).max(8.0)];
         Layout { scene: scene.map(|value| value.round() as u32), unit }
@@ -83,7 +80,7 @@ impl Layout {
 
     /// The width which the legend takes, if there is one and it is wanted.
     pub(crate) fn legend_space(picture: &Picture, view: &View, unit: f32, wanted: bool) -> f32 {
-        match &picture.legend {
+        match view.legend(picture) {
             Some(legend) if wanted => legend_width(legend, view.range(picture), unit),
             _ => 0.0,
         }
@@ -114,7 +111,7 @@ impl Layout {
         }
         let base = style.height as f32 - 9.0 * unit;
         self.credit(canvas, &picture.credit, [left, base], style.width as f32 - 2.0 * left);
-        if let (Some(legend), true) = (&picture.legend, style.legend) {
+        if let (Some(legend), true) = (view.legend(picture), style.legend) {
             self.legend(canvas, legend, view, picture);
         }
     }
@@ -183,33 +180,46 @@ impl Layout {
         base: f32,
         scale: f64,
     ) {
-        let unit = self.unit;
-        let size = 13.0 * unit;
+        let (unit, size) = (self.unit, 13.0 * self.unit);
+        let length_unit = &pictures[0].length_unit;
+        // What each is called, the pixels of its arrow, and those of both.
+        let entries = |most: f32| -> Vec<(ArrowKind, String, f32, f32)> {
+            let drawn = |kind| pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
+            let entry = |(&kind, &longest): (&ArrowKind, &f64)| {
+                let pixels = view.arrow_scale(kind) * scale;
+                if !drawn(kind) || longest <= 0.0 || pixels <= 0.0 {
+                    return None;
+                }
+                let value = nice_length((f64::from(most) / pixels).min(longest));
+                let long = (value * pixels) as f32;
+                let text = match kind {
+                    // All of them are one.
+                    ArrowKind::Normal => arrow_name(kind).into(),
+                    kind => {
+                        format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, length_unit))
+                    }
+                };
+                let wide = text_width(&text, size) + 8.0 * unit + long;
+                (long >= 5.0 * unit).then_some((kind, text, long, wide))
+            };
+            view.longest.iter().rev().filter_map(entry).collect()
+        };
+        let gap = 20.0 * unit;
+        let room = |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
+        // As long as there is room for all of them.
+        let lengths = [70.0, 45.0, 30.0, 20.0].map(|most| most * unit);
+        let whole = lengths.into_iter().map(entries).find(|entries| room(entries) - gap <= to - from);
         let mut end = to;
-        for (&kind, &longest) in view.longest.iter().rev() {
-            let drawn = pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
-            let pixels = view.arrow_scale(kind) * scale;
-            if !drawn || longest <= 0.0 || pixels <= 0.0 {
-                continue;
-            }
-            let value = nice_length((f64::from(70.0 * unit) / pixels).min(longest));
-            let long = (value * pixels) as f32;
-            let text =
-                format!("{} {} {}", arrow_name(kind), format_value(value), arrow_unit(kind, &pictures[0].length_unit));
-            let start = end - text_width(&text, size) - 8.0 * unit - long;
-            if start < from || long < 5.0 * unit {
+        for (kind, text, long, wide) in whole.unwrap_or_else(|| entries(lengths[3])) {
+            let start = end - wide;
+            if start < from {
                 continue;
             }
             canvas.text(&text, [end, base], size, Anchor::End, INK);
             let middle = base - 4.5 * unit;
-            crate::marks::arrow(
-                canvas,
-                [[start, middle], [start + long, middle]],
-                1.8 * unit,
-                arrow_colour(kind),
-                false,
-            );
-            end = start - 20.0 * unit;
+            let way = [[start, middle], [start + long, middle]];
+            crate::marks::arrow(canvas, way, 1.8 * unit, arrow_colour(kind), false);
+            end = start - gap;
         }
     }
 

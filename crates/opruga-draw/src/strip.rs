@@ -202,7 +202,7 @@ pub fn captioned_strip(
     layout.foot(&mut canvas, pictures, view, base, whole - 2.0 * margin, [0.48 * bar, scale as f32]);
     let last = [margin, head + height + foot - 12.0 * unit];
     layout.credit(&mut canvas, &first.credit, last, whole - 2.0 * margin);
-    if let (Some(legend), true) = (&first.legend, style.legend) {
+    if let (Some(legend), true) = (view.legend(first), style.legend) {
         layout.legend(&mut canvas, legend, view, first);
     }
     Ok(image)

@@ -2,7 +2,7 @@
 
 use crate::error::DrawError;
 use crate::fitting::Fitting;
-use crate::picture::{ArrowKind, Picture};
+use crate::picture::{ArrowKind, Legend, Picture};
 use std::collections::BTreeMap;
 
 /// The length of a long arrow, as a share of the larger side of the view.
@@ -97,6 +97,11 @@ impl View {
     /// The place of a scalar from 0 to 1 between the ends of a range.
     pub(crate) fn place(range: [f64; 2], scalar: f64) -> f64 {
         if range[1] > range[0] || scalar.is_nan() { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
+    }
+
+    /// What the colours of a picture mean, where any of the run shows a number.
+    pub(crate) fn legend<'a>(&self, picture: &'a Picture) -> Option<&'a Legend> {
+        picture.legend.as_ref().filter(|legend| legend.range.is_some() || self.scalars.is_some())
     }
 
     /// The range of scalars which a picture uses: its own, or the one of the run.

@@ -1,7 +1,9 @@
-//! What lies over what in flat pictures, and what is the same in all pictures of a run.
+//! What lies over what in pictures, what is written around them, and what is the same in all pictures of a run.
 #![allow(clippy::disallowed_methods)] // no physics here
 
-use opruga_draw::{ArrowKind, ArrowPicture, BodyPicture, Facets, Image, Legend, Picture, Style, View, draw};
+use opruga_draw::{
+    ArrowKind, ArrowPicture, BodyPicture, ColliderPicture, Facets, Image, Legend, Picture, Style, View, draw,
+};
 
 /// A ring of 24 nodes, squashed and moved.
 fn ring(center: f64, squash: f64) -> BodyPicture {
@@ -113,4 +115,66 @@ fn every_chamber_is_filled_with_its_own_colour() {
     let [left, right] = [100, 400].map(|x| image.pixel(x, 150));
     // The pale ends of the colours: violet and yellow.
     assert!(left[2] > left[1] && right[2] < right[1], "{left:?} {right:?}");
+}
+
+#[test]
+fn every_kind_of_arrow_that_is_drawn_has_one_of_a_round_value_below_the_scene() {
+    let kinds = [ArrowKind::Pressure, ArrowKind::Contact, ArrowKind::Velocity, ArrowKind::Elastic, ArrowKind::Gravity];
+    let body = BodyPicture { positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], ..Default::default() };
+    let arrow = |kind| ArrowPicture { kind, from: [0.5, 0.5, 0.0], vector: [0.3, 123.0, 0.0] };
+    let arrows = kinds.map(arrow).to_vec();
+    let picture = Picture { dimension: 2, bodies: vec![body], arrows, ..Default::default() };
+    let view = View::fit([&picture]).expect("a view");
+    let image = draw(&picture, &view, &Style::default()).expect("an image");
+    for kind in kinds {
+        let colour = opruga_draw::arrow_colour(kind);
+        let below = (560..600).flat_map(|y| (0..800).map(move |x| (x, y)));
+        let points = below.filter(|(x, y)| image.pixel(*x, *y) == colour).count();
+        assert!(points > 8, "{kind:?}: {points} points below the scene");
+    }
+}
+
+#[test]
+fn where_nothing_has_what_the_colours_tell_there_is_no_bar_of_colours() {
+    let of = |scalar: f64, legend: bool| {
+        let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let body = BodyPicture { positions, scalar: vec![scalar; 3], ..Default::default() };
+        let legend = legend.then(|| Legend { label: "stress".into(), unit: "Pa".into(), ..Default::default() });
+        let picture = Picture { dimension: 2, bodies: vec![body], legend, ..Default::default() };
+        let view = View::fit([&picture]).expect("a view");
+        draw(&picture, &view, &Style::default()).expect("an image")
+    };
+    assert!(of(f64::NAN, true) == of(f64::NAN, false));
+    assert!(of(1.0, true) != of(1.0, false));
+}
+
+#[test]
+fn a_floor_fades_into_the_background_whatever_lies_over_the_corner_of_the_picture() {
+    let background = [24, 26, 32];
+    let floor = || ColliderPicture::HalfSpace { point: [0.0; 3], normal: [0.0, 1.0, 0.0] };
+    let view = View::fit([&Picture {
+        dimension: 3,
+        bodies: vec![BodyPicture { positions: vec![[-1.0, 0.0, -1.0], [1.0, 1.0, 1.0]], ..Default::default() }],
+        colliders: vec![floor()],
+        ..Default::default()
+    }]);
+    let view = view.expect("a view");
+    let (size, seen) = ([320, 200], [320.0, 200.0]);
+    let eye = opruga_draw::Eye { target: view.center(), radius: 4.0, azimuth: 0.0, elevation: 8.0 };
+    let lens = eye.lens(&view, seen);
+    let image = |covered: bool| {
+        // A triangle before the upper left corner.
+        let corner = |x, y| lens.point([x, y], 1.0);
+        let positions = vec![corner(-30.0, -30.0), corner(60.0, -30.0), corner(-30.0, 60.0)];
+        let facets = Facets::Triangles(vec![[0, 1, 2], [0, 2, 1]]);
+        let body = BodyPicture { positions, facets, ..Default::default() };
+        let bodies = if covered { vec![body] } else { Vec::new() };
+        let picture = Picture { dimension: 3, bodies, colliders: vec![floor()], ..Default::default() };
+        opruga_draw::draw_scene(&picture, &eye.view(&view), background, size).expect("an image")
+    };
+    let (bare, covered) = (image(false), image(true));
+    assert_ne!(covered.pixel(2, 2), bare.pixel(2, 2), "it is covered");
+    assert_eq!(bare.pixel(2, 2), background);
+    let differ = (0..200).filter(|y| covered.pixel(310, *y) != bare.pixel(310, *y)).count();
+    assert_eq!(differ, 0, "far from there nothing is another colour");
 }

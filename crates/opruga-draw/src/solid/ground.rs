@@ -160,8 +160,15 @@ fn below(number: f64) -> i64 {
     whole - i64::from(number < whole as f64)
 }
 
-/// Draws a plane with squares which fade with the distance.
-pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Plane, shadow: Option<&Shadow>) {
+/// Draws a plane with squares which fade into the background with the distance.
+pub(crate) fn draw(
+    screen: &mut Screen,
+    background: [u8; 3],
+    camera: &Camera,
+    view: &View,
+    plane: Plane,
+    shadow: Option<&Shadow>,
+) {
     let height = plane.height(camera.place);
     if height <= 1e-9 {
         return;
@@ -178,7 +185,6 @@ pub(crate) fn draw(screen: &mut Screen, camera: &Camera, view: &View, plane: Pla
     let middle = [dot(first, between(plane.point, center)), dot(second, between(plane.point, center))];
     let start = between(plane.point, camera.place);
     let start = [dot(first, start), dot(second, start)];
-    let background = *screen.colours.first().unwrap_or(&[255; 3]);
     let step = along([0.0; 3], camera.axes[0], 1.0 / camera.focus);
     let above = 1.0 / height;
     let sink = -dot(plane.normal, step);

@@ -51,7 +51,7 @@ pub(crate) fn scene(
     }
     for plane in &planes {
         let shadow = shadow.as_ref().filter(|_| Some(plane) == floor);
-        ground::draw(&mut screen, &painter.camera, view, *plane, shadow);
+        ground::draw(&mut screen, background, &painter.camera, view, *plane, shadow);
     }
     // The dot of a node lies before its place: it would hide the arrow that begins there.
     let dotted = picture.bodies.iter().any(|body| body.nodes_drawn);
