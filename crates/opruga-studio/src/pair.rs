@@ -279,7 +279,7 @@ impl Engine for Pair {
     }
     fn shown(&mut self, show: &Show) -> Shown {
         let mut shown = self.left.shown(show);
-        let right = self.right.shown(show);
+        let right = Shown { hash: show.hash.then(|| self.right.hash()), ..self.right.shown(show) };
         let energy = self.stopped.is_none().then(|| right.energy.total() - shown.energy.total());
         let [center, volume] = self.in_common();
         shown.beside = Some(Beside {

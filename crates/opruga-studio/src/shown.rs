@@ -220,6 +220,8 @@ pub struct Shown {
     pub frames: u64,
     /// The last frame that was computed in this course of things.
     pub latest: u64,
+    /// The moment to which everything is computed again \[s\].
+    pub goal: Option<f64>,
     /// The length of a frame [s].
     pub frame: f64,
     /// How long the scene lasts for the command line [s].
@@ -279,8 +281,8 @@ pub struct Shown {
     pub beside: Option<Beside>,
     /// Bodies that were set down anew under another name: old and new.
     pub renamed: Vec<(String, String)>,
-    /// The last copy of a body that was made, with a number that counts them.
-    pub copied: Option<(u64, String)>,
+    /// The last body that was added or copied, with a number that counts them.
+    pub newest: Option<(u64, String)>,
     /// Whether bodies carry drawings with colours of their own.
     pub has_drawings: bool,
     /// The last frame that is as it was recorded, where a recording is viewed.

@@ -200,6 +200,9 @@ words! {
     take_coarser: "Take {} instead, with the substeps for that", "Uzmi radije {}, s podkoracima za to";
     frame_would_take: "With as many substeps a frame takes about {} s", "S toliko podkoraka sličica traje oko {} s";
     computing: "computing a frame for {} s", "sličica se računa {} s";
+    nothing_has_it: "nothing here has a value of: {}", "ovdje nema veličine: {}";
+    again: "computing again up to {} s", "ponovno računanje do {} s";
+    on_the_right: "right", "desno";
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines are drawn in scenes of the plane", "Obrisi se crtaju u ravninskim prizorima";

@@ -107,6 +107,9 @@ fn the_right_side_is_the_scene_with_the_differences_and_the_distance_is_that_bet
     let [mean, told] = beside(&mut session).distances.expect("a distance");
     assert!((told - largest).abs() < 1e-6 && mean > 1e-3 && mean <= told, "{mean} {told} {largest}");
     assert_eq!(words(&beside(&mut session)), ["symplectic euler", "stiffness 900", "substeps 64"]);
+    assert_eq!(beside(&mut session).right.hash, None, "nobody looks at it");
+    ask(&mut session, Request::Show(Show { hash: true, ..Show::default() }));
+    assert_eq!(beside(&mut session).right.hash, Some(right.hash()));
     // Back and forth in time, both go along.
     ask(&mut session, Request::Seek(7));
     ask(&mut session, Request::Seek(42));

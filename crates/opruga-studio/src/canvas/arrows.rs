@@ -90,8 +90,8 @@ fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Langua
 }
 
 /// The key: for every kind of arrow that is seen one of a round value, above the bar of lengths. In space arrows are as long as they
-/// are at the point that is looked at; `points_of` gives the points of the screen of the longest one there.
-pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) {
+/// are at the point that is looked at; `points_of` gives the points of the screen of the longest one there. Returns where its rows are.
+pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) -> Vec<Rect> {
     let Look { painter, rect, paper, shown, .. } = *look;
     let base = rect.bottom()
         - if shown.dimension == 3 { 18.0 } else { 46.0 }
@@ -106,6 +106,7 @@ pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, wo
         })
         .collect();
     let wide = rows.iter().map(|(_, long, _)| *long).fold(0.0, f32::max);
+    let mut places = Vec::new();
     for (row, (kind, long, text)) in rows.into_iter().enumerate() {
         let start = Pos2::new(rect.left() + 14.0, base - 17.0 * row as f32);
         let galley = painter.layout_no_wrap(text, FontId::proportional(12.0), paper.ink);
@@ -114,7 +115,9 @@ pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, wo
         painter.rect_filled(ground, 3.0, paper.background.gamma_multiply(0.7));
         arrow(painter, start, start + Vec2::new(long, 0.0), Stroke::new(1.5, ink(kind, paper)), 6.0);
         painter.galley(place.min, galley, paper.ink);
+        places.push(ground);
     }
+    places
 }
 
 #[cfg(test)]

@@ -86,7 +86,9 @@ impl Canvas {
 
     /// The ends of the colours follow what is there: at once outwards, slowly inwards.
     pub(super) fn fit_colours(&mut self, shown: &Shown) {
-        let beside = shown.beside.iter().flat_map(|beside| &beside.right.extents);
+        // What does not go on may be anywhere.
+        let beside = shown.beside.iter().filter(|beside| beside.stopped.is_none());
+        let beside = beside.flat_map(|beside| &beside.right.extents);
         let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
         let (low, high) = colours.fold((f64::MAX, f64::MIN), |(low, high), [a, b]| (low.min(a), high.max(b)));
         if low > high {

@@ -2,14 +2,20 @@
 
 use super::look::Look;
 use super::plane::{colour, on_paper};
+use crate::shown::Shown;
 use crate::words::Language;
 use egui::text::LayoutJob;
-use egui::{Align, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape, Stroke, Vec2};
+use egui::{Align, Align2, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
 use std::sync::Arc;
 
 /// What there is room for at least above the bar, and what its name takes at most on one line [points].
 const NAME: [f32; 2] = [84.0, 240.0];
+
+/// Whether a body is seen in colours of its own.
+fn drawn(shown: &Shown, body: &BodyPicture) -> bool {
+    shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some())
+}
 
 /// Where the legend is: its bar of colours, what they mean, and all that it takes.
 struct Places {
@@ -22,8 +28,7 @@ struct Places {
 fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Places> {
     let Look { painter, shown, rect, paper, .. } = *look;
     let legend = shown.picture.legend.as_ref()?;
-    let drawn = |body: &BodyPicture| shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some());
-    if shown.picture.bodies.iter().all(|body| drawn(body) || body.scalar.iter().all(|s| !s.is_finite())) {
+    if shown.picture.bodies.iter().all(|body| drawn(shown, body) || body.scalar.iter().all(|s| !s.is_finite())) {
         return None;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
@@ -52,6 +57,21 @@ fn places(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Pl
 /// Where the legend is.
 pub(super) fn place(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Rect> {
     places(look, tools, language).map(|places| places.whole)
+}
+
+/// Where nothing that is seen has what the colours shall tell, and is grey for it, says so.
+pub(super) fn say_why_there_is_none(look: &Look<'_>, tools: Option<Rect>, language: Language) {
+    let Look { painter, shown, rect, paper, .. } = *look;
+    let Some(legend) = &shown.picture.legend else { return };
+    if shown.picture.bodies.iter().all(|body| drawn(shown, body)) {
+        return;
+    }
+    let text = language.nothing_has_it().replace("{}", language.quantity(&legend.label));
+    let below = tools.filter(|tools| tools.intersects(rect)).map_or(rect.top(), |tools| tools.bottom());
+    let galley = painter.layout(text, FontId::proportional(12.0), paper.soft, (0.6 * rect.width()).max(NAME[0]));
+    let place = Align2::RIGHT_TOP.anchor_size(Pos2::new(rect.right() - 12.0, below + 12.0), galley.size());
+    painter.rect_filled(place.expand(4.0), 4.0, paper.background.gamma_multiply(0.7));
+    painter.galley(place.min, galley, paper.soft);
 }
 
 /// What the colours mean.
@@ -117,7 +137,6 @@ fn figure(value: f64) -> String {
 mod tests {
     use super::*;
     use crate::canvas::look::Paper;
-    use crate::shown::Shown;
     use egui_kittest::Harness;
     use opruga::draw::{Legend, Picture};
 

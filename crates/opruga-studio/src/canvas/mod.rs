@@ -36,14 +36,14 @@ pub use tool::Tool;
 enum Doing {
     #[default]
     Nothing,
-    /// A body is held; in space at this distance from the camera. Of a push where the pointer was pressed, and the point that was taken
+    /// A body is held; in space so far behind the point that is looked at. Of a push where the pointer was pressed, and the point that was taken
     /// hold of: that goes the way of the pointer [m].
     Holding(f64, Option<[[f64; 3]; 2]>),
     /// The view moves along.
     Panning,
     /// The view turns.
     Turning,
-    /// A body is taken elsewhere, from this point of the world.
+    /// A body is taken elsewhere, from this point of the world; in space so far behind the point that is looked at.
     Shifting(String, [f64; 3], f64),
     /// A body is turned or scaled by one of its handles.
     Handling(handles::Held),
@@ -58,8 +58,8 @@ pub struct Canvas {
     pub tool: Tool,
     /// The body that was pressed last.
     pub selected: Option<String>,
-    /// The last copy of a body that was made.
-    copied: Option<(u64, String)>,
+    /// The last body that was added or copied.
+    newest: Option<(u64, String)>,
     /// Where it is in the window.
     rect: Option<Rect>,
     /// Where the tools lie over it.
@@ -241,10 +241,13 @@ impl Canvas {
         self.paint(ui, &look, shown, false, &self.written.clone());
         plane::credit(&look);
         if is_seen {
-            arrows::key(&look, &self.arrows, self.points_of_arrows(shown, rect), language);
+            let rows = arrows::key(&look, &self.arrows, self.points_of_arrows(shown, rect), language);
+            self.written.extend(rows);
         }
         if taken.is_some() {
             legend::paint(&look, self.tools, language);
+        } else if other.is_none() && is_seen {
+            legend::say_why_there_is_none(&look, self.tools, language);
         }
         if is_seen {
             let under = under.as_ref().filter(|_| !beside);
@@ -291,13 +294,13 @@ impl Canvas {
         }
     }
 
-    /// A body that was set down anew under another name stays selected, and one of which that was undone; a copy is selected instead of
-    /// what it was made of.
+    /// A body that was set down anew under another name stays selected, and one of which that was undone; what is added
+    /// or copied is selected from then on.
     pub(crate) fn follow_names(&mut self, shown: &Shown) {
-        if self.copied != shown.copied {
-            self.copied.clone_from(&shown.copied);
-            let copy = shown.copied.as_ref().map(|(_, name)| name);
-            if let Some(body) = shown.bodies.iter().find(|body| Some(&body.name) == copy) {
+        if self.newest != shown.newest {
+            self.newest.clone_from(&shown.newest);
+            let newest = shown.newest.as_ref().map(|(_, name)| name);
+            if let Some(body) = shown.bodies.iter().find(|body| Some(&body.name) == newest) {
                 self.selected = Some(body.name.clone());
             }
         }
@@ -343,12 +346,19 @@ impl Canvas {
         }
     }
 
-    /// The point of the world under the pointer; in space at a distance from the camera.
-    fn point(&self, shown: &Shown, rect: Rect, at: Pos2, distance: f64) -> Option<[f64; 3]> {
+    /// How far behind the point that is looked at something is at a distance from the camera; the same in the plane.
+    fn behind(&self, rect: Rect, distance: f64) -> f64 {
+        let looked_at = self.scales.as_ref().and_then(|scales| self.space.distance(scales, rect));
+        distance - looked_at.unwrap_or(0.0)
+    }
+
+    /// The point of the world under the pointer; in space so far behind the point that is looked at.
+    fn point(&self, shown: &Shown, rect: Rect, at: Pos2, depth: f64) -> Option<[f64; 3]> {
         if shown.dimension == 3 {
-            let lens = self.space.lens(self.scales.as_ref()?, rect)?;
+            let scales = self.scales.as_ref()?;
             let pixel = at - rect.min;
-            Some(lens.point([f64::from(pixel.x), f64::from(pixel.y)], distance))
+            let distance = depth + self.space.distance(scales, rect)?;
+            Some(self.space.lens(scales, rect)?.point([f64::from(pixel.x), f64::from(pixel.y)], distance))
         } else {
             let [x, y] = self.flat.to_world(rect, at, shown.picture.y_down);
             Some([x, y, 0.0])

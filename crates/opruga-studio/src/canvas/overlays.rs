@@ -77,10 +77,10 @@ impl Canvas {
                     handles::ghost(painter, held, body, &project, paper);
                 }
             }
-            Doing::Shifting(name, start, distance) => {
+            Doing::Shifting(name, start, depth) => {
                 if let Some(body) = body(name)
                     && let Some(now) = painter.ctx().input(|i| i.pointer.latest_pos())
-                    && let Some(end) = self.point(shown, rect, now, *distance)
+                    && let Some(end) = self.point(shown, rect, now, *depth)
                 {
                     let moved = [0, 1, 2].map(|d| end[d] - start[d]);
                     plane::ghost(painter, body, moved, &project, paper);
@@ -131,16 +131,18 @@ impl Captions {
     ) -> Captions {
         let mut all = Vec::new();
         let below = second.top() > first.top();
-        let free = if below { legend.map_or(second.right(), |legend| legend.left()) } else { second.right() };
-        let room = (free - second.left() - if below { 30.0 } else { 40.0 }).max(40.0);
-        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32| {
+        // Beside the legend, which the lower ones do not reach where the scenes stand next to one another.
+        let free = legend.map_or(second.right(), |legend| legend.left());
+        let beside_legend = (free - second.left() - 30.0).max(40.0);
+        let room = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
+        let mut caption = |spot: Pos2, align: Align2, text: String, ink: Color32, room: f32| {
             let galley = painter.layout(text, FontId::proportional(12.5), ink, room);
             let place = align.anchor_size(spot, galley.size());
             all.push((place, galley, ink));
             place
         };
         let low = |rect: Rect| rect.center_bottom() - Vec2::new(0.0, 8.0);
-        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink);
+        caption(low(first), Align2::CENTER_BOTTOM, language.as_it_is().into(), paper.ink, room);
         let words: Vec<String> = beside.differences.iter().map(|difference| language.difference(difference)).collect();
         let words = if words.is_empty() { language.no_difference().into() } else { words.join(", ") };
         let far = match (beside.distances, beside.center) {
@@ -154,13 +156,13 @@ impl Captions {
         };
         let high = second.left_top() + Vec2::new(14.0, 10.0);
         let (spot, align) = if below { (high, Align2::LEFT_TOP) } else { (low(second), Align2::CENTER_BOTTOM) };
-        let told = caption(spot, align, format!("{words}{far}"), paper.ink);
+        let told = caption(spot, align, format!("{words}{far}"), paper.ink, room);
         if let Some(reason) = &beside.stopped {
             let text = format!("{}\n{}", language.right_stopped(), language.detail(reason));
-            let middle = second.center_top() + Vec2::new(0.0, 70.0);
+            let middle = Pos2::new(0.5 * (second.left() + free), second.top() + 70.0);
             let under = Pos2::new(told.left(), told.bottom() + 12.0);
             let (spot, align) = if below { (under, Align2::LEFT_TOP) } else { (middle, Align2::CENTER_TOP) };
-            caption(spot, align, text, Color32::from_rgb(230, 110, 60));
+            caption(spot, align, text, Color32::from_rgb(230, 110, 60), beside_legend);
         }
         Captions(all)
     }

@@ -7,6 +7,7 @@ use super::detail::{Detail, apart, corners};
 use super::labels::{self, Named};
 use super::look::{Look, Paper};
 use super::outlines::{Outlines, Part, fill};
+use super::overlays::Captions;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
@@ -436,7 +437,9 @@ pub(crate) fn credit(look: &Look<'_>) {
         let room = (0.6 * rect.width()).max(120.0);
         let font = FontId::proportional(10.0);
         let galley = look.painter.layout(credit.clone(), font, look.paper.soft, room);
-        let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0);
+        // Above what is written below each of two scenes.
+        let foot = if look.shown.beside.is_some() { Captions::FOOT[0] } else { 0.0 };
+        let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0 + foot);
         look.painter.galley(spot, galley, look.paper.soft);
     }
 }

@@ -154,9 +154,9 @@ impl Canvas {
         let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
-            Doing::Holding(distance, push) => {
-                let (distance, push) = (*distance, *push);
-                if let Some(point) = self.point(shown, rect, at, distance).filter(|_| self.waiting.is_none()) {
+            Doing::Holding(depth, push) => {
+                let (depth, push) = (*depth, *push);
+                if let Some(point) = self.point(shown, rect, at, depth).filter(|_| self.waiting.is_none()) {
                     asks.push(Request::Lead(match push {
                         Some([pressed, hold]) => [0, 1, 2].map(|d| hold[d] + (point[d] - pressed[d])),
                         None => point,
@@ -222,6 +222,7 @@ impl Canvas {
             return;
         };
         self.selected = Some(under.name.clone());
+        let depth = self.behind(rect, under.distance);
         let grip = match (button, shift, self.tool) {
             (PointerButton::Secondary, ..) => Grip::Push,
             (_, true, _) | (_, _, Tool::Pin) => Grip::Pin,
@@ -229,8 +230,8 @@ impl Canvas {
             // Where bodies are is common to both scenes, and told where they are set down.
             (_, _, Tool::Shift) if beside => return,
             (_, _, Tool::Shift) => {
-                let start = self.point(shown, rect, at, under.distance).unwrap_or(under.point);
-                self.doing = Doing::Shifting(under.name.clone(), start, under.distance);
+                let start = self.point(shown, rect, at, depth).unwrap_or(under.point);
+                self.doing = Doing::Shifting(under.name.clone(), start, depth);
                 return;
             }
             _ => Grip::Pull,
@@ -252,8 +253,8 @@ impl Canvas {
             asks.push(grab);
         }
         // A push begins without force, though the pointer is somewhere beside the node; what is pulled comes to the pointer.
-        let pressed = self.point(shown, rect, at, under.distance).filter(|_| grip == Grip::Push);
-        self.doing = Doing::Holding(under.distance, pressed.map(|pressed| [pressed, under.point]));
+        let pressed = self.point(shown, rect, at, depth).filter(|_| grip == Grip::Push);
+        self.doing = Doing::Holding(depth, pressed.map(|pressed| [pressed, under.point]));
     }
 
     fn end(&mut self, shown: &Shown, rect: Rect, at: Pos2, asks: &mut Vec<Request>) {
@@ -261,8 +262,8 @@ impl Canvas {
         match std::mem::take(&mut self.doing) {
             Doing::Holding(..) if waited => {}
             Doing::Holding(..) => asks.push(Request::Release),
-            Doing::Shifting(name, start, distance) => {
-                if let Some(end) = self.point(shown, rect, at, distance) {
+            Doing::Shifting(name, start, depth) => {
+                if let Some(end) = self.point(shown, rect, at, depth) {
                     let moved = [0, 1, 2].map(|d| end[d] - start[d]);
                     if moved.iter().any(|d| d.abs() > 1e-9) {
                         asks.push(Request::Edit(Edit::Place(name, Placed { moved, turned: 0.0, scaled: 1.0 })));

@@ -128,6 +128,13 @@ impl Space {
         self.seen.as_ref().map(|(shown, _)| shown)
     }
 
+    /// How far the camera of the picture on the screen is from the point that is looked at [m]: as the eye comes nearer, what is held
+    /// keeps its place behind that point.
+    pub(crate) fn distance(&self, scales: &View, rect: Rect) -> Option<f64> {
+        let target = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?.target;
+        self.lens(scales, rect)?.see(target).map(|(_, distance)| distance)
+    }
+
     /// What turns points of space into points of the rectangle, as in the picture on the screen.
     pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
         let eye = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?;

@@ -7,6 +7,7 @@ use crate::shown::Shown;
 use crate::theme;
 use crate::words::Language;
 use egui::{Align, Color32, FontId, Label, Layout, Popup, RichText, ScrollArea, Sense, Ui, vec2};
+use opruga::Warning;
 use std::time::Duration;
 
 /// The size of what is written in the line [points].
@@ -73,6 +74,10 @@ pub fn status(
                 let small = |text: String| RichText::new(text).size(SIZE);
                 if let Some(busy) = busy {
                     let text = words.computing().replace("{}", &format!("{:.0}", busy.as_secs_f64()));
+                    said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
+                }
+                if let Some(goal) = shown.goal.filter(|_| busy.is_none()) {
+                    let text = words.again().replace("{}", &format!("{goal:.2}"));
                     said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 for (what, hundredths) in making.by_ref() {
@@ -157,18 +162,20 @@ fn rows(wide: &[f32], room: f32) -> Vec<core::ops::Range<usize>> {
 
 /// The beginning of the first warning, and how many more there are; pressed, it shows all of them.
 fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
-    let Some(first) = shown.warnings.first() else { return };
-    let others = shown.warnings.len() - 1;
+    let warnings = of_both(shown);
+    let Some(&(right, first)) = warnings.first() else { return };
+    let others = warnings.len() - 1;
+    let side = |right: bool| if right { format!("{}: ", words.on_the_right()) } else { String::new() };
     let said = beginning(&words.detail(&first.message));
     let more = if others > 0 { format!("  +{others}") } else { String::new() };
-    let text = RichText::new(format!("{} ({}){more}: {said}", words.warning(), first.count))
+    let text = RichText::new(format!("{}{} ({}){more}: {said}", side(right), words.warning(), first.count))
         .size(SIZE)
         .color(theme::attention(ui.visuals()));
     let all = |ui: &mut Ui| {
         ui.set_max_width((ui.ctx().content_rect().width() - 40.0).clamp(80.0, 520.0));
         ScrollArea::vertical().max_height(0.6 * ui.ctx().content_rect().height()).show(ui, |ui| {
-            for warning in &shown.warnings {
-                ui.label(format!("{} ({})", words.detail(&warning.message), warning.count));
+            for (right, warning) in &warnings {
+                ui.label(format!("{}{} ({})", side(*right), words.detail(&warning.message), warning.count));
                 ui.label(RichText::new(&warning.code).weak().size(SIZE));
             }
         });
@@ -178,6 +185,14 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     if !Popup::is_id_open(ui.ctx(), Popup::default_response_id(&response)) {
         response.on_hover_ui(all);
     }
+}
+
+/// The warnings, and behind them those of the scene on the right that are its own; whether they are.
+fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
+    let own =
+        |warning: &&Warning| !shown.warnings.iter().any(|w| (&w.code, &w.message) == (&warning.code, &warning.message));
+    let right = shown.beside.iter().flat_map(|beside| &beside.right.warnings).filter(own);
+    shown.warnings.iter().map(|warning| (false, warning)).chain(right.map(|warning| (true, warning))).collect()
 }
 
 /// The step over the largest stable one, of two scenes in that which is nearer to its limit; none where nothing limits it.
@@ -213,8 +228,9 @@ fn short(count: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{beginning, margin, rows};
+    use super::{beginning, margin, of_both, rows};
     use crate::shown::{Beside, Shown};
+    use opruga::Warning;
     use std::sync::Arc;
 
     #[test]
@@ -233,6 +249,25 @@ mod tests {
         assert_eq!(both(limitless(), one(8, 0.004)), Some(0.5));
         assert_eq!(both(one(8, 0.004), limitless()), Some(0.5));
         assert_eq!(both(limitless(), limitless()), None);
+    }
+
+    #[test]
+    fn warnings_of_the_right_scene_that_the_left_one_has_not_stand_behind_those_of_the_left_one() {
+        let warning = |code: &str, message: &str| Warning { code: code.into(), message: message.into(), count: 1 };
+        let [odd, lost] = [warning("shape.odd", "both"), warning("pressure.inverted", "the right one")];
+        let right = Arc::new(Shown { warnings: vec![odd.clone(), lost.clone()], ..Shown::default() });
+        let beside = Beside {
+            right,
+            distances: None,
+            center: None,
+            volume: None,
+            energy: None,
+            differences: Vec::new(),
+            stopped: None,
+        };
+        let shown = Shown { warnings: vec![odd.clone()], beside: Some(beside), ..Shown::default() };
+        assert_eq!(of_both(&shown), [(false, &odd), (true, &lost)]);
+        assert_eq!(of_both(&Shown { beside: None, ..shown }).len(), 1);
     }
 
     #[test]

@@ -202,8 +202,11 @@ impl Session {
             Edit::Add(table) => {
                 let mut table = table.clone();
                 let like = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
-                table.insert("name", self.document.free_name(&like).into());
-                self.exchange(Step::Add, None, Some(table))
+                let name = self.document.free_name(&like);
+                table.insert("name", name.as_str().into());
+                self.exchange(Step::Add, None, Some(table))?;
+                self.made(name);
+                Ok(())
             }
             Edit::Duplicate(name) => {
                 let mut table = self.table_of(name)?;
@@ -212,7 +215,7 @@ impl Session {
                 let (size, way) = (self.size_of(name), self.way_of(name));
                 shift(&mut table, [way[0] + 1.15 * size, way[1], way[2]], self.dimension());
                 self.exchange(Step::Duplicate, None, Some(table))?;
-                self.copied = Some((self.copied.as_ref().map_or(1, |(count, _)| count + 1), copy));
+                self.made(copy);
                 Ok(())
             }
             Edit::Place(name, placed) => {
@@ -243,6 +246,11 @@ impl Session {
             }
             Edit::Delete(name) => self.exchange(Step::Delete, Some(name), None),
         }
+    }
+
+    /// There is a body more: it is looked at from now on.
+    fn made(&mut self, name: String) {
+        self.newest = Some((self.newest.as_ref().map_or(1, |(count, _)| count + 1), name));
     }
 
     pub(super) fn dimension(&mut self) -> usize {

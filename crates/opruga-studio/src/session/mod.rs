@@ -146,8 +146,8 @@ pub struct Session {
     differences: Option<Vec<Difference>>,
     /// Bodies that were set down anew under another name: old and new.
     renamed: Vec<(String, String)>,
-    /// The last copy of a body that was made, with a number that counts them.
-    copied: Option<(u64, String)>,
+    /// The last body that was added or copied, with a number that counts them.
+    newest: Option<(u64, String)>,
     /// Commands that the scene had when it was opened; those behind them were recorded.
     own_commands: usize,
     keyframes: Keyframes,
@@ -224,7 +224,7 @@ impl Session {
             engine,
             differences: None,
             renamed: Vec::new(),
-            copied: None,
+            newest: None,
             keyframes: Keyframes::new(KEYFRAME_BYTES),
             samples: Arc::default(),
             latest: 0,

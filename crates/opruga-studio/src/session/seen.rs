@@ -16,6 +16,7 @@ impl Session {
         shown.hash = self.show.hash.then(|| self.engine.hash());
         shown.name.clone_from(&self.document.name);
         shown.latest = self.latest;
+        shown.goal = self.goal.filter(|goal| *goal > self.engine.frames()).map(|goal| self.time_of(goal));
         shown.playing = self.playing;
         shown.speed = self.speed;
         shown.pace = Pace { ratio: self.pacing.ratio(), frame_cost: self.pacing.cost() };
@@ -51,7 +52,7 @@ impl Session {
         }
         shown.pins = pins;
         shown.renamed.clone_from(&self.renamed);
-        shown.copied.clone_from(&self.copied);
+        shown.newest.clone_from(&self.newest);
         give_titles(&mut shown, &titles);
         if shown.bodies.len() <= 64 {
             for body in &mut shown.bodies {

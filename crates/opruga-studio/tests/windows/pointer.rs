@@ -62,6 +62,8 @@ fn outlines_become_bodies_and_those_that_cross_themselves_are_refused_with_a_rea
     };
     window.drag(&line(&|t| 70.0 * Vec2::new(t.cos(), 0.7 * t.sin())), PointerButton::Primary, Modifiers::NONE);
     window.until("a drawn body", |shown| shown.bodies.len() == 2 && shown.bodies[1].name == "drawn");
+    // What follows is done to the new body.
+    assert!(window.harness.query_by_label("drawn").is_some());
     window.drag(&line(&|t| 70.0 * Vec2::new(t.sin(), (2.0 * t).sin())), PointerButton::Primary, Modifiers::NONE);
     assert!(window.harness.query_by_label_contains("crosses itself").is_some());
     assert_eq!(window.shown().bodies.len(), 2);
@@ -283,4 +285,44 @@ fn a_body_that_is_held_is_pulled_when_time_begins_to_pass() {
         window.studio().ask(Request::Play(false));
         window.button(top, PointerButton::Primary, false, Modifiers::NONE);
     }
+}
+
+#[test]
+fn a_body_of_space_that_is_held_keeps_its_depth_while_the_wheel_brings_the_eye_nearer() {
+    let mut window = Window::open("balloons", SIZE);
+    window.rest();
+    let middle = |body: usize| {
+        let positions = &window.shown().picture.bodies[body].positions;
+        [0, 1, 2].map(|d| positions.iter().map(|p| p[d]).sum::<f64>() / positions.len() as f64)
+    };
+    // The body nearest to the middle of the window, which the wheel goes toward.
+    let canvas = window.canvas();
+    let spot = |body: usize| window.studio().on_screen(middle(body)).expect("in sight");
+    let far = |body: &usize| spot(*body).distance(canvas.center());
+    let at = spot((0..3).min_by(|a, b| far(a).total_cmp(&far(b))).expect("a body"));
+    window.pointer(at);
+    window.button(at, PointerButton::Primary, true, Modifiers::NONE);
+    let held = at + Vec2::new(0.0, -12.0);
+    let pulled = |window: &mut Window, frames: u64| {
+        let until = window.shown().frames + frames;
+        for _ in 0..frames {
+            window.pointer(held);
+            window.studio().ask(Request::Step);
+        }
+        window.until("time passes", |shown| shown.frames == until && shown.pulls.len() == 1);
+        window.rest();
+        window.shown().pulls[0][1]
+    };
+    let before = pulled(&mut window, 5);
+    let (delta, modifiers) = (Vec2::new(0.0, 120.0), Modifiers::NONE);
+    let (unit, phase, source) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move, egui::MouseWheelSource::Wheel);
+    window.harness.event(Event::MouseWheel { unit, delta, phase, modifiers, source });
+    window.frames(40);
+    window.rest();
+    let after = pulled(&mut window, 5);
+    let way: f64 = before.iter().zip(after).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+    // The eye has come nearer by metres.
+    assert!(way < 0.6, "{way} m: {before:?} {after:?}");
+    let drawn = window.studio().on_screen(after).expect("in sight");
+    assert!(drawn.distance(held) < 3.0, "the handle is under the pointer: {drawn:?} {held:?}");
 }
