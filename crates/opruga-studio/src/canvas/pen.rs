@@ -28,7 +28,8 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
     if area < 30.0 * finest * finest {
         return Err("too_small");
     }
-    // A skin as stiff for its vertices as that of the ball of the thesis, and gas that holds its area against the air.
+    // A skin as stiff for its vertices as that of the ball of the thesis, and gas that holds its area against the air, whatever it is scaled
+    // to.
     let stiffness = 57_600.0 / count as f64;
     let pressure = 120.0;
     let rows: Vec<String> = points.iter().map(|p| format!("[{:.5}, {:.5}]", p[0], p[1])).collect();
@@ -36,10 +37,9 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
         "{{ name = \"drawn\", shape = {{ kind = \"polygon\", points = [{}] }}, mass = 1.0, models = [\
          {{ kind = \"mass_spring\", stiffness = {stiffness:.1}, damping = 0.5 }}, \
          {{ kind = \"bending\", stiffness = {:.4} }}, \
-         {{ kind = \"pressure\", nRT = {:.4}, ambient = {pressure:.1} }}] }}",
+         {{ kind = \"pressure\", pressure = {pressure:.1}, ambient = {pressure:.1} }}] }}",
         rows.join(", "),
         0.02 * length / core::f64::consts::PI,
-        pressure * area
     );
     let value = text.parse::<toml_edit::Value>().map_err(|_| "too_small")?;
     value.as_inline_table().cloned().ok_or("too_small")

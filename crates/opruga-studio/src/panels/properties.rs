@@ -126,7 +126,7 @@ impl Properties {
         });
         // Those of single chambers are in the table and in the colours.
         let readings: Vec<_> = body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4).collect();
-        let half = 0.5 * ui.available_width() - 4.0;
+        let half = 0.5 * ui.available_width() - 10.0;
         for two in readings.chunks(2) {
             ui.horizontal(|ui| {
                 ui.spacing_mut().interact_size.y = 14.0;

@@ -81,7 +81,8 @@ pub fn status(
                     said.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 for (what, hundredths) in making.by_ref() {
-                    let text = small(format!("{}: {hundredths} %", file_name(words, what)));
+                    // Where there is little room, the name is cut.
+                    let text = small(format!("{hundredths} % {}", file_name(words, what)));
                     said.push((text.strong(), words.working().into()));
                 }
                 if let Some([by, device]) = drawn_by {
