@@ -1,4 +1,4 @@
-//! Statics where positions have lost six of their digits.
+//! Bodies where positions have lost six of their digits.
 
 #![allow(clippy::disallowed_methods, reason = "shapes, and no bits")]
 
@@ -41,5 +41,39 @@ fn bars_bend_alike_a_thousand_kilometres_away() {
             assert!((near / sunk - 1.0).abs() < 0.1, "{name}, {stiffness} Pa: {near} m");
             assert!((far / near - 1.0).abs() < allowed, "{name}, {stiffness} Pa: {near} m and {far} m");
         }
+    }
+}
+
+/// Where the corner of a soft bar is after a fifth of a second of its fall, from where it began, with its corner so far from the origin [m].
+fn falls(rule: &'static str, far: f64) -> [f64; 2] {
+    let boxes = Mesh::<2>::grid([0.0; 2], [1.0, 0.25], [8, 2]).expect("a grid");
+    let mesh = boxes.into_simplices().expect("triangles").into_quadratic().expect("quadratic triangles");
+    let fields = [
+        ("material", text("neo_hookean")),
+        ("youngs_modulus", Value::Number(2e5)),
+        ("poissons_ratio", Value::Number(0.3)),
+    ];
+    let mut bar = solid(mesh.clone(), rule, &[], &fields);
+    bar.time.frame = 1.0 / 64.0;
+    bar.time.substeps = 1;
+    bar.surroundings.gravity = [0.0, -9.81];
+    bar.bodies[0].translation = [far; 2];
+    bar.bodies[0].pins = clamp();
+    let mut world = World::new(bar, Options::default()).expect("a world");
+    let corner = mesh.positions.iter().position(|x| *x == [1.0, 0.0]).expect("the corner") as u32;
+    let before = world.position(0, corner);
+    (0..13).for_each(|_| world.frame().expect("a step"));
+    let after = world.position(0, corner);
+    [0, 1].map(|d| after[d] - before[d])
+}
+
+/// Coordinates of this mesh are whole multiples of 2⁻⁴ m: they lose nothing at 2¹⁷ m, where positions have 1.5e-11 m.
+#[test]
+fn bars_fall_alike_a_hundred_kilometres_away() {
+    for rule in ["backward_euler", "bdf2", "implicit_midpoint", "newmark"] {
+        let (near, far) = (falls(rule, 0.0), falls(rule, 131_072.0));
+        let apart = (near[0] - far[0]).hypot(near[1] - far[1]);
+        assert!(near[1] < -0.05, "{rule}: {near:?} m");
+        assert!(apart < 5e-10, "{rule}: {apart} m apart");
     }
 }

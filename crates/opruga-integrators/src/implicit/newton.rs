@@ -168,6 +168,9 @@ pub(crate) fn solve<const D: usize>(
             room.mixing.forget();
         }
         let mixed = mix(room, plain > SLOW * before, &mut slope);
+        // With inertia rounding is reached where a correction does not halve the one before any more.
+        let halves = solved.iterations == 1 || before.is_finite() && plain <= 0.5 * before;
+        let nears = balance.sigma != 0.0 && halves;
         before = plain;
         falling.note(plain, keep != Keep::Exact && !mixed);
         let mut length = 1.0;
@@ -224,7 +227,8 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
         let last = solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
-        if ends && at_rounding(system, room, balance, settings, size) && (last || carries(system, room, balance)) {
+        let may_end = ends && (last || !nears);
+        if may_end && at_rounding(system, room, balance, settings, size) && (last || carries(system, room, balance)) {
             solved.converged = true;
             solved.blur = settle(system, room, balance, settings)?;
             break;
@@ -239,10 +243,7 @@ pub(crate) fn solve<const D: usize>(
             solved.blur = left.map_or(suspected, |left| visible(left.larger(chance.smaller(suspected)), room.extent));
         }
     }
-    match torn {
-        Some(error) if !solved.converged => Err(error),
-        _ => Ok(solved),
-    }
+    torn.filter(|_| !solved.converged).map_or(Ok(solved), Err)
 }
 
 /// How far what is left out of balance would move a node by the matrix of what was found [m]: what was suspected on the way there went by
