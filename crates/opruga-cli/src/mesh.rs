@@ -216,7 +216,7 @@ fn in_words_of_the_call(call: &Call, name: &str, error: SceneError, quotes: bool
         match in_scenes.is_empty() {
             true => hint,
             false if here.is_empty() => format!("in a scene, {}", in_scenes.join("; ").trim_start_matches("or ")),
-            false => format!("{}; in a scene also {}", here.join("; "), in_scenes.join("; ").trim_start_matches("or ")),
+            false => format!("{}; in a scene: {}", here.join("; "), in_scenes.join("; ").trim_start_matches("or ")),
         }
     });
     let file = placed(call, name, &error.file);

@@ -16,6 +16,9 @@ use opruga::{Registry, World};
 use serde_json::json;
 use std::fmt::Write as _;
 
+/// The part of the square of the largest frequency that rounding may leave of none.
+const ROUNDING: f64 = 1e-15;
+
 /// The largest displacement in a picture, in extents of the body.
 const AMPLITUDE: f64 = 0.12;
 
@@ -78,12 +81,13 @@ fn of_world<const D: usize>(
     }
     let modes = world.modes(body, call.count).map_err(|error| source.run_error(&error, world.time()))?;
     let name = world.blueprint().bodies[body].name.clone();
+    let rounding = rounding(&world);
     let rows: Vec<_> = modes
         .iter()
         .enumerate()
         .map(|(k, mode)| {
             json!({"mode": k + 1, "frequency": mode.frequency(), "omega": mode.omega(), "omega_squared": mode.square,
-                   "growth": growth(mode), "residual": mode.residual, "rigid": mode.rigid})
+                   "growth": growth(mode, rounding), "residual": mode.residual, "rigid": mode.rigid})
         })
         .collect();
     let mut files = Vec::new();
@@ -95,7 +99,7 @@ fn of_world<const D: usize>(
     folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes).as_bytes()))?;
     files.push("modes.csv");
     if !call.no_pictures
-        && let Some(png) = draw_shapes(&mut world, body, &modes)?
+        && let Some(png) = draw_shapes(&mut world, body, &modes, rounding)?
     {
         folder.write("modes.png", false, |out| out.write_all(&png))?;
         files.push("modes.png");
@@ -108,30 +112,37 @@ fn of_world<const D: usize>(
         print_data(&text)?;
         return Ok(0);
     }
-    print_data(&table(&name, world.time(), &modes))?;
+    print_data(&table(&name, world.time(), &modes, rounding))?;
     eprintln!("written to {}", folder.path("").display());
     Ok(0)
 }
 
 /// For people: frequencies to five digits. All digits are in `modes.json` and `modes.csv`.
-fn table<const D: usize>(name: &str, time: f64, modes: &[Mode<D>]) -> String {
+fn table<const D: usize>(name: &str, time: f64, modes: &[Mode<D>], rounding: f64) -> String {
     let mut text = format!("`{name}` at t = {} s\nmode  frequency [Hz]     ω [rad/s]\n", number(time));
     for (k, mode) in modes.iter().enumerate() {
-        let (times_i, remark) = match (&mode.rigid, growth(mode)) {
+        let (times_i, remark) = match (&mode.rigid, growth(mode, rounding)) {
             (Some(motion), _) => ("", format!("  rigid: {motion}")),
+            (None, None) if mode.square.abs() <= rounding => ("", "  nothing resists it, but for rounding".into()),
             (None, Some(growth)) => (" i", format!("  unstable: grows as exp({} t/s)", rounded(growth, 5))),
             (None, None) => ("", String::new()),
         };
-        let omega = growth(mode).unwrap_or(mode.omega());
+        let omega = growth(mode, rounding).unwrap_or(mode.omega());
         let shown = |x: f64| rounded(x, 5) + times_i;
         let _ = writeln!(text, "{:4}{:>16}{:>14}{remark}", k + 1, shown(omega / core::f64::consts::TAU), shown(omega));
     }
     text
 }
 
+/// What ω² of a mode may be by rounding alone [1/s²].
+fn rounding<const D: usize>(world: &World<D>) -> f64 {
+    let squares = world.stability().iter().map(|(_, stability)| stability.spectrum.omega * stability.spectrum.omega);
+    ROUNDING * squares.filter(|square| square.is_finite()).max_by(f64::total_cmp).unwrap_or(0.0)
+}
+
 /// √(−ω²) of an unstable mode [1/s]: its displacement grows as exp(√(−ω²) t), since its frequency is imaginary.
-fn growth<const D: usize>(mode: &Mode<D>) -> Option<f64> {
-    (mode.rigid.is_none() && mode.square < 0.0).then(|| (-mode.square).sqrt())
+fn growth<const D: usize>(mode: &Mode<D>, rounding: f64) -> Option<f64> {
+    (mode.rigid.is_none() && mode.square < -rounding).then(|| (-mode.square).sqrt())
 }
 
 /// `modes.csv`: the displacement of every node in every mode.
@@ -152,6 +163,7 @@ fn draw_shapes<const D: usize>(
     world: &mut World<D>,
     body: usize,
     modes: &[Mode<D>],
+    rounding: f64,
 ) -> Result<Option<Vec<u8>>, Failure> {
     let failed = |e: draw::DrawError| Failure::Draw(e.to_string());
     let scenery = Scenery::new(world);
@@ -188,7 +200,8 @@ fn draw_shapes<const D: usize>(
         pictures.push(picture);
         captions.push(match &mode.rigid {
             Some(motion) => format!("{}: {motion}", k + 1),
-            None => match growth(mode) {
+            None if mode.square.abs() <= rounding => format!("{}: 0 Hz", k + 1),
+            None => match growth(mode, rounding) {
                 Some(growth) => {
                     let frequency = rounded(growth / core::f64::consts::TAU, 4);
                     format!("{}: unstable, {frequency} i Hz", k + 1)

@@ -100,14 +100,19 @@ impl core::fmt::Display for Found {
             (counted(self.bodies as u64, "body", "bodies"), counted(self.nodes as u64, "node", "nodes"));
         writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
         let substeps = counted(self.substeps.into(), "substep", "substeps");
-        writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?;
+        // Statics knows of no time.
+        let statics = self.integrator == "equilibrium";
+        match statics {
+            true => writeln!(f, "{}: a balance", self.integrator)?,
+            false => writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?,
+        }
         for c in &self.cells {
             let (low, high) = (rounded(c.smallest_angle, 3), rounded(c.largest_angle, 4));
             let (short, long) = (rounded(c.shortest_edge, 3), rounded(c.longest_edge, 3));
             let cells = counted(c.cells as u64, "cell", "cells");
             writeln!(f, "  `{}`: {cells} with angles of {low}° to {high}°, edges of {short} m to {long} m", c.body)?;
         }
-        for (body, stability) in &self.stability {
+        for (body, stability) in self.stability.iter().filter(|_| !statics) {
             let limit = match stability.largest_stable_step {
                 None => "there is no stable step".into(),
                 Some(limit) if limit.is_infinite() => "every step is stable".into(),

@@ -7,6 +7,7 @@ use crate::run::simd_from_environment;
 use opruga::core::spec::nearest;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::problem::visible;
+use opruga::io::safe_write::WriteError;
 use opruga::math::words::counted;
 use opruga_verify::{Case, Check, Family, Lab, Row};
 use serde_json::json;
@@ -27,7 +28,9 @@ pub(crate) fn verify(call: &Verify) -> Result<u8, Failure> {
     let stop = interrupt::asked_to_stop();
     // Whether the report can be written is known before the work.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
-    let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose()?;
+    let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose();
+    // Folders have another option here.
+    let folder = folder.map_err(|e| WriteError { hint: e.hint.map(|hint| hint.replace("--out", "--report")), ..e })?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores, usize::from);
     let bar = progress_bar(cases.len());
