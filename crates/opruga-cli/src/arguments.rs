@@ -293,7 +293,7 @@ pub(crate) struct Run {
     /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
-    /// Record the run to this file, for `opruga replay`
+    /// Record the run to this file, for `opruga replay`, which also writes its frames as VTU, glTF, PC2, MDD, OBJ or PLY
     ///
     /// The file holds the scene and needs no other, and a hash of every frame. A run that is killed loses no frame that it
     /// has finished. --force replaces a file that is there.
