@@ -1,10 +1,12 @@
 //! What can be said on the command line.
 
 mod bench;
+mod material;
 
 use crate::recorder::Wanted;
 pub(crate) use bench::{Bench, BenchElements, BenchLoad, BenchRecord, BenchScene, BenchVertices};
 use clap::{Args, Parser, Subcommand};
+pub(crate) use material::Material;
 use std::path::PathBuf;
 
 /// Elastically deformable bodies: run a scene, look at what happened, measure it.
@@ -67,6 +69,8 @@ pub(crate) enum Command {
     },
     /// Fill a surface or an outline with cells, look at a mesh, or write it in another format
     Mesh(Mesh),
+    /// Print energy density, stress and tangent of a law of finite elements at a deformation gradient
+    Material(Material),
     /// Compare the engine with closed forms and published numbers; exit code 1 where a case fails
     Verify(Verify),
     /// Measure speed
@@ -473,6 +477,7 @@ impl Command {
             Command::Sweep(sweep) => sweep.json,
             Command::Replay(replay) => replay.json,
             Command::Mesh(mesh) => mesh.json,
+            Command::Material(material) => material.json,
             Command::Modes(modes) => modes.json,
             Command::Verify(verify) => verify.json,
             Command::List { json } => *json,

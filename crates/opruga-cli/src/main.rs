@@ -8,6 +8,7 @@ mod exports;
 mod failure;
 mod forecast;
 mod interrupt;
+mod material;
 mod mesh;
 mod modes;
 mod outputs;
@@ -70,6 +71,7 @@ fn run_command(command: &Command) -> Result<u8, Failure> {
         Command::View { recording } => studio::view(recording),
         Command::Modes(call) => modes::modes(call),
         Command::Mesh(call) => mesh::mesh(call),
+        Command::Material(call) => material::material(call),
         Command::Check(check) => watch::check(check),
         Command::Sweep(call) => sweep::sweep(call),
         Command::Replay(replay) => replay::replay(replay),

@@ -37,5 +37,10 @@ pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
 pub use opruga_core::break_off::BreakOff;
+/// What the laws of the finite elements say at one deformation gradient.
+pub mod law {
+    pub use opruga_models::fem::materials::NAMES;
+    pub use opruga_models::fem::{AtPoint, SPEC, in_plane, in_space, own_fields};
+}
 pub use registry::Registry;
 pub use world::{BodyHandle, Options, Warning, World};

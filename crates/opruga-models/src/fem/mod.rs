@@ -27,6 +27,7 @@
 //! at small strain as Hooke's law of their E and ν lets them; how much a bent cell swells across is taken from there in all states.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
 
+mod at_point;
 mod boxes;
 mod builder;
 mod contraction;
@@ -47,6 +48,7 @@ mod solid;
 mod spec;
 mod work;
 
+pub use at_point::{AtPoint, in_plane, in_space, own_fields};
 pub use solid::Solid;
 pub use spec::SPEC;
 

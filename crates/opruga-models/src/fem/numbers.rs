@@ -51,13 +51,7 @@ impl<'a> Numbers<'a> {
         let cells = || (0..chosen.len()).filter(|cell| chosen[*cell]).map(|cell| cell as u32);
         for (body, values) in ingredients.values.iter().enumerate() {
             numbers.damped |= cells().any(|cell| numbers.time(cell, body) > 0.0);
-            if values.text("material") == Some("mooney_rivlin") {
-                let share = values.number("mooney_share").unwrap_or(0.0);
-                let most = |ratio: f64| ratio / (1.0 - 2.0 * ratio);
-                if let Some(ratio) = cells().map(|cell| numbers.ratio(cell, body)).find(|ratio| share > most(*ratio)) {
-                    return Err(refuse("model.not_convex", not_convex(share, ratio, most(ratio))));
-                }
-            }
+            cells().try_for_each(|cell| refuse_what_is_not_convex(values, numbers.ratio(cell, body)))?;
         }
         Ok(numbers)
     }
@@ -66,8 +60,7 @@ impl<'a> Numbers<'a> {
     pub(super) fn of(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
         let modulus = self.number(YOUNGS_MODULUS[0], self.moduli, cell, body);
         let ratio = self.ratio(cell, body);
-        let mu = modulus / (2.0 * (1.0 + ratio));
-        let lambda = modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio));
+        let [mu, lambda] = lame(modulus, ratio);
         [mu, lambda, self.number("mooney_share", None, cell, body), self.time(cell, body)]
     }
 
@@ -100,6 +93,20 @@ impl<'a> Numbers<'a> {
         let of_body = || self.values[body.min(self.values.len() - 1)].number(field).unwrap_or(0.0);
         of_cells.map_or_else(of_body, |all| all[cell as usize])
     }
+}
+
+/// μ and λ [Pa] of Young's modulus [Pa] and Poisson's ratio.
+pub(super) fn lame(modulus: f64, ratio: f64) -> [f64; 2] {
+    [modulus / (2.0 * (1.0 + ratio)), modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))]
+}
+
+/// Refuses a Mooney–Rivlin solid that is not convex with a Poisson's ratio.
+pub(super) fn refuse_what_is_not_convex(values: &Values, ratio: f64) -> Result<(), BuildError> {
+    if values.text("material") != Some("mooney_rivlin") {
+        return Ok(());
+    }
+    let (share, most) = (values.number("mooney_share").unwrap_or(0.0), ratio / (1.0 - 2.0 * ratio));
+    if share > most { Err(refuse("model.not_convex", not_convex(share, ratio, most))) } else { Ok(()) }
 }
 
 /// Why a share of the second constant of Mooney and Rivlin is refused with a Poisson's ratio that allows at most `most`.

@@ -1,0 +1,181 @@
+//! `opruga material`: what a law of the finite elements says at one deformation gradient.
+
+use crate::arguments::Material;
+use crate::failure::{Failure, print_data};
+use opruga::core::spec::{Value, Values, nearest};
+use opruga::io::problem::{SceneError, visible};
+use opruga::math::words::rounded;
+use opruga::world::law::{self, AtPoint};
+use serde_json::json;
+use std::fmt::Write as _;
+
+const SPEC: &opruga::core::spec::Spec = &law::SPEC;
+
+/// Prints energy density, stress and tangent.
+pub(crate) fn material(call: &Material) -> Result<u8, Failure> {
+    let gradient = gradient(&call.gradient)?;
+    let dimension = if gradient.len() == 4 { 2 } else { 3 };
+    let values = values(call, dimension)?;
+    let plane = values.text("plane").unwrap_or("strain");
+    let setting = if dimension == 3 { "space".to_string() } else { format!("plane {plane}") };
+    let name = &call.name;
+    let text = match dimension {
+        2 => shown(name, &setting, &values, &rows(&gradient), law::in_plane(&values, &rows(&gradient)), call.json)?,
+        _ => shown(name, &setting, &values, &rows(&gradient), law::in_space(&values, &rows(&gradient)), call.json)?,
+    };
+    print_data(&text)?;
+    Ok(0)
+}
+
+fn refuse(error: SceneError) -> Failure {
+    Failure::Scene(vec![error])
+}
+
+/// The numbers of F, row by row: of the plane or of space.
+fn gradient(text: &str) -> Result<Vec<f64>, Failure> {
+    let split = |c: char| c == ',' || c == ';' || c.is_whitespace();
+    let bare = text.replace(['[', ']'], " ");
+    let words: Vec<&str> = bare.split(split).filter(|word| !word.is_empty()).collect();
+    let wrong = |message: String, value: &str| {
+        let error = SceneError::new("material.gradient", message).path("--F").value(visible(value));
+        let error = error.allowed("4 finite numbers (2D) or 9 (3D), row by row");
+        refuse(
+            error.hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is rest in space"),
+        )
+    };
+    let mut numbers = Vec::with_capacity(words.len());
+    for word in &words {
+        match word.parse::<f64>() {
+            Ok(x) if x.is_finite() => numbers.push(x),
+            _ => return Err(wrong(format!("`--F` has `{}`, which is no finite number", visible(word)), word)),
+        }
+    }
+    match numbers.len() {
+        4 | 9 => Ok(numbers),
+        count => Err(wrong(format!("`--F` has {count} numbers"), text)),
+    }
+}
+
+fn rows<const D: usize>(numbers: &[f64]) -> [[f64; D]; D] {
+    core::array::from_fn(|i| core::array::from_fn(|j| numbers[i * D + j]))
+}
+
+/// The fields of the law: checked as those of a scene.
+fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
+    let mut values = Values::defaults(SPEC, dimension);
+    if !law::NAMES.contains(&call.name.as_str()) {
+        let message = format!("there is no material `{}`", visible(&call.name));
+        let error = SceneError::new("scene.unknown_name", message).path("NAME").value(visible(&call.name));
+        let error = error.allowed(law::NAMES.join(", "));
+        return Err(refuse(error.nearest(nearest(&call.name, law::NAMES.iter().copied()))));
+    }
+    if dimension == 3 && call.plane.is_some() {
+        let error =
+            SceneError::new("scene.dimension", "`--plane` is about the plane, and F is of space").path("--plane");
+        return Err(refuse(error.allowed("with 4 numbers in `--F`")));
+    }
+    let plane = call.plane.clone().unwrap_or_else(|| "strain".into());
+    let mut given: Vec<(&str, &str, Value)> = vec![
+        ("NAME", "material", Value::Text(call.name.clone())),
+        ("--E", "youngs_modulus", Value::Number(call.youngs_modulus)),
+        ("--nu", "poissons_ratio", Value::Number(call.poissons_ratio)),
+        ("--plane", "plane", Value::Text(plane)),
+    ];
+    for text in &call.set {
+        let (field, value) = text.split_once('=').unwrap_or((text, ""));
+        let own: Vec<&str> = law::own_fields(&call.name).collect();
+        let Some(field) = own.iter().find(|own| **own == field.trim()) else {
+            let message = format!("`{}` is no field of `{}`", visible(field), call.name);
+            let error = SceneError::new("scene.unknown_field", message).path("--set").value(visible(text));
+            let allowed = if own.is_empty() { "none: E and ν are all".into() } else { own.join(", ") };
+            return Err(refuse(error.allowed(allowed).nearest(nearest(field, own.iter().copied()))));
+        };
+        let number = value.trim().parse::<f64>().map_or_else(|_| Value::Text(value.trim().into()), Value::Number);
+        given.push(("--set", field, number));
+    }
+    for (option, field, value) in given {
+        let shown = value.to_string();
+        values.set(SPEC, field, value, dimension).map_err(|error| {
+            let range =
+                SPEC.fields.iter().find(|known| known.name == field).map(|known| known.range.describe(dimension));
+            let message = error.to_string();
+            let message = message.split("; allowed: ").next().unwrap_or_default().to_string();
+            let error = SceneError::new("scene.range", message).path(option).value(shown);
+            refuse(error.allowed(range.unwrap_or_default()))
+        })?;
+    }
+    Ok(values)
+}
+
+/// All of it for people or as JSON.
+fn shown<const D: usize>(
+    name: &str,
+    setting: &str,
+    values: &Values,
+    f: &[[f64; D]; D],
+    point: Result<AtPoint<D>, opruga::core::error::BuildError>,
+    as_json: bool,
+) -> Result<String, Failure> {
+    let point = point.map_err(|error| {
+        let (message, allowed) = error.message.split_once("; allowed: ").unwrap_or((&error.message, ""));
+        let out = SceneError::new(error.code, message).path("--F");
+        refuse(if allowed.is_empty() { out } else { out.allowed(allowed) })
+    })?;
+    let number = |field: &str| values.number(field).unwrap_or(0.0);
+    let ratio = opruga::math::matrix::determinant::<f64, D>(f) * point.across.unwrap_or(1.0);
+    let own: Vec<(&str, f64)> = law::own_fields(name).map(|field| (field, number(field))).collect();
+    if as_json {
+        let mut parameters = serde_json::Map::new();
+        for (field, x) in [("youngs_modulus", number("youngs_modulus")), ("poissons_ratio", number("poissons_ratio"))] {
+            parameters.insert(field.into(), json!(x));
+        }
+        parameters.extend(own.iter().map(|(field, x)| ((*field).to_string(), json!(x))));
+        let object = json!({
+            "schema": 1, "material": name, "setting": setting, "dimension": D, "parameters": parameters,
+            "mu": point.lame[0], "lambda": point.lame[1],
+            "deformation_gradient": f.map(|row| row.to_vec()).to_vec(),
+            "volume_ratio": ratio, "stretch_across": point.across, "energy_density": point.energy,
+            "stress": point.stress.map(|row| row.to_vec()).to_vec(), "tangent": point.tangent,
+        });
+        return Ok(format!("{}\n", serde_json::to_string_pretty(&object).unwrap_or_default()));
+    }
+    let digits = |x: f64| rounded(x, 10);
+    let mut text = format!(
+        "`{name}`, {setting}: E = {} Pa, ν = {}, μ = {} Pa, λ = {} Pa",
+        digits(number("youngs_modulus")),
+        digits(number("poissons_ratio")),
+        digits(point.lame[0]),
+        digits(point.lame[1])
+    );
+    for (field, x) in own {
+        let _ = write!(text, ", {field} = {}", digits(x));
+    }
+    let _ = writeln!(text, "\nJ = {}", digits(ratio));
+    if let Some(across) = point.across.filter(|_| setting == "plane stress") {
+        let _ = writeln!(text, "stretch across the plane = {}", digits(across));
+    }
+    let _ = writeln!(text, "ψ = {} J/m³", digits(point.energy));
+    let axes = &["x", "y", "z"][..D];
+    let _ = writeln!(text, "P = ∂ψ/∂F [Pa]");
+    text.push_str(&table(axes, axes, &point.stress.map(|row| row.to_vec())));
+    let pairs: Vec<String> = axes.iter().flat_map(|i| axes.iter().map(move |j| format!("{i}{j}"))).collect();
+    let pairs: Vec<&str> = pairs.iter().map(String::as_str).collect();
+    let _ = writeln!(text, "∂P/∂F [Pa]: a row for every entry of P, a column for every entry of F");
+    text.push_str(&table(&pairs, &pairs, &point.tangent));
+    Ok(text)
+}
+
+/// Numbers under their heads, aligned at the right.
+fn table(rows: &[&str], columns: &[&str], numbers: &[Vec<f64>]) -> String {
+    let cells: Vec<Vec<String>> = numbers.iter().map(|row| row.iter().map(|x| rounded(*x, 8)).collect()).collect();
+    let width = cells.iter().flatten().map(|cell| cell.chars().count()).max().unwrap_or(0) + 2;
+    let mut text = format!("{:4}", "");
+    columns.iter().for_each(|column| text.push_str(&format!("{column:>width$}")));
+    text.push('\n');
+    for (head, row) in rows.iter().zip(&cells) {
+        text.push_str(&format!("{head:>4}"));
+        row.iter().for_each(|cell| text.push_str(&format!("{cell:>width$}")));
+        text.push('\n');
+    }
+    text
+}

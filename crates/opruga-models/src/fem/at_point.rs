@@ -1,0 +1,100 @@
+//! What a law says at one deformation gradient: for tables, and to compare with other programs.
+
+use super::law::{Law, PARAMETERS, Points};
+use super::numbers::{lame, refuse_what_is_not_convex};
+use super::{SPEC, materials, refuse};
+use opruga_core::error::BuildError;
+use opruga_core::potential::Definiteness;
+use opruga_core::spec::{Values, nearest};
+use opruga_math::{Simd, WIDTH};
+
+/// What a law says at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtPoint<const D: usize> {
+    /// μ and λ [Pa].
+    pub lame: [f64; 2],
+    /// Energy per volume at rest ψ [J/m³].
+    pub energy: f64,
+    /// First Piola–Kirchhoff stress P = ∂ψ/∂F [Pa].
+    pub stress: [[f64; D]; D],
+    /// ∂Pᵢⱼ/∂Fₖₗ in row i·D + j and column k·D + l [Pa].
+    pub tangent: Vec<Vec<f64>>,
+    /// The stretch across the plane: 1 in plane strain, in plane stress that without stress across; none in space.
+    pub across: Option<f64>,
+}
+
+/// What the law of these fields of `fem` says in the plane.
+///
+/// # Errors
+/// `scene.unknown_name` where there is no such material, `model.not_convex`, and `model.no_value` where the law has no finite
+/// energy, stress and tangent.
+pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>, BuildError> {
+    let entry = entry(values)?;
+    let law = if values.text("plane") == Some("stress") { (entry.plane_stress)() } else { (entry.plane_strain)() };
+    let mut point = ask(&*law, values, gradient)?;
+    point.across = point.across.or(Some(1.0));
+    Ok(point)
+}
+
+/// What the law of these fields of `fem` says in space.
+///
+/// # Errors
+/// As [`in_plane`].
+pub fn in_space(values: &Values, gradient: &[[f64; 3]; 3]) -> Result<AtPoint<3>, BuildError> {
+    ask(&*(entry(values)?.space)(), values, gradient)
+}
+
+fn entry(values: &Values) -> Result<&'static materials::Entry, BuildError> {
+    let name = values.text("material").unwrap_or("");
+    materials::ALL.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let meant = nearest(name, materials::NAMES.iter().copied());
+        let hint = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
+        refuse("scene.unknown_name", format!("there is no material `{name}`{hint}"))
+    })
+}
+
+fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; D]) -> Result<AtPoint<D>, BuildError> {
+    let number = |name: &str| values.number(name).unwrap_or(0.0);
+    let (ratio, own) = (number("poissons_ratio"), number("mooney_share"));
+    refuse_what_is_not_convex(values, ratio)?;
+    let [mu, lambda] = lame(number("youngs_modulus"), ratio);
+    // One point in all lanes of a pack.
+    let spread = |numbers: &[f64]| numbers.iter().flat_map(|x| [*x; WIDTH]).collect::<Vec<f64>>();
+    let (f, parameters) = (spread(gradient.as_flattened()), spread(&[mu, lambda, own]));
+    debug_assert_eq!(parameters.len(), PARAMETERS * WIDTH);
+    let points = Points { count: 1, gradient: &f, parameters: &parameters };
+    let (mut energy, mut across) = (vec![0.0; WIDTH], vec![1.0; WIDTH]);
+    let (mut stress, mut tangent) = (vec![0.0; D * D * WIDTH], vec![0.0; D * D * D * D * WIDTH]);
+    let simd = Simd::best();
+    law.stress(simd, points, &mut energy, &mut stress);
+    law.tangent(simd, points, Definiteness::Exact, &mut tangent);
+    let found = law.thickness(simd, points, &mut across);
+    if energy[..1].iter().chain(&stress).chain(&tangent).any(|x| !x.is_finite()) {
+        let why = match (found, across[0].is_nan()) {
+            (true, true) => "no positive thickness is without stress across the plane",
+            _ => "the numbers are too large",
+        };
+        let det = opruga_math::matrix::determinant::<f64, D>(gradient);
+        let message = format!(
+            "`{}` has no value at this deformation gradient, whose determinant is {det}: {why}; allowed: det F > 0, and stretches \
+             that the law can follow",
+            values.text("material").unwrap_or("")
+        );
+        return Err(refuse("model.no_value", message));
+    }
+    let row = |row: usize| (0..D * D).map(|column| tangent[(row * D * D + column) * WIDTH]).collect();
+    Ok(AtPoint {
+        lame: [mu, lambda],
+        energy: energy[0],
+        stress: core::array::from_fn(|i| core::array::from_fn(|j| stress[(i * D + j) * WIDTH])),
+        tangent: (0..D * D).map(row).collect(),
+        across: found.then_some(across[0]),
+    })
+}
+
+/// The fields of `fem` that say something of a law alone, beside `youngs_modulus`, `poissons_ratio` and `plane`.
+pub fn own_fields(material: &str) -> impl Iterator<Item = &'static str> + use<'_> {
+    use opruga_core::spec::Condition;
+    let own = move |condition: &Condition| matches!(condition, Condition::Word("material", words) if words.contains(&material));
+    SPEC.fields.iter().filter(move |field| field.applies.iter().any(own)).map(|field| field.name)
+}
