@@ -28,8 +28,6 @@ pub(crate) struct Island<const D: usize> {
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
-    /// The largest speed of the last frames [m/s]: how far a body may go within a frame that its speeds do not tell.
-    lively: f64,
     /// The states at the looks within the last frame.
     looks: Vec<Saved<D>>,
 }
@@ -117,14 +115,8 @@ impl<const D: usize> Island<D> {
             work: Work8::default(),
             outcome: Ok(()),
             last: None,
-            lively: 0.0,
             looks: Vec::new(),
         };
-        // Nothing is known yet of how a body moves that was just made: its own size in a second is much.
-        let [low, high] = island.survey.position;
-        for d in 0..D {
-            island.lively = (high[d] - low[d]).larger(island.lively);
-        }
         island.stock = take_stock(&mut island.system);
         island
     }
@@ -188,8 +180,7 @@ impl<const D: usize> Island<D> {
 
     fn step_through(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
         self.save(plan.start);
-        self.lively = self.survey.largest_speed().larger(0.5 * self.lively);
-        let swept = self.swept(plan);
+        let swept = self.swept_bounds(plan);
         let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);
         // A body that left the region swept by its velocities, or found no end of a step, might have met an obstacle: once
@@ -331,15 +322,18 @@ impl<const D: usize> Island<D> {
             || colliders.reach(plan.start, plan.start + f64::from(plan.substeps) * plan.h, &swept[0], &swept[1])
     }
 
-    /// Bounds swept within the frame by v·dt + ½g·dt² and a margin.
-    fn swept(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
+    /// The bounding box swept within the frame: that of now, moved by v·dt + ½g·dt², and a margin for how the bodies deform.
+    ///
+    /// It decides whether obstacles are looked at, and with them how implicit steps are solved. So it follows from positions and
+    /// velocities alone, which snapshots hold: what an island has seen in earlier frames must not widen it.
+    fn swept_bounds(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
         let [mut low, mut high] = self.survey.position;
         let [slow, fast] = self.survey.velocity;
         let dt = f64::from(plan.substeps) * plan.h;
         for d in 0..D {
             let fall = 0.5 * self.system.gravity[d] * dt * dt;
-            // A body may deform at its own speed, or four times as fast; a tenth of its size is much in any case.
-            let margin = (0.1 * (high[d] - low[d])).smaller(4.0 * self.lively * dt) + fall.abs();
+            // A body at the turn of a swing is slow and goes far within the frame all the same: a tenth of its size is much.
+            let margin = 0.1 * (high[d] - low[d]) + fall.abs();
             low[d] += (slow[d] * dt).smaller(0.0) - margin;
             high[d] += (fast[d] * dt).larger(0.0) + margin;
         }

@@ -85,13 +85,6 @@ pub(crate) struct Survey<const D: usize> {
     pub(crate) finite: bool,
 }
 
-impl<const D: usize> Survey<D> {
-    /// A bound of the speeds along every axis [m/s].
-    pub(crate) fn largest_speed(&self) -> f64 {
-        self.velocity.iter().flatten().fold(0.0, |most, v| v.abs().larger(most))
-    }
-}
-
 /// Adds the numbers that belong to real bodies.
 pub(crate) fn total_of<const D: usize>(system: &System<D>, parts: &[f64; WIDTH]) -> f64 {
     match system.layout {
