@@ -1,6 +1,7 @@
 //! `[[load]]`, `[[command]]` and `[[probe]]`.
 
 use super::bodies::{self, Bodies};
+use super::lifetimes::Lifetimes;
 use super::moments::{Frames, Set};
 use super::pins;
 use super::reader::{Reader, join, listed};
@@ -98,7 +99,7 @@ pub(crate) fn commands<const D: usize>(
     // Bodies that come later may be taken away or changed too.
     let added: Vec<&str> = list.iter().filter_map(|(node, _)| node.get("body")?.get("name")?.text()).collect();
     let known = parameters::Known { bodies, added: &added, integrator, colliders };
-    let (mut commands, mut sets) = (Vec::new(), Vec::new());
+    let (mut commands, mut sets, mut lifetimes) = (Vec::new(), Vec::new(), Lifetimes::default());
     for (number, (node, path)) in list.iter().enumerate() {
         let before = reader.count();
         let Some(values) = tagged(reader, node, path, "do", "command", schema::COMMANDS) else { continue };
@@ -131,18 +132,12 @@ pub(crate) fn commands<const D: usize>(
         {
             sets.push(Set { at, parameter: parameter.clone(), place: place_of(node, "at"), path: path.clone() });
         }
-        for action in actions {
-            if let Some(body) = &action.body()
-                && let Some((_, added)) = bodies.later.values().find(|(k, added)| k == body && *added > at)
-            {
-                let name = bodies.list.get(*body).map_or(String::new(), |b| visible(&b.name));
-                let message = format!("the command begins at {at} s, before `{name}` is added at {added} s");
-                let error = SceneError::new("scene.range", message).path(join(path, "at")).value(at.to_string());
-                reader.report(place_of(node, "at"), error.allowed(format!("a time from {added}")));
-            }
-            commands.push(CommandBlueprint { at, until, action });
+        if reader.sound_since(before, &join(path, "at")) {
+            lifetimes.add(at, (*node, path), &actions, bodies.later.get(&number).map(|(k, _)| *k), bodies);
         }
+        commands.extend(actions.into_iter().map(|action| CommandBlueprint { at, until, action }));
     }
+    lifetimes.report(reader, bodies);
     if let Some(frames) = frames {
         frames.sets(reader, sets);
     }

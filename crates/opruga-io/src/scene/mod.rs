@@ -9,6 +9,7 @@ mod bodies;
 mod copies;
 mod cost;
 mod dimension;
+mod lifetimes;
 mod moments;
 mod parameters;
 mod pins;

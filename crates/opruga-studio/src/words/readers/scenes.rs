@@ -62,6 +62,11 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "the command begins at {} s, before `{}` is added at {} s",
         "naredba počinje u {} s, prije nego što se `{}` dodaje u {} s",
     ),
+    (
+        "the command begins at {} s, after `{}` is taken away at {} s",
+        "naredba počinje u {} s, nakon što se `{}` uklanja u {} s",
+    ),
+    ("a time before {}", "vrijeme prije {}"),
     ("the command begins at {} s, after the end at {} s", "naredba počinje u {} s, nakon kraja u {} s"),
     (
         "the command begins at {} s, and no frame of the run begins then or later",

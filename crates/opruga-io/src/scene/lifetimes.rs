@@ -1,0 +1,112 @@
+//! Commands on bodies that are not there when they begin: before a command adds them, or after one has taken them away.
+
+use super::bodies::Bodies;
+use super::place_of;
+use super::reader::{Reader, join};
+use crate::document::Node;
+use crate::problem::{SceneError, visible};
+use opruga_world::blueprint::Action;
+use std::collections::BTreeMap;
+
+/// What a command asks of bodies, by their places in the list.
+enum Asks {
+    /// This one is added.
+    Adds(usize),
+    /// This one is taken away.
+    Removes(usize),
+    /// This one must be there.
+    Needs(usize),
+    /// One of these at least must be there: the copies of a body.
+    NeedsOneOf(Vec<usize>),
+}
+
+/// Commands with what they ask of bodies, as they stand in the file.
+#[derive(Default)]
+pub(super) struct Lifetimes<'n> {
+    asked: Vec<Asked<'n>>,
+}
+
+struct Asked<'n> {
+    at: f64,
+    node: &'n Node,
+    path: String,
+    asks: Vec<Asks>,
+}
+
+impl<'n> Lifetimes<'n> {
+    /// Adds a command whose time is known.
+    pub(super) fn add<const D: usize>(
+        &mut self,
+        at: f64,
+        (node, path): (&'n Node, &str),
+        actions: &[Action<D>],
+        added: Option<usize>,
+        bodies: &Bodies<D>,
+    ) {
+        let asks = actions.iter().filter_map(|action| match action {
+            Action::Add(_) => added.map(Asks::Adds),
+            Action::Remove { name } => bodies.names.get(name).map(|k| Asks::Removes(*k)),
+            Action::Set { path, .. } => named(path, bodies).map(Asks::NeedsOneOf),
+            other => other.body().map(Asks::Needs),
+        });
+        self.asked.push(Asked { at, node, path: path.to_string(), asks: asks.collect() });
+    }
+
+    /// Reports every command that begins while its body is not there.
+    pub(super) fn report<const D: usize>(mut self, reader: &mut Reader<'_>, bodies: &Bodies<D>) {
+        // In the order in which the world runs them: of the same time as they stand in the file.
+        self.asked.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let mut coming: BTreeMap<usize, f64> = bodies.later.values().copied().collect();
+        let mut gone: BTreeMap<usize, f64> = BTreeMap::new();
+        for Asked { at, node, path, asks } in self.asked {
+            for asks in asks {
+                let missing = match &asks {
+                    Asks::Adds(k) => {
+                        coming.remove(k);
+                        None
+                    }
+                    Asks::Needs(k) | Asks::Removes(k) => Some(*k),
+                    Asks::NeedsOneOf(all) => {
+                        let there = |k: &usize| !coming.contains_key(k) && !gone.contains_key(k);
+                        all.last().copied().filter(|_| !all.iter().any(there))
+                    }
+                };
+                if let Some(k) = missing {
+                    let name = bodies.list.get(k).map_or(String::new(), |body| visible(&body.name));
+                    let told = match (coming.get(&k), gone.get(&k)) {
+                        (Some(added), _) => Some((
+                            format!("the command begins at {at} s, before `{name}` is added at {added} s"),
+                            format!("a time from {added}"),
+                        )),
+                        (_, Some(removed)) => Some((
+                            format!("the command begins at {at} s, after `{name}` is taken away at {removed} s"),
+                            format!("a time before {removed}"),
+                        )),
+                        _ => None,
+                    };
+                    if let Some((message, allowed)) = told {
+                        let error =
+                            SceneError::new("scene.range", message).path(join(&path, "at")).value(at.to_string());
+                        reader.report(place_of(node, "at"), error.allowed(allowed));
+                        continue;
+                    }
+                }
+                if let Asks::Removes(k) = asks {
+                    gone.insert(k, at);
+                }
+            }
+        }
+    }
+}
+
+/// The bodies that the path of a parameter names: one, or all copies; none where it is about something else.
+fn named<const D: usize>(path: &str, bodies: &Bodies<D>) -> Option<Vec<usize>> {
+    let name = path.strip_prefix("body.")?.split('.').next()?;
+    if let Some(k) = bodies.names.get(name) {
+        return Some(vec![*k]);
+    }
+    match bodies.copied.get(name) {
+        Some((first, copies)) => Some((*first..first + copies.len()).collect()),
+        None => name.parse().ok().filter(|k| *k < bodies.list.len()).map(|k| vec![k]),
+    }
+}
