@@ -356,8 +356,8 @@ pub(crate) struct Verify {
 pub(crate) struct Modes {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// How many modes, the lowest ones, 1 to 500
-    #[arg(short = 'n', long = "count", default_value_t = 10)]
+    /// How many modes, the lowest ones: a number from 1, or `all`
+    #[arg(short = 'n', long = "count", default_value = "10", allow_negative_numbers = true, value_parser = count_of_modes)]
     pub(crate) count: usize,
     /// The body [default: the first one]
     #[arg(long, value_name = "NAME")]
@@ -489,5 +489,17 @@ impl Command {
             Command::New { json, .. } => *json,
             Command::Reference { .. } | Command::Studio { .. } | Command::View { .. } => false,
         }
+    }
+}
+
+/// Reads a number of modes; all are more than any body has.
+fn count_of_modes(text: &str) -> Result<usize, String> {
+    match text {
+        "all" => Ok(usize::MAX),
+        _ => text
+            .parse()
+            .ok()
+            .filter(|count| *count > 0)
+            .ok_or_else(|| "allowed: a whole number from 1, or `all`".into()),
     }
 }

@@ -24,9 +24,6 @@ const AMPLITUDE: f64 = 0.12;
 
 /// Finds the modes of a body, prints them, and draws their shapes.
 pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
-    if !(1..=500).contains(&call.count) {
-        return Err(Failure::range("-n", call.count, "1 to 500"));
-    }
     if !(0.0..=1e9).contains(&call.after) {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }

@@ -214,6 +214,26 @@ fn a_wrong_number_of_a_cell_is_one_of_the_mesh_file() {
     assert!(error["allowed"] == "a number > 0" && error["hint"].is_string(), "{error}");
 }
 
+/// Every free axis has its mode, and a number of modes that is none is refused.
+#[test]
+fn all_modes_of_a_body_are_found() {
+    let text = plane("kind = \"backward_euler\"", &bar("b", "pin = [{ select = { side = \"left\" } }]"));
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &text);
+    let output = opruga(folder.path(), &["modes", "s.toml", "-n", "all", "--json", "--no-pictures", "--out", "o"]);
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let rows = found["rows"].as_array().expect("rows");
+    let more = opruga(folder.path(), &["modes", "s.toml", "-n", "100000", "--json", "--no-pictures", "--out", "p"]);
+    let more: Value = serde_json::from_slice(&more.stdout).expect("JSON");
+    assert!(rows.len() > 10 && more["rows"] == found["rows"], "{}", rows.len());
+    let squares: Vec<f64> = rows.iter().map(|row| row["omega_squared"].as_f64().expect("a number")).collect();
+    assert!(squares.is_sorted() && squares[0] > 0.0, "{squares:?}");
+    for wrong in ["0", "-1", "many"] {
+        let output = opruga(folder.path(), &["modes", "s.toml", "-n", wrong, "--out", "q"]);
+        assert!(output.status.code() == Some(2) && said(&output).contains("or `all`"), "{wrong}");
+    }
+}
+
 /// A body of which nothing can move has no modes, and that is said instead of an empty table.
 #[test]
 fn a_body_that_is_held_everywhere_has_no_modes_and_is_said_to() {

@@ -1,14 +1,21 @@
 //! The lowest natural frequencies: K φ = ω² M φ.
 //!
-//! A block Lanczos recurrence on (K + s M)⁻¹ M, whose largest eigenvalues 1/(ω² + s) belong to the lowest frequencies. A
-//! block of several vectors finds frequencies that occur more than once, as those of round bodies do; every vector is made
-//! orthogonal to all before it (twice), so that no frequency is found again. The shift s > 0 lets K be singular, as that of
-//! a free body is.
+//! Both methods look for the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies.
+//! The shift s > 0 lets K be singular, as that of a free body is.
+//!
+//! * *Few modes*: a block Lanczos recurrence. A block of several vectors finds frequencies that occur more than once, as those
+//!   of round bodies do; every block is made orthogonal to all before it (twice), so no frequency is found again. The projection
+//!   T = Qᵀ M A Q follows from the products that make a block orthogonal, and is taken apart only when the basis has grown by a
+//!   part of its size.
+//! * *Many modes*: with M = R Rᵀ, all eigenvectors of the dense symmetric matrix Rᵀ (K + s M)⁻¹ R.
+//!
+//! Products of dense matrices and their eigenvectors come from faer, so results have the same bits on processors of one class only.
 //!
 //! Source: Grimes, Lewis, Simon 1994; Parlett, *The symmetric eigenvalue problem*, 13.
 
-use crate::dense::symmetric_eigen;
-use crate::dot;
+use crate::{Indefinite, dot};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
 /// One natural frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,159 +28,424 @@ pub struct Mode {
     pub residual: f64,
 }
 
-/// A vector, and M times it.
-struct Weighed {
-    vector: Vec<f64>,
-    momentum: Vec<f64>,
+/// The matrices K and M of a body, by what they do to vectors of all its coordinates.
+pub struct Pencil<'a> {
+    /// Lumped masses, zero where a coordinate is held: residuals are measured by them.
+    pub mass: &'a [f64],
+    /// The shift s, with which K + s M is positive definite [1/s²].
+    pub shift: f64,
+    /// M-orthonormal shapes that are known already and are left out.
+    pub known: &'a [Vec<f64>],
+    /// Writes M x; M has neither rows nor columns of what is held.
+    pub weigh: &'a dyn Fn(&[f64], &mut [f64]),
+    /// Replaces b by (K + s M)⁻¹ b.
+    pub solve: &'a dyn Fn(&mut [f64]),
+    /// Writes K x.
+    pub stiffness: &'a dyn Fn(&[f64], &mut [f64]),
 }
 
 /// Vectors of a block.
 const BLOCK: usize = 6;
 
-/// The lowest `count` modes, those in `skip` (M-orthonormal shapes that are already known) left out.
+/// A Ritz pair whose residual is below this part of θ is as good as rounding lets it be.
+const CONVERGED: f64 = 1e-12;
+
+/// The basis is taken apart first when it has twice as many vectors as modes are wanted (fewer have never sufficed), and again when it
+/// has grown by this part of its size: each time costs the cube of the size.
+const GROWTH: f64 = 0.1;
+
+/// Bodies with up to this many free coordinates are taken apart whole: the dense matrix takes milliseconds.
+const SMALL: f64 = 240.0;
+
+/// Where more than this part of all modes is asked for, the dense matrix costs less than a basis of twice as many vectors.
+const MANY: f64 = 0.3;
+
+/// A vector of which less than this part is left by making it orthogonal to others lies in their space.
+const SPENT: f64 = 1e-10;
+
+/// A vector of which less than this part is left within its block is made orthogonal to the whole basis once more.
+const CANCELLED: f64 = 1e-2;
+
+/// Vectors that are tried in place of a spent one.
+const ATTEMPTS: usize = 4;
+
+/// What the search for so many modes of a body with so many free coordinates takes at most [bytes].
+pub fn memory(count: usize, free: usize) -> f64 {
+    let (count, free) = (count.min(free) as f64, free as f64);
+    // The dense matrix, its eigenvectors and what finds them; or a basis that grows by reallocation, and its projection.
+    let vectors = if is_dense(count, free) { 5.0 * free * free } else { 3.0 * count * (2.0 * free + 12.0 * count) };
+    8.0 * (vectors + 3.0 * count * free)
+}
+
+/// Whether all modes are found at once.
+fn is_dense(count: f64, free: f64) -> bool {
+    free <= SMALL || count > MANY * free
+}
+
+/// The lowest `count` modes, rising; fewer where the body has fewer.
 ///
-/// `mass` holds lumped masses, zero where a coordinate is held: sizes of residuals are told by them. `weigh` makes M x, `solve`
-/// makes (K + s M)⁻¹ b of b in place, `stiffness` makes K x; M has neither rows nor columns of what is held. The search ends when every residual is below 10⁻¹⁰ (ω² + s), or when the space is exhausted.
-pub fn lowest_modes(
-    count: usize,
-    mass: &[f64],
-    shift: f64,
-    skip: &[Vec<f64>],
-    weigh: impl Fn(&[f64], &mut [f64]),
-    mut solve: impl FnMut(&mut [f64]),
-    mut stiffness: impl FnMut(&[f64], &mut [f64]),
-) -> Vec<Mode> {
-    let freedom = mass.iter().filter(|m| **m > 0.0).count().saturating_sub(skip.len());
+/// # Errors
+/// [`Indefinite`] where the matrices have no natural frequencies in numbers: an entry that is not finite.
+pub fn lowest_modes(count: usize, pencil: &Pencil) -> Result<Vec<Mode>, Indefinite> {
+    let free = pencil.mass.iter().filter(|m| **m > 0.0).count();
+    let freedom = free.saturating_sub(pencil.known.len());
     let count = count.min(freedom);
-    let most = (3 * count + 60).min(freedom);
-    let weighed = |x: &[f64]| {
-        let mut out = vec![0.0; x.len()];
-        weigh(x, &mut out);
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let shapes =
+        if is_dense(count as f64, free as f64) { dense(count, pencil)? } else { lanczos(count, freedom, pencil)? };
+    let mut modes: Vec<Mode> = shapes.into_iter().map(|shape| mode_of(shape, pencil)).collect();
+    modes.sort_by(|a, b| a.square.total_cmp(&b.square));
+    Ok(modes)
+}
+
+/// A mode with its Rayleigh quotient, which does not lose the digits that 1/θ − s would.
+fn mode_of(shape: Vec<f64>, pencil: &Pencil) -> Mode {
+    let mut force = vec![0.0; shape.len()];
+    (pencil.stiffness)(&shape, &mut force);
+    let mut momentum = vec![0.0; shape.len()];
+    (pencil.weigh)(&shape, &mut momentum);
+    let square = dot(&shape, &force) / dot(&shape, &momentum);
+    let mut residual = 0.0;
+    for ((f, p), m) in force.iter().zip(&momentum).zip(pencil.mass) {
+        if *m > 0.0 {
+            let rest = f - square * p;
+            residual += rest * rest / m;
+        }
+    }
+    Mode { square, shape, residual: residual.sqrt() }
+}
+
+/// Vectors of one length side by side: a matrix by columns.
+struct Vectors {
+    rows: usize,
+    entries: Vec<f64>,
+}
+
+impl Vectors {
+    fn new(rows: usize) -> Vectors {
+        Vectors { rows, entries: Vec::new() }
+    }
+    fn zeros(rows: usize, count: usize) -> Vectors {
+        Vectors { rows, entries: vec![0.0; rows * count] }
+    }
+    fn len(&self) -> usize {
+        self.entries.len() / self.rows
+    }
+    fn push(&mut self, vector: &[f64]) {
+        self.entries.extend_from_slice(vector);
+    }
+    fn at(&self, k: usize) -> &[f64] {
+        &self.entries[k * self.rows..][..self.rows]
+    }
+    fn at_mut(&mut self, k: usize) -> &mut [f64] {
+        &mut self.entries[k * self.rows..][..self.rows]
+    }
+    fn matrix(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.entries, self.rows, self.len())
+    }
+    fn matrix_mut(&mut self) -> MatMut<'_, f64> {
+        let columns = self.len();
+        MatMut::from_column_major_slice_mut(&mut self.entries, self.rows, columns)
+    }
+    /// Aᵀ B of two sets of vectors.
+    fn products(&self, other: &Vectors) -> Mat<f64> {
+        let mut out = Mat::zeros(self.len(), other.len());
+        matmul(&mut out, Accum::Replace, self.matrix().transpose(), other.matrix(), 1.0, Par::Seq);
         out
-    };
-    let skip: Vec<Weighed> = skip.iter().map(|x| Weighed { momentum: weighed(x), vector: x.clone() }).collect();
-    let mut basis: Vec<Weighed> = Vec::new();
-    // (K + s M)⁻¹ M of each vector of the basis.
-    let mut images: Vec<Vec<f64>> = Vec::new();
-    let mut block: Vec<Vec<f64>> = (0..BLOCK.min(freedom)).map(|k| start(mass, k)).collect();
-    let mut seed = BLOCK;
-    let mut best = Vec::new();
-    while basis.len() < most {
-        let mut fresh = 0;
-        for mut vector in std::mem::take(&mut block) {
-            if basis.len() == most {
-                break;
-            }
-            // A vector that is spent is replaced by a new one.
-            let mut attempts = 0;
-            while !orthonormalise(&mut vector, &weighed, &skip, &basis) && attempts < 4 {
-                vector = start(mass, seed);
+    }
+    /// Subtracts A C of another set A of vectors.
+    fn subtract(&mut self, others: &Vectors, weights: &Mat<f64>) {
+        matmul(self.matrix_mut(), Accum::Add, others.matrix(), weights, -1.0, Par::Seq);
+    }
+    /// The combinations A C, one vector for each column of C.
+    fn combined(&self, weights: MatRef<'_, f64>) -> Vectors {
+        let mut out = Vectors::zeros(self.rows, weights.ncols());
+        matmul(out.matrix_mut(), Accum::Replace, self.matrix(), weights, 1.0, Par::Seq);
+        out
+    }
+    fn weighed(&self, pencil: &Pencil) -> Vectors {
+        let mut out = Vectors::zeros(self.rows, self.len());
+        for k in 0..self.len() {
+            (pencil.weigh)(self.at(k), out.at_mut(k));
+        }
+        out
+    }
+}
+
+/// Eigenvalues, rising, and eigenvectors as columns.
+fn eigen(matrix: &Mat<f64>) -> Result<(Vec<f64>, Mat<f64>), Indefinite> {
+    let found = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Indefinite)?;
+    let values: Vec<f64> = found.S().column_vector().iter().copied().collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(Indefinite);
+    }
+    Ok((values, found.U().to_owned()))
+}
+
+/// The shapes of the lowest modes by a block Lanczos recurrence.
+fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>>, Indefinite> {
+    let rows = pencil.mass.len();
+    let mut known = Vectors::new(rows);
+    for shape in pencil.known {
+        known.push(shape);
+    }
+    let mut basis = Vectors::new(rows);
+    // The columns of T from the top to below the diagonal; what is above follows from symmetry.
+    let mut projected: Vec<Vec<f64>> = Vec::new();
+    let mut seed = 0;
+    let mut block = Vectors::new(rows);
+    for _ in 0..BLOCK {
+        block.push(&start(pencil.mass, seed));
+        seed += 1;
+    }
+    let mut looked = 0;
+    // The first block has nothing before it: every vector counts whole.
+    orthogonalise(&mut block, &known, &basis, pencil);
+    let mut lengths = vec![0.0; BLOCK];
+    loop {
+        // A block that is orthonormal within itself; what is spent is replaced.
+        let fresh = basis.len();
+        for k in 0..block.len().min(freedom - fresh) {
+            let mut vector = block.at(k).to_vec();
+            let mut accepted = orthonormalise_among(&mut vector, lengths[k], fresh, &known, &basis, pencil);
+            for _ in 0..ATTEMPTS {
+                if accepted {
+                    break;
+                }
+                vector = start(pencil.mass, seed);
                 seed += 1;
-                attempts += 1;
+                accepted = orthonormalise(&mut vector, &known, &basis, pencil);
             }
-            if attempts == 4 {
-                continue;
+            if accepted {
+                basis.push(&vector);
             }
-            let momentum = weighed(&vector);
-            let mut image = momentum.clone();
-            solve(&mut image);
-            for (entry, m) in image.iter_mut().zip(mass) {
+        }
+        let size = basis.len();
+        // Its images A q, their part in the basis, and what is left for the next block.
+        block = Vectors::new(rows);
+        for k in fresh..size {
+            let mut image = vec![0.0; rows];
+            (pencil.weigh)(basis.at(k), &mut image);
+            (pencil.solve)(&mut image);
+            for (entry, m) in image.iter_mut().zip(pencil.mass) {
                 *entry = if *m > 0.0 { *entry } else { 0.0 };
             }
-            block.push(image.clone());
-            basis.push(Weighed { vector, momentum });
-            images.push(image);
-            fresh += 1;
+            block.push(&image);
         }
-        if fresh == 0 {
-            break;
+        if block.entries.iter().any(|entry| !entry.is_finite()) {
+            return Err(Indefinite);
         }
-        if basis.len() >= count {
-            best = ritz(count, mass, &basis, &images, &weighed, &mut stiffness);
-            if best.iter().all(|mode| mode.residual <= 1e-10 * (mode.square.abs() + shift)) {
-                break;
+        lengths = (0..block.len()).map(|k| length(block.at(k), pencil)).collect();
+        let within = orthogonalise(&mut block, &known, &basis, pencil);
+        for k in 0..size - fresh {
+            projected.push(within.col(k).iter().copied().collect());
+        }
+        let exhausted = size == fresh || size == freedom;
+        if !exhausted && (size < 2 * count || (size as f64) < (1.0 + GROWTH) * looked as f64) {
+            continue;
+        }
+        looked = size;
+        // The part (i, j) stands in the later one of both columns.
+        let t = Mat::from_fn(size, size, |i, j| if i <= j { projected[j][i] } else { projected[i][j] });
+        let (theta, vectors) = eigen(&t)?;
+        let left = block.products(&block.weighed(pencil));
+        let converged = |k: usize| {
+            // |A Q w − θ Q w| = |rest · (the last block of w)|, in the norm of M.
+            let last: Vec<f64> = (fresh..size).map(|row| vectors[(row, k)]).collect();
+            let mut square = 0.0;
+            for (i, a) in last.iter().enumerate() {
+                for (j, b) in last.iter().enumerate() {
+                    square += a * left[(i, j)] * b;
+                }
             }
+            square <= (CONVERGED * theta[k]) * (CONVERGED * theta[k])
+        };
+        let wanted = count.min(size);
+        if exhausted || (size - wanted..size).all(converged) {
+            let shapes = basis.combined(vectors.subcols(size - wanted, wanted));
+            return Ok((0..wanted).rev().map(|k| shapes.at(k).to_vec()).collect());
         }
     }
-    best
 }
 
-/// The best approximations within a basis.
-fn ritz(
-    count: usize,
-    mass: &[f64],
-    basis: &[Weighed],
-    images: &[Vec<f64>],
-    weighed: &impl Fn(&[f64]) -> Vec<f64>,
-    stiffness: &mut impl FnMut(&[f64], &mut [f64]),
-) -> Vec<Mode> {
-    let n = basis.len();
-    let mut projected = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..n {
-            projected[i * n + j] = dot(&basis[i].momentum, &images[j]);
-        }
-    }
-    for i in 0..n {
-        for j in 0..i {
-            let mean = 0.5 * (projected[i * n + j] + projected[j * n + i]);
-            (projected[i * n + j], projected[j * n + i]) = (mean, mean);
-        }
-    }
-    let (_, vectors) = symmetric_eigen(&projected, n);
-    let mut modes = Vec::with_capacity(count);
-    for k in 0..count {
-        let weights = &vectors[n - 1 - k];
-        let mut shape = vec![0.0; mass.len()];
-        for (weight, vector) in weights.iter().zip(basis) {
-            for (out, v) in shape.iter_mut().zip(&vector.vector) {
-                *out += weight * v;
-            }
-        }
-        let mut force = vec![0.0; mass.len()];
-        stiffness(&shape, &mut force);
-        // Rayleigh's quotient, which does not lose the digits that 1/θ − s would.
-        let square = dot(&shape, &force);
-        let mut residual = 0.0;
-        for ((f, x), m) in force.iter().zip(&weighed(&shape)).zip(mass) {
-            if *m > 0.0 {
-                let rest = f - square * x;
-                residual += rest * rest / m;
-            }
-        }
-        modes.push(Mode { square, shape, residual: residual.sqrt() });
-    }
-    modes.sort_by(|a, b| a.square.total_cmp(&b.square));
-    modes
-}
-
-/// Makes a vector orthogonal to others and of length one, in the scalar product of M; false if nothing is left of it.
-fn orthonormalise(
-    vector: &mut [f64],
-    weighed: &impl Fn(&[f64]) -> Vec<f64>,
-    skip: &[Weighed],
-    basis: &[Weighed],
-) -> bool {
-    let norm = |v: &[f64]| dot(v, &weighed(v)).sqrt();
-    let before = norm(vector);
-    if !(before > 0.0 && before.is_finite()) {
-        return false;
-    }
-    vector.iter_mut().for_each(|v| *v /= before);
+/// Subtracts from vectors their parts in two M-orthonormal sets, twice; gives the parts in the second.
+fn orthogonalise(block: &mut Vectors, known: &Vectors, basis: &Vectors, pencil: &Pencil) -> Mat<f64> {
+    let mut parts = Mat::zeros(basis.len(), block.len());
     for _ in 0..2 {
-        for other in skip.iter().chain(basis) {
-            let along = dot(vector, &other.momentum);
-            for (v, o) in vector.iter_mut().zip(&other.vector) {
-                *v -= along * o;
-            }
+        let momentum = block.weighed(pencil);
+        if known.len() > 0 {
+            let along = known.products(&momentum);
+            block.subtract(known, &along);
+        }
+        if basis.len() > 0 {
+            let along = basis.products(&momentum);
+            block.subtract(basis, &along);
+            parts += along;
         }
     }
-    let after = norm(vector);
-    if after < 1e-10 {
+    parts
+}
+
+/// The length of a vector in the scalar product of M.
+fn length(vector: &[f64], pencil: &Pencil) -> f64 {
+    let mut momentum = vec![0.0; vector.len()];
+    (pencil.weigh)(vector, &mut momentum);
+    dot(vector, &momentum).sqrt()
+}
+
+/// Gives a vector that is orthogonal to the basis before `fresh` length one, and makes it orthogonal to the rest of the basis; false if
+/// nothing is left of it, by the length that it had before.
+fn orthonormalise_among(
+    vector: &mut [f64],
+    before: f64,
+    fresh: usize,
+    known: &Vectors,
+    basis: &Vectors,
+    pencil: &Pencil,
+) -> bool {
+    let whole = length(vector, pencil);
+    if !(whole > SPENT * before && whole.is_finite()) {
         return false;
+    }
+    vector.iter_mut().for_each(|v| *v /= whole);
+    let mut momentum = vec![0.0; vector.len()];
+    for _ in 0..2 {
+        for k in fresh..basis.len() {
+            (pencil.weigh)(vector, &mut momentum);
+            let along = dot(basis.at(k), &momentum);
+            vector.iter_mut().zip(basis.at(k)).for_each(|(v, b)| *v -= along * b);
+        }
+    }
+    let after = length(vector, pencil);
+    if whole * after <= SPENT * before {
+        return false;
+    }
+    if after < CANCELLED {
+        // The rounding that was left of the basis before it has grown.
+        return orthonormalise(vector, known, basis, pencil);
     }
     vector.iter_mut().for_each(|v| *v /= after);
     true
+}
+
+/// Makes one vector orthogonal to others and of length one in the scalar product of M; false if nothing is left of it.
+fn orthonormalise(vector: &mut [f64], known: &Vectors, basis: &Vectors, pencil: &Pencil) -> bool {
+    let before = length(vector, pencil);
+    if !(before > 0.0 && before.is_finite()) {
+        return false;
+    }
+    let mut one = Vectors { rows: vector.len(), entries: vector.iter().map(|v| v / before).collect() };
+    orthogonalise(&mut one, known, basis, pencil);
+    let after = length(&one.entries, pencil);
+    if after < SPENT {
+        return false;
+    }
+    for (out, v) in vector.iter_mut().zip(&one.entries) {
+        *out = v / after;
+    }
+    true
+}
+
+/// The shapes of the lowest modes out of all.
+fn dense(count: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>>, Indefinite> {
+    let rows = pencil.mass.len();
+    let free: Vec<usize> = (0..rows).filter(|k| pencil.mass[*k] > 0.0).collect();
+    let n = free.len();
+    let root = root_of_mass(&free, pencil)?;
+    let gathered = |vector: &[f64], out: &mut [f64]| out.iter_mut().zip(&free).for_each(|(o, k)| *o = vector[*k]);
+    // Y = (K + s M)⁻¹ R, column by column, then H = Rᵀ Y.
+    let mut images = Vectors::zeros(n, n);
+    let mut column = vec![0.0; rows];
+    for j in 0..n {
+        column.fill(0.0);
+        match &root {
+            Root::Diagonal(root) => column[free[j]] = root[j],
+            Root::Lower(root) => (j..n).for_each(|i| column[free[i]] = root[(i, j)]),
+        }
+        (pencil.solve)(&mut column);
+        gathered(&column, images.at_mut(j));
+    }
+    let mut h = root.transposed_product(images.matrix());
+    for j in 0..n {
+        for i in 0..j {
+            let mean = 0.5 * (h[(i, j)] + h[(j, i)]);
+            (h[(i, j)], h[(j, i)]) = (mean, mean);
+        }
+    }
+    // What is known becomes the end of the spectrum: H ← (1 − Q Qᵀ) H (1 − Q Qᵀ) with Q = Rᵀ · known.
+    if !pencil.known.is_empty() {
+        let mut known = Vectors::zeros(n, pencil.known.len());
+        for (k, shape) in pencil.known.iter().enumerate() {
+            gathered(shape, known.at_mut(k));
+        }
+        let q = root.transposed_product(known.matrix());
+        let hq = &h * &q;
+        let middle = q.transpose() * &hq;
+        h = &h - &hq * q.transpose() - &q * hq.transpose() + &q * middle * q.transpose();
+    }
+    let (_, vectors) = eigen(&h)?;
+    let mut shapes = Vec::with_capacity(count);
+    for k in 0..count {
+        let mut found: Vec<f64> = vectors.col(n - 1 - k).iter().copied().collect();
+        root.solve_transposed(&mut found);
+        let mut shape = vec![0.0; rows];
+        free.iter().zip(&found).for_each(|(at, value)| shape[*at] = *value);
+        shapes.push(shape);
+    }
+    Ok(shapes)
+}
+
+/// A root R of the masses of free coordinates, M = R Rᵀ.
+enum Root {
+    Diagonal(Vec<f64>),
+    Lower(Mat<f64>),
+}
+
+impl Root {
+    /// Rᵀ B.
+    fn transposed_product(&self, b: MatRef<'_, f64>) -> Mat<f64> {
+        match self {
+            Root::Diagonal(root) => Mat::from_fn(b.nrows(), b.ncols(), |i, j| root[i] * b[(i, j)]),
+            Root::Lower(root) => root.transpose() * b,
+        }
+    }
+    /// x ← R⁻ᵀ x.
+    fn solve_transposed(&self, x: &mut [f64]) {
+        match self {
+            Root::Diagonal(root) => x.iter_mut().zip(root).for_each(|(x, root)| *x /= root),
+            Root::Lower(root) => {
+                for i in (0..x.len()).rev() {
+                    let mut rest = x[i];
+                    for j in i + 1..x.len() {
+                        rest -= root[(j, i)] * x[j];
+                    }
+                    x[i] = rest / root[(i, i)];
+                }
+            }
+        }
+    }
+}
+
+fn root_of_mass(free: &[usize], pencil: &Pencil) -> Result<Root, Indefinite> {
+    let (rows, n) = (pencil.mass.len(), free.len());
+    let (mut unit, mut product) = (vec![0.0; rows], vec![0.0; rows]);
+    let mut mass = Mat::<f64>::zeros(n, n);
+    let mut coupled = false;
+    for (j, at) in free.iter().enumerate() {
+        unit[*at] = 1.0;
+        (pencil.weigh)(&unit, &mut product);
+        unit[*at] = 0.0;
+        for (i, at) in free.iter().enumerate() {
+            mass[(i, j)] = product[*at];
+            coupled |= i != j && product[*at] != 0.0;
+        }
+    }
+    if coupled {
+        return Ok(Root::Lower(mass.llt(Side::Lower).map_err(|_| Indefinite)?.L().to_owned()));
+    }
+    Ok(Root::Diagonal((0..n).map(|k| mass[(k, k)].sqrt()).collect()))
 }
 
 /// A vector of pseudo-random entries, always the same for the same number.
@@ -188,3 +460,7 @@ fn start(mass: &[f64], number: usize) -> Vec<f64> {
     };
     mass.iter().enumerate().map(entry).collect()
 }
+
+#[cfg(test)]
+#[path = "eigen_tests.rs"]
+mod tests;

@@ -233,7 +233,15 @@ fn modes_of_a_free_ring_come_in_pairs() {
     let mass = vec![1.0; nodes];
     let weigh = |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(&mass).for_each(|((y, x), m)| *y = m * x);
     let stiffness = |x: &[f64], y: &mut [f64]| matrix.multiply(x, y);
-    let modes = crate::eigen::lowest_modes(9, &mass, 0.01, &[], weigh, |x| cholesky.solve(x), stiffness);
+    let pencil = crate::eigen::Pencil {
+        mass: &mass,
+        shift: 0.01,
+        known: &[],
+        weigh: &weigh,
+        solve: &|x| cholesky.solve(x),
+        stiffness: &stiffness,
+    };
+    let modes = crate::eigen::lowest_modes(9, &pencil).unwrap();
     assert_eq!(modes.len(), 9);
     for (number, mode) in modes.iter().enumerate() {
         let k = number.div_ceil(2) as f64;

@@ -13,7 +13,7 @@ use opruga_core::state::Columns;
 use opruga_core::system::{Stage, System};
 use opruga_integrators::equilibrium::rigid::{shape_of, unheld_motions};
 use opruga_solve::blocks::isotropic;
-use opruga_solve::eigen::lowest_modes;
+use opruga_solve::eigen::{Pencil, lowest_modes, memory};
 use opruga_solve::{BlockMatrix, Cholesky, dot};
 use std::collections::BTreeMap;
 
@@ -43,6 +43,9 @@ impl<const D: usize> Mode<D> {
 
 /// A rigid motion that strains the body by less than this part of its stiffness is free.
 const FREE: f64 = 1e-9;
+
+/// What a search for modes may take [bytes].
+const MOST_BYTES: f64 = 4_294_967_296.0;
 
 impl<const D: usize> World<D> {
     pub(crate) fn modes_here(&self, body: usize, count: usize) -> Result<Vec<Mode<D>>, WorldError> {
@@ -77,6 +80,16 @@ impl<const D: usize> World<D> {
         if let Some(light) = (0..mass.len()).find(|k| !(mass[*k] > 0.0 || held[*k])) {
             let message = format!("node {} has no mass; allowed: masses above 0 where a node can move", light / D);
             return Err(refuse("modes.no_mass", message));
+        }
+        let axes = held.iter().filter(|held| !**held).count();
+        let bytes = memory(count, axes);
+        if bytes > MOST_BYTES {
+            let message = format!(
+                "{} modes of a body with {axes} free coordinates take about {bytes:.0} bytes; allowed: at most {MOST_BYTES:.0} bytes; \
+                 hint: fewer modes",
+                count.min(axes)
+            );
+            return Err(refuse("modes.memory", message));
         }
         // Held axes: no row and no column.
         let free: Vec<bool> = (0..system.nodes).map(|node| !held[node * D..(node + 1) * D].contains(&true)).collect();
@@ -113,6 +126,8 @@ impl<const D: usize> World<D> {
             *m = if *held { 0.0 } else { *m };
         }
 
+        let without_frequencies =
+            || refuse("modes.indefinite", "the stiffness of this state has no natural frequencies".into());
         // (K + s M) must be positive definite; that of a state that is about to buckle needs a larger s.
         let mut shift = 1e-6 * fastest;
         let mut factor = Cholesky::default();
@@ -133,16 +148,21 @@ impl<const D: usize> World<D> {
             }
             shift *= 10.0;
             if shift > 1e3 * fastest {
-                return Err(refuse(
-                    "modes.indefinite",
-                    "the stiffness of this state has no natural frequencies".into(),
-                ));
+                return Err(without_frequencies());
             }
         }
         let wanted = count.saturating_sub(rigid.len());
         let by_mass = |x: &[f64], y: &mut [f64]| weigh(&system, &mass, x, y);
         let by_stiffness = |x: &[f64], y: &mut [f64]| stiffness.multiply(x, y);
-        let found = lowest_modes(wanted, &mass, shift, &known, by_mass, |x| factor.solve(x), by_stiffness);
+        let pencil = Pencil {
+            mass: &mass,
+            shift,
+            known: &known,
+            weigh: &by_mass,
+            solve: &|x| factor.solve(x),
+            stiffness: &by_stiffness,
+        };
+        let found = lowest_modes(wanted, &pencil).map_err(|_| without_frequencies())?;
         rigid.truncate(count);
         rigid.extend(found.into_iter().map(|mode| Mode {
             square: mode.square,

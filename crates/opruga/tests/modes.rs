@@ -82,3 +82,13 @@ fn an_unstable_state_has_a_negative_square() {
     frames(&mut world, 1);
     assert!(world.modes(5, 1).is_err());
 }
+
+/// Modes whose search would take more memory than it may are refused before it begins.
+#[test]
+fn more_modes_than_memory_allows_are_refused() {
+    let text = head(0.001, 1, 0.0, "backward_euler")
+        + "[[body]]\nname = \"plate\"\nshape = { kind = \"grid\", size = [1.0, 1.0], cells = [75, 75] }\nmass = 1.0\n\
+           models = [ { kind = \"mass_spring\", stiffness = 100.0 } ]\n";
+    let refused = built(plane(&text)).modes(0, usize::MAX).unwrap_err();
+    assert_eq!(refused.code(), "modes.memory");
+}

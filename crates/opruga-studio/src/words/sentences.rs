@@ -305,6 +305,11 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "svi čvorovi tijela pribodeni su po svim osima, i ništa na njemu ne može titrati; dopušteno: čvor slobodan po nekoj osi; \
          savjet: drugo tijelo ili manje pribodenih točaka",
     ),
+    (
+        "{} modes of a body with {} free coordinates take about {} bytes; allowed: at most {} bytes; hint: fewer modes",
+        "{} oblika titranja tijela s ovoliko slobodnih koordinata: {} traži oko {} bajtova; dopušteno: najviše {} bajtova; \
+         savjet: manje oblika",
+    ),
     ("body `{}` has no model `{}`; it has {}", "tijelo `{}` nema model `{}`; ima {}"),
     (
         "body `{}` follows the integrator of the scene: integrator.{}",
