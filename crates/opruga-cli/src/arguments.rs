@@ -2,12 +2,14 @@
 
 mod bench;
 mod material;
+mod verify;
 
 use crate::recorder::Wanted;
 pub(crate) use bench::{Bench, BenchElements, BenchLoad, BenchRecord, BenchScene, BenchVertices};
 use clap::{Args, Parser, Subcommand};
 pub(crate) use material::Material;
 use std::path::PathBuf;
+pub(crate) use verify::Verify;
 
 /// Elastically deformable bodies: run a scene, look at what happened, measure it.
 #[derive(Debug, Parser)]
@@ -276,6 +278,12 @@ pub(crate) struct Run {
     /// Threads, 1 to 256; the results do not depend on them
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
+    /// Write Cauchy's stress, the von Mises stress and J of every node to final.csv too
+    ///
+    /// A node has of the cells of finite elements around it the mean by their volume at rest: columns sxx, syy, szz, sxy, in 3D syz
+    /// and szx, von_mises (of that mean), volume_ratio. Nodes of bodies without finite elements have NaN.
+    #[arg(long)]
+    pub(crate) stress: bool,
     /// Override a parameter, such as time.substeps=64; may be given several times
     ///
     /// The path is the way through the scene file: integrator.kind=heun, body.ball.models.pressure.nRT=50,
@@ -324,32 +332,6 @@ pub(crate) struct Run {
     /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
-}
-
-#[derive(Args, Debug)]
-pub(crate) struct Verify {
-    /// Only cases whose name contains this, or those of a family: statics, materials, pressure, dynamics, integrators,
-    /// ledgers; may be given several times
-    #[arg(long, value_name = "WORD")]
-    pub(crate) filter: Vec<String>,
-    /// List the cases with their sources, and run none
-    #[arg(long)]
-    pub(crate) list: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Write a report with a plot of every case to this folder: report.html, report.md
-    #[arg(long, value_name = "FOLDER", conflicts_with = "list")]
-    pub(crate) report: Option<PathBuf>,
-    /// Replace the report that is there
-    #[arg(long, requires = "report")]
-    pub(crate) force: bool,
-    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge, 0.5 to 2: which cases notice?
-    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, default_value_t = 1.0, conflicts_with = "list")]
-    pub(crate) stiffer: f64,
-    /// Threads, 1 to 256; the results do not depend on them [default: one for each core]
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
-    pub(crate) threads: Option<u16>,
 }
 
 #[derive(Args, Debug)]

@@ -4,13 +4,16 @@ use crate::checkpoints::Keeper;
 use crate::failure::Failure;
 use crate::recorder::{Recorder, film_rate};
 use crate::source::Source;
+use opruga::blueprint::Recorded;
 use opruga::draw;
 use opruga::io::output_folder::OutputFolder;
 use opruga::io::tables::{
     CellSummary, EnergySummary, FinalBody, MomentumSummary, SolverSummary, Summary, WarningSummary, write_final,
+    write_final_with,
 };
 use opruga::math::words::{counted, number, rounded};
 use opruga::pictures::{Moment, Scenery};
+use opruga::world::NodeState;
 use opruga::{Warning, World};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,6 +31,8 @@ pub(crate) struct Outputs<'a> {
     /// What was odd in the call and in the scene, and went wrong on the way; all of it was told when it was found.
     pub(crate) told: Vec<WarningSummary>,
     pub(crate) stop: &'a AtomicBool,
+    /// Whether `final.csv` tells the stress at every node too.
+    pub(crate) stress: bool,
 }
 
 impl Outputs<'_> {
@@ -52,7 +57,13 @@ impl Outputs<'_> {
             positions,
             velocities,
         });
-        self.folder.write("final.csv", false, |out| write_final(out, rows))?;
+        if self.stress {
+            let columns = [Recorded::Stress.columns(D), Recorded::VolumeRatio.columns(D)].concat();
+            let rows = rows.zip(&numbers).map(|(row, &body)| (row, stresses(world, body)));
+            self.folder.write("final.csv", false, |out| write_final_with(out, &columns, rows))?;
+        } else {
+            self.folder.write("final.csv", false, |out| write_final(out, rows))?;
+        }
         if let Some(scenery) = &recorder.scenery {
             self.pictures(scenery, &recorder, &mut files)?;
         }
@@ -257,6 +268,14 @@ impl Outputs<'_> {
             eprintln!("  to look at: {}", there.join(", "));
         }
     }
+}
+
+/// Stress, von Mises stress and J of every node of a body; rows without numbers where no cell of it has a stress.
+fn stresses<const D: usize>(world: &World<D>, body: usize) -> Vec<Vec<f64>> {
+    let row = |state: Option<NodeState>| {
+        state.map_or(Vec::new(), |state| [state.components::<D>(), vec![state.volume_ratio]].concat())
+    };
+    world.node_states(body).into_iter().map(row).collect()
 }
 
 /// What implicit integrators did, if there are any.

@@ -57,7 +57,10 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
     for (what, label, unit) in [
         (Recorded::Position, "position", length.clone()),
         (Recorded::Velocity, "velocity", format!("{length}/s")),
-        (Recorded::Reaction, "reaction", force),
+        (Recorded::Reaction, "reaction", force.clone()),
+        (Recorded::Contact, "contact", force),
+        (Recorded::Stress, "stress", if metres { "Pa".into() } else { format!("kg/({length} s²)") }),
+        (Recorded::VolumeRatio, "volume ratio", String::new()),
     ] {
         panels.push(panel(label, &unit, run.probes(what)));
     }

@@ -108,7 +108,9 @@ impl Recorder {
         let mut probes = Vec::new();
         for probe in 0..world.blueprint().probes.len() {
             columns.extend(world.probe(probe).into_iter().map(|(name, _)| name));
-            probes.extend(world.blueprint().probes[probe].record.iter().flat_map(|what| [*what; D]));
+            probes.extend(
+                world.blueprint().probes[probe].record.iter().flat_map(|what| what.columns(D).iter().map(|_| *what)),
+            );
         }
         let nodes: usize = world.bodies().map(|b| world.node_count(b)).sum();
         let frame = world.blueprint().time.frame;

@@ -336,6 +336,7 @@ impl Job<'_> {
             resumed_at: None,
             told: Vec::new(),
             stop,
+            stress: false,
         };
         if let Some(scenery) = &recorder.scenery {
             outputs.pictures(scenery, &recorder, &mut files)?;

@@ -225,6 +225,7 @@ impl Job<'_> {
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
             told: self.told.into_iter().chain(keeper.warning()).collect(),
             stop,
+            stress: call.stress,
         };
         // What was computed until a failure is written all the same: it shows how the failure came about.
         let summary = outputs.write(&mut world, recorder, &mut keeper)?;

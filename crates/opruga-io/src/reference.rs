@@ -48,7 +48,7 @@ fn heading(out: &mut String, title: &str, section: &'static Section) {
     let _ = writeln!(out, "## {title}\n\n{}\n", sentence(section.spec));
     rows(out, section, None);
     for child in section.children {
-        if let Holds::Table(inner) | Holds::List(inner) = child.holds {
+        if let Holds::Table(inner) | Holds::List(inner) | Holds::VectorOr(inner) = child.holds {
             let _ = writeln!(out, "### `{}` in a {}\n\n{}\n", child.name, section.spec.kind, sentence(inner.spec));
             rows(out, inner, None);
         }
@@ -178,6 +178,7 @@ fn holds(child: &Child) -> String {
         }
         Holds::Shape => "a table, see Shapes".into(),
         Holds::Selector => "a selector, see below".into(),
+        Holds::VectorOr(_) => "one number per axis, or a table, see below".into(),
         Holds::Turn => "a number in 2D, an axis times its angle in 3D".into(),
         Holds::BodyReference => "the name of a body or its number".into(),
         Holds::Node => "a number, `nearest` or `nearest_facet`".into(),

@@ -108,6 +108,9 @@ fn structured(child: &Child, catalogue: &Catalogue) -> Value {
         Holds::Models => list(kinds(&catalogue.models, catalogue)),
         Holds::Colliders => list(kinds(&catalogue.colliders, catalogue)),
         Holds::Selector => json!({ "$ref": "#/$defs/selector" }),
+        Holds::VectorOr(inner) => {
+            json!({ "oneOf": [allowed(&Allowed::Vector), section(inner, None, catalogue)] })
+        }
         Holds::Turn => {
             json!({ "oneOf": [{ "type": "number" }, { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }] })
         }

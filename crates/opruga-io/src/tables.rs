@@ -22,15 +22,29 @@ pub fn write_final<'a, const D: usize>(
     out: &mut dyn Write,
     bodies: impl Iterator<Item = FinalBody<'a, D>>,
 ) -> io::Result<()> {
+    write_final_with(out, &[], bodies.map(|body| (body, Vec::new())))
+}
+
+/// Writes `final.csv` with further columns: for every body its nodes, and a row of further numbers for each.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_final_with<'a, const D: usize>(
+    out: &mut dyn Write,
+    further: &[&str],
+    bodies: impl Iterator<Item = (FinalBody<'a, D>, Vec<Vec<f64>>)>,
+) -> io::Result<()> {
     let axes = &["x", "y", "z"][..D];
-    let columns: Vec<String> =
-        axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}"))).collect();
+    let columns = axes.iter().map(|a| (*a).to_string()).chain(axes.iter().map(|a| format!("v{a}")));
+    let columns: Vec<String> = columns.chain(further.iter().map(|name| cell(name))).collect();
     writeln!(out, "body,node,{}", columns.join(","))?;
-    for body in bodies {
+    for (body, rows) in bodies {
         let name = cell(body.name);
         for (node, (x, v)) in body.positions.iter().zip(body.velocities).enumerate() {
             write!(out, "{name},{node}")?;
-            for value in x.iter().chain(v) {
+            let row = rows.get(node).map_or(&[][..], |row| &row[..]);
+            let further = (0..further.len()).map(|k| row.get(k).unwrap_or(&f64::NAN));
+            for value in x.iter().chain(v).chain(further) {
                 write!(out, ",{}", Digits(*value))?;
             }
             writeln!(out)?;

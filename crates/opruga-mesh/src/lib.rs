@@ -28,6 +28,7 @@ mod bending;
 mod boundary;
 mod boxes;
 mod buckets;
+mod cell_shares;
 mod chambers;
 mod check;
 mod crossings;

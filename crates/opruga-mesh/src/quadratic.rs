@@ -78,7 +78,7 @@ fn triangle_jacobian(nodes: &[Point; 6], at: [f64; 3]) -> f64 {
 }
 
 /// The determinant det ∂x/∂λ of a quadratic tetrahedron at barycentric coordinates λ [m³]: six times the volume where it is straight.
-fn tetrahedron_jacobian(nodes: &[Point; 10], at: [f64; 4]) -> f64 {
+pub(crate) fn tetrahedron_jacobian(nodes: &[Point; 10], at: [f64; 4]) -> f64 {
     let by = derivatives(nodes, &TETRAHEDRON_EDGES, at);
     6.0 * tetrahedron_volume(by[0], by[1], by[2], by[3])
 }

@@ -117,6 +117,21 @@ pub fn side_tangents<const D: usize>(point: &SidePoint, x: &[[f64; D]]) -> [[f64
     })
 }
 
+/// The shape functions of a side at coordinates of its own, without a weight.
+#[cfg(test)]
+pub(crate) fn at(dimensions: usize, nodes: usize, x: f64, y: f64) -> SidePoint {
+    let values: Vec<(f64, [f64; 2])> = match (dimensions, nodes) {
+        (2, _) => edge(nodes, x)[..nodes].iter().map(|(n, s)| (*n, [*s, 0.0])).collect(),
+        (_, 4) => quadrilateral(x, y).to_vec(),
+        _ => triangle(nodes, x, y)[..nodes].to_vec(),
+    };
+    let mut point = SidePoint { weight: 0.0, shape: [0.0; MOST_SIDE_NODES], slope: [[0.0; 2]; MOST_SIDE_NODES] };
+    for (n, (shape, slope)) in values.into_iter().enumerate() {
+        (point.shape[n], point.slope[n]) = (shape, slope);
+    }
+    point
+}
+
 impl<const D: usize> Mesh<D> {
     /// The sides of cells that lie on the boundary and all of whose nodes are selected, each by its nodes as seen from outside.
     ///

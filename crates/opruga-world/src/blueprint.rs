@@ -125,6 +125,8 @@ pub struct BodyBlueprint<const D: usize> {
     pub velocity: [f64; D],
     /// Angular velocity at the start about the centre of mass [rad/s]: one number in 2D, three in 3D.
     pub angular_velocity: Vec<f64>,
+    /// Gradient of the velocity at the start G = ∂v/∂x, row by row [1/s]: what G (x − c) adds about the centre of mass c.
+    pub velocity_gradient: [[f64; D]; D],
     /// How much it weighs.
     pub mass: Mass,
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, for the mass by density alone [m].
@@ -227,6 +229,8 @@ pub enum LoadKind<const D: usize> {
     Traction([f64; D]),
     /// A pressure on the selected part of the boundary, along its present inner normal [Pa].
     Pressure(f64),
+    /// A force per volume at rest, spread over the cells all of whose nodes are selected by their shape functions [N/m³].
+    BodyForce([f64; D]),
 }
 
 /// Something done to a body from time `at` to time `until`.
@@ -317,7 +321,7 @@ pub struct ProbeBlueprint<const D: usize> {
     pub body: usize,
     /// Which nodes; their mean is written (of reactions the sum).
     pub select: Selector<D>,
-    /// What is written: `position`, `velocity`, `reaction`.
+    /// What is written: `position`, `velocity`, `reaction`, `contact`, `stress`, `volume_ratio`.
     pub record: Vec<Recorded>,
 }
 
@@ -330,4 +334,40 @@ pub enum Recorded {
     Velocity,
     /// Sum of the forces that the pins exert [N].
     Reaction,
+    /// Sum of the forces that obstacles exert [N].
+    Contact,
+    /// Cauchy's stress at the nodes, their mean, and the von Mises stress of that [Pa].
+    Stress,
+    /// The volume over that at rest J at the nodes, their mean.
+    VolumeRatio,
+}
+
+impl Recorded {
+    /// All of them with their words in scenes.
+    pub const ALL: [(&'static str, Recorded); 6] = [
+        ("position", Recorded::Position),
+        ("velocity", Recorded::Velocity),
+        ("reaction", Recorded::Reaction),
+        ("contact", Recorded::Contact),
+        ("stress", Recorded::Stress),
+        ("volume_ratio", Recorded::VolumeRatio),
+    ];
+
+    /// The last parts of the names of its columns, behind `NAME.`. In the plane stress has a part across it too.
+    pub fn columns(self, dimension: usize) -> &'static [&'static str] {
+        match (self, dimension) {
+            (Recorded::Position, _) => &["x", "y", "z"][..dimension],
+            (Recorded::Velocity, _) => &["vx", "vy", "vz"][..dimension],
+            (Recorded::Reaction, _) => &["rx", "ry", "rz"][..dimension],
+            (Recorded::Contact, _) => &["cx", "cy", "cz"][..dimension],
+            (Recorded::Stress, 2) => &["sxx", "syy", "szz", "sxy", "von_mises"],
+            (Recorded::Stress, _) => &["sxx", "syy", "szz", "sxy", "syz", "szx", "von_mises"],
+            (Recorded::VolumeRatio, _) => &["volume_ratio"],
+        }
+    }
+
+    /// Whether only cells with a stress have it.
+    pub fn is_of_cells(self) -> bool {
+        matches!(self, Recorded::Stress | Recorded::VolumeRatio)
+    }
 }

@@ -78,6 +78,7 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
         }
     }
     let spin = &body.angular_velocity;
+    let stretches = body.velocity_gradient != [[0.0; D]; D];
     let v = x
         .iter()
         .map(|p| {
@@ -90,6 +91,13 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
                 for d in 0..3 {
                     let (e, f) = ((d + 1) % 3, (d + 2) % 3);
                     v[d] += spin[e] * r[f] - spin[f] * r[e];
+                }
+            }
+            if stretches {
+                for (v, row) in v.iter_mut().zip(&body.velocity_gradient) {
+                    for d in 0..D {
+                        *v += row[d] * r[d];
+                    }
                 }
             }
             v
@@ -400,6 +408,14 @@ impl<const D: usize> Builder<'_, D> {
                         entries.insert(layout.place(node as usize, lane), force);
                     }
                 }
+                LoadKind::BodyForce(force) => {
+                    for (node, share) in body.mesh.cell_shares(&nodes) {
+                        entries.insert(layout.place(node as usize, lane), force.map(|f| f * share * depth));
+                    }
+                    if entries.is_empty() {
+                        return Err(no_cells(body));
+                    }
+                }
                 LoadKind::Pressure(pressure) => {
                     let places = |side: Vec<u32>| side.iter().map(|&n| layout.place(n as usize, lane)).collect();
                     let sides: Vec<Vec<usize>> = body.mesh.boundary_sides(&nodes).into_iter().map(places).collect();
@@ -427,6 +443,13 @@ fn no_view(model: &str, integrator: &str) -> BuildError {
          `symplectic_euler`"
     );
     BuildError::new(model, "integrator.needs", message)
+}
+
+fn no_cells<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {
+    WorldError::Path {
+        path: format!("load on {}", body.name),
+        message: "the selected nodes hold no whole cell of the body; allowed: all nodes of one cell at least".into(),
+    }
 }
 
 fn no_facets<const D: usize>(body: &BodyBlueprint<D>) -> WorldError {

@@ -17,6 +17,7 @@ pub mod ledger;
 mod loads;
 mod looks;
 pub mod modes;
+mod node_states;
 mod other_balances;
 mod pin_ways;
 mod plausible;
@@ -36,6 +37,7 @@ pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
 pub use loads::ForceLaw;
+pub use node_states::NodeState;
 pub use opruga_core::break_off::BreakOff;
 /// What the laws of the finite elements say at one deformation gradient.
 pub mod law {

@@ -132,20 +132,35 @@ impl<const D: usize> World<D> {
         let probe = self.blueprint.probes[number].clone();
         let there = self.handle(probe.body).is_some();
         let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
-        let axes = ["x", "y", "z"];
         let mut out = Vec::new();
+        let of_cells = there && probe.record.iter().any(|what| what.is_of_cells());
+        let cells = if of_cells { self.mean_of_cells(probe.body, &nodes) } else { None };
         for what in &probe.record {
-            let (word, vector) = match what {
-                Recorded::Position => ("", self.mean(&nodes, |w, n| w.position(probe.body, n))),
-                Recorded::Velocity => ("v", self.mean(&nodes, |w, n| w.velocity(probe.body, n))),
-                Recorded::Reaction if there => ("r", self.reaction(probe.body, &nodes)),
-                Recorded::Reaction => ("r", [0.0; D]),
+            let columns = what.columns(D);
+            let numbers: Vec<f64> = match what {
+                _ if !there => Vec::new(),
+                Recorded::Position => self.mean(&nodes, |w, n| w.position(probe.body, n)).to_vec(),
+                Recorded::Velocity => self.mean(&nodes, |w, n| w.velocity(probe.body, n)).to_vec(),
+                Recorded::Reaction => self.reaction(probe.body, &nodes).to_vec(),
+                Recorded::Contact => self.contact_on(probe.body, &nodes).to_vec(),
+                Recorded::Stress => cells.map_or(Vec::new(), |cells| cells.components::<D>()),
+                Recorded::VolumeRatio => cells.map_or(Vec::new(), |cells| vec![cells.volume_ratio]),
             };
-            for d in 0..D {
-                out.push((format!("{}.{}{}", probe.name, word, axes[d]), if there { vector[d] } else { f64::NAN }));
-            }
+            let number = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+            out.extend(columns.iter().enumerate().map(|(k, column)| (format!("{}.{column}", probe.name), number(k))));
         }
         out
+    }
+    /// The sum of the forces of obstacles on some nodes [N].
+    fn contact_on(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
+        let forces = self.contact_forces(body);
+        let mut sum = [0.0; D];
+        for force in nodes.iter().filter_map(|node| forces.get(*node as usize)) {
+            for d in 0..D {
+                sum[d] += force[d];
+            }
+        }
+        sum
     }
     fn mean(&self, nodes: &[u32], of: impl Fn(&Self, u32) -> [f64; D]) -> [f64; D] {
         let mut sum = [0.0; D];

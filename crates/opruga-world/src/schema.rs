@@ -59,6 +59,8 @@ pub enum Holds {
     Colliders,
     /// A set of nodes.
     Selector,
+    /// One number per axis, or a table.
+    VectorOr(&'static Section),
     /// A rotation: one number in 2D, an axis times its angle in 3D.
     Turn,
     /// A body of the scene, by its name or its number.
@@ -312,12 +314,17 @@ pub const BODY: Section = Section {
                 "2: a node more in the middle of every edge of its triangles and tetrahedra, whose finite elements then neither lock in bending nor near incompressibility. \
 A body with a `fem` model whose cells are all triangles or tetrahedra has 2 where the scene is silent, others 1; `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
             ),
-            Field::new("velocity", Allowed::Vector, "m/s", Default::Origin, "Velocity at the start."),
         ],
     ),
     children: &[
         child("shape", Holds::Shape, true, "Its shape at rest."),
         child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad], within 1e6."),
+        child(
+            "velocity",
+            Holds::VectorOr(&VELOCITY),
+            false,
+            "Velocity at the start [m/s]: the same of all nodes, or as a field.",
+        ),
         child(
             "angular_velocity",
             Holds::Turn,
@@ -334,6 +341,32 @@ A body with a `fem` model whose cells are all triangles or tetrahedra has 2 wher
             "Rows, columns and layers of the same body, called `name[0]`, `name[1]`, …",
         ),
     ],
+};
+
+/// `velocity` in a body, as a table.
+pub const VELOCITY: Section = Section {
+    spec: &section(
+        "velocity",
+        "The velocity at the start as a field",
+        "v = linear + angular × (x − c) + gradient (x − c), where c is the centre of mass of the body and x where a node is at \
+         the start.",
+        &[
+            Field::new("linear", Allowed::Vector, "m/s", Default::Origin, "The velocity of the centre of mass."),
+            Field::new(
+                "gradient",
+                Allowed::Points,
+                "1/s",
+                Default::Absent,
+                "∂v/∂x, a row for every axis: `[[0.1, 0], [0, 0]]` stretches the plane along x, `[[0, 1], [0, 0]]` shears it.",
+            ),
+        ],
+    ),
+    children: &[child(
+        "angular",
+        Holds::Turn,
+        false,
+        "Angular velocity about the centre of mass [rad/s], as `angular_velocity` of the body.",
+    )],
 };
 
 /// An entry of `pin` in a body.

@@ -30,6 +30,7 @@ fn ball(name: &str, x: f64) -> BodyBlueprint<2> {
         translation: [x, 1.0],
         velocity: [0.3, 0.0],
         angular_velocity: Vec::new(),
+        velocity_gradient: [[0.0; 2]; 2],
         mass: Mass::Total(1.0),
         thickness: 1.0,
         integrator: None,

@@ -94,6 +94,7 @@ fn scene<const D: usize>(
         translation: core::array::from_fn(|d| if d == 0 { 2.0 * k as f64 } else { 0.0 }),
         velocity: [0.2; D],
         angular_velocity: Vec::new(),
+        velocity_gradient: [[0.0; D]; D],
         mass: Mass::Total(1.0),
         thickness: 1.0,
         integrator: None,

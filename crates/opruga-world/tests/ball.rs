@@ -61,6 +61,7 @@ fn rings(count: usize, vertices: u32, rule: &str) -> Blueprint<2> {
                 translation: [2.0 * k as f64, 0.8 + 0.01 * k as f64],
                 velocity: [0.3, 0.0],
                 angular_velocity: vec![1.0],
+                velocity_gradient: [[0.0; 2]; 2],
                 mass: Mass::Total(1.0),
                 thickness: 1.0,
                 integrator: None,

@@ -52,6 +52,7 @@ fn body<const D: usize>(mesh: Mesh<D>, mass: &str, integrator: &str) -> Blueprin
             translation: [0.0; D],
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
+            velocity_gradient: [[0.0; D]; D],
             mass: Mass::Density(DENSITY),
             thickness: 0.1,
             integrator: None,

@@ -89,6 +89,7 @@ pub(crate) fn rings(bodies: usize, vertices: usize, integrator: &str) -> Result<
         translation: [number as f64 * 3.0 * radius, radius + 60.0],
         velocity: [0.0, 0.0],
         angular_velocity: Vec::new(),
+        velocity_gradient: [[0.0; 2]; 2],
         mass: Mass::Node(1.0),
         thickness: 1.0,
         integrator: None,

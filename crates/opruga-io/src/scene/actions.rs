@@ -1,19 +1,16 @@
-//! `[[load]]`, `[[command]]` and `[[probe]]`.
+//! `[[load]]` and `[[command]]`.
 
-use super::bodies::{self, Bodies};
+use super::bodies::Bodies;
 use super::lifetimes::Lifetimes;
 use super::moments::{Frames, Set};
 use super::pins;
-use super::reader::{Reader, join, listed};
-use super::{parameters, place_of, selectors};
-use crate::document::{Data, Node, Place};
-use crate::problem::{SceneError, visible};
+use super::reader::{Reader, join};
+use super::{parameters, parts, place_of, selectors};
+use crate::document::{Data, Node};
+use crate::problem::SceneError;
 use opruga_core::spec::{Spec, Values, nearest};
-use opruga_world::blueprint::{
-    Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, ProbeBlueprint, Recorded, Selector,
-};
+use opruga_world::blueprint::{Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Selector};
 use opruga_world::schema::{self, Section};
-use std::collections::BTreeMap;
 
 /// The section that the tag of a table names, and its plain fields.
 fn tagged(
@@ -40,9 +37,15 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
         let kind = match values.kind() {
             "force" => LoadKind::Force(values.vector("value")),
             "traction" => LoadKind::Traction(values.vector("value")),
+            "body_force" => LoadKind::BodyForce(values.vector("value")),
             _ => LoadKind::Pressure(values.number("value").unwrap_or(0.0)),
         };
-        if !matches!(kind, LoadKind::Force(_)) && !hold_sides(reader, node, &path, bodies, &targets) {
+        let there = match kind {
+            LoadKind::Force(_) => true,
+            LoadKind::BodyForce(_) => parts::hold_cells(reader, node, &path, bodies, &targets),
+            LoadKind::Traction(_) | LoadKind::Pressure(_) => parts::hold_sides(reader, node, &path, bodies, &targets),
+        };
+        if !there {
             continue;
         }
         let curve = values.rows("curve").to_vec();
@@ -54,37 +57,6 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
         }));
     }
     loads
-}
-
-/// Refuses a load on sides of the boundary whose nodes hold none of them; copies have one mesh, and the same nodes of it.
-fn hold_sides<const D: usize>(
-    reader: &mut Reader<'_>,
-    node: &Node,
-    path: &str,
-    bodies: &Bodies<D>,
-    targets: &[(usize, Selector<D>)],
-) -> bool {
-    let Some((body, select)) = targets.first().and_then(|(k, select)| Some((bodies.list.get(*k)?, select))) else {
-        return true;
-    };
-    if !body.mesh.boundary_sides(&select.resolve(&body.mesh, &body.translation)).is_empty() {
-        return true;
-    }
-    let name = visible(body.common_name());
-    let message = format!("the nodes that the load selects on `{name}` hold no whole facet of its boundary");
-    let mut error = SceneError::new("scene.selects_nothing", message).path(join(path, "select"));
-    if let Some(select) = node.get("select") {
-        error = error.value(select.shown());
-    }
-    let (allowed, hint) = match body.mesh.facets.is_empty() {
-        true => ("bodies that have a boundary", "a chain has none; `kind = \"force\"` acts on nodes"),
-        false => (
-            "all nodes of one facet at least: an edge of the outline, or a triangle of the surface",
-            "`side`, `group` and `boundary` select whole sides; `kind = \"force\"` acts on nodes",
-        ),
-    };
-    reader.report(place_of(node, "select"), error.allowed(allowed).hint(hint));
-    false
 }
 
 /// What is done to the bodies while they move, in the order of time.
@@ -253,83 +225,6 @@ fn held(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>
             None
         }
     }
-}
-
-/// Columns of `diagnostics.csv`.
-pub(crate) fn probes<const D: usize>(
-    reader: &mut Reader<'_>,
-    root: &Node,
-    bodies: &Bodies<D>,
-) -> Vec<ProbeBlueprint<D>> {
-    let mut probes = Vec::new();
-    let mut seen: BTreeMap<String, Place> = BTreeMap::new();
-    for (node, path) in reader.list(root, "", "probe") {
-        let values = reader.fields(node, &path, &schema::PROBE, None);
-        let name = values.text("name").unwrap_or("").to_string();
-        if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
-            bodies::check_name(reader, at, &join(&path, "name"), &name);
-            if seen.contains_key(&name) {
-                let error =
-                    SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
-                reader.report(at.place, error.path(join(&path, "name")).value(visible(&name)));
-            }
-            seen.insert(name.clone(), at.place);
-        }
-        let record = recorded(reader, node, &path);
-        let body = bodies.reference(reader, node, &path);
-        let Some(select) = selectors::of_body(reader, node, &path, bodies, body) else { continue };
-        if let Some(body) = body {
-            probes.push(ProbeBlueprint { name, body, select, record });
-        }
-    }
-    probes
-}
-
-/// The words of `record`, each once and at least one.
-fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
-    const WORDS: [(&str, Recorded); 3] =
-        [("position", Recorded::Position), ("velocity", Recorded::Velocity), ("reaction", Recorded::Reaction)];
-    let words = || WORDS.iter().map(|(w, _)| *w);
-    let here = join(path, "record");
-    let Some(value) = node.get("record") else { return Vec::new() };
-    let Data::Array(items) = &value.data else {
-        reader.wrong_type(value, &here, "a list of position, velocity, reaction");
-        return Vec::new();
-    };
-    if items.is_empty() {
-        reader.report(
-            value.place,
-            SceneError::new("scene.length", "`record` is empty")
-                .path(here.clone())
-                .value("[]")
-                .allowed(listed(words())),
-        );
-    }
-    let mut out: Vec<Recorded> = Vec::new();
-    for (k, item) in items.iter().enumerate() {
-        let place = join(&here, &k.to_string());
-        match item.text().and_then(|text| WORDS.iter().find(|(w, _)| *w == text)) {
-            Some((word, recorded)) if out.contains(recorded) => {
-                reader.report(
-                    item.place,
-                    SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice"))
-                        .path(place)
-                        .value(*word),
-                );
-            }
-            Some((_, recorded)) => out.push(*recorded),
-            None => {
-                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown()))
-                    .path(place)
-                    .value(item.shown());
-                reader.report(
-                    item.place,
-                    error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())),
-                );
-            }
-        }
-    }
-    out
 }
 
 /// The specification of a kind in a list, for paths.

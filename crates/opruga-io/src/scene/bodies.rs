@@ -4,6 +4,7 @@ use super::Cost;
 use super::copies::{Copies, copies, write_out};
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
+use super::velocities::{self, Velocities};
 use super::{pins, place_of, selectors};
 use crate::document::{Data, Node, Place};
 use crate::problem::{SceneError, unprintable, visible};
@@ -44,7 +45,7 @@ struct Draft<'n, const D: usize> {
     /// What the file of the shape holds, if it has one.
     loaded: Option<Loaded>,
     rotation: Vec<f64>,
-    angular_velocity: Vec<f64>,
+    velocities: Velocities<D>,
     mass: Option<Mass>,
     integrator: Option<Values>,
     models: Vec<Values>,
@@ -172,7 +173,7 @@ fn draft<'n, const D: usize>(
     let sound = reader.count() == before_shape;
     let loaded = shape.as_ref().and_then(|values| shape::loaded::<D>(reader, node, &path, values, sound));
     let rotation = reader.turn(node.get("rotation"), &join(&path, "rotation"));
-    let angular_velocity = reader.turn(node.get("angular_velocity"), &join(&path, "angular_velocity"));
+    let velocities = velocities::at_the_start(reader, node, &path);
     let integrator = reader.integrator(node, &path);
     let kinds = reader.catalogue.models.clone();
     let mut models = Vec::new();
@@ -210,7 +211,7 @@ fn draft<'n, const D: usize>(
         shape,
         loaded,
         rotation,
-        angular_velocity,
+        velocities,
         mass,
         integrator,
         models,
@@ -468,8 +469,9 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         name: draft.name.clone(),
         mesh: Arc::new(mesh),
         translation: draft.values.vector("position"),
-        velocity: draft.values.vector("velocity"),
-        angular_velocity: draft.angular_velocity.clone(),
+        velocity: draft.velocities.linear,
+        angular_velocity: draft.velocities.angular.clone(),
+        velocity_gradient: draft.velocities.gradient,
         mass,
         thickness: draft.values.number("thickness").unwrap_or(1.0),
         integrator: draft.integrator.clone(),

@@ -12,12 +12,15 @@ mod dimension;
 mod lifetimes;
 mod moments;
 mod parameters;
+mod parts;
 mod pins;
 mod plain;
+mod probes;
 mod reader;
 mod references;
 mod selectors;
 mod shape;
+mod velocities;
 
 use crate::catalogue::Catalogue;
 use crate::document::{self, Node, Place};
@@ -283,7 +286,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     bodies::later(reader, &commands, &mut bodies);
     let loads = actions::loads(reader, root, &bodies);
     let commands = actions::commands(reader, &commands, &bodies, integrator.as_ref(), &colliders, frames.as_ref());
-    let probes = actions::probes(reader, root, &bodies);
+    let probes = probes::probes(reader, root, &bodies);
     bodies.list.truncate(bodies.initial);
     let whole = Blueprint {
         name: scene_name(reader.source.file),

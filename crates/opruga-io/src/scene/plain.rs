@@ -217,8 +217,11 @@ impl Reader<'_> {
             1 => self.number(node, path, &Allowed::ANY).map(|x| vec![x]),
             _ => self.row(node, path, 3, &Allowed::Vector),
         };
-        let (what, unit) =
-            if path.ends_with("velocity") { ("speed of turning", "rad/s") } else { ("angle", "radians") };
+        let (what, unit) = if path.ends_with("velocity") || path.ends_with("angular") {
+            ("speed of turning", "rad/s")
+        } else {
+            ("angle", "radians")
+        };
         for error in self.errors.iter_mut().skip(before) {
             let (allowed, example) = match (parts, unit) {
                 (1, _) => (format!("the {what} in {unit}, counter-clockwise"), "1.5708 is a quarter of a turn (90°)"),

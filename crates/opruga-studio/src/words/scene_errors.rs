@@ -29,6 +29,7 @@ const CODES: &[(&str, &str)] = &[
     ("scene.more", "ima još pogrešaka"),
     ("scene.depth", "tablice su preduboko ugniježđene"),
     ("scene.conflict", "dva zadatka isključuju jedan drugi"),
+    ("scene.no_stress", "tijelo ne zna za naprezanje"),
     ("scene.no_values", "ćelije mreže nemaju tih brojeva"),
     ("scene.no_effect", "polje ovdje ne djeluje"),
     ("set", "zadana zamjena ne može"),

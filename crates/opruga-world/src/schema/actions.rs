@@ -57,6 +57,16 @@ pub const LOADS: &[Section] = &[
         ),
         children: LOAD_CHILDREN,
     },
+    Section {
+        spec: &section(
+            "body_force",
+            "A force per volume at rest",
+            "It is spread over the cells all of whose nodes are selected, by their shape functions: on a node acts the force times the integral of its \
+function over the volume; in 2D the volume is the area times the body's `thickness`.",
+            &[Field::new("value", Allowed::Vector, "N/m³", Default::Required, "The force per volume."), CURVE],
+        ),
+        children: LOAD_CHILDREN,
+    },
 ];
 
 const AT: Field = Field::new(
@@ -221,7 +231,11 @@ pub const PROBE: Section = Section {
         "Columns of diagnostics.csv that follow nodes",
         "Of positions and velocities the mean over the nodes is written, of reactions the sum: the force that pins give, mass \
 times acceleration less the forces of the models and the weight on what is held. How a pin accelerates is taken from its motion \
-over the frame before and the one after. The impulse with which a pin takes hold of what moves is not in it.",
+over the frame before and the one after. The impulse with which a pin takes hold of what moves is not in it. `contact` is the sum of the forces of \
+obstacles in the coming step, normal force and friction; what a pin holds has none. `stress` is Cauchy's stress and `volume_ratio` J: a node has of the cells of finite \
+elements around it the mean by their volume at rest, and of the nodes the mean is written, and the von Mises stress of it. Columns are NAME.x, \
+NAME.y (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises \
+(stress, szz in 2D across the plane), NAME.volume_ratio; not a number while the body is not there, or has no finite elements any more.",
         &[Field::new(
             "name",
             Allowed::Text,
@@ -233,6 +247,11 @@ over the frame before and the one after. The impulse with which a pin takes hold
     children: &[
         child("body", Holds::BodyReference, true, "The body; of copies one, `NAME[i]`."),
         child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
-        child("record", Holds::Words(&["position", "velocity", "reaction"]), true, "What is written down."),
+        child(
+            "record",
+            Holds::Words(&["position", "velocity", "reaction", "contact", "stress", "volume_ratio"]),
+            true,
+            "What is written down.",
+        ),
     ],
 };

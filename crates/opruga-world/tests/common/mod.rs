@@ -50,6 +50,7 @@ pub(crate) fn solid<const D: usize>(
             translation: [0.0; D],
             velocity: [0.0; D],
             angular_velocity: Vec::new(),
+            velocity_gradient: [[0.0; D]; D],
             mass: Mass::Density(1000.0),
             thickness: 1.0,
             integrator: None,

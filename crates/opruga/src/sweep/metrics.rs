@@ -122,12 +122,21 @@ impl Metric {
             Quantity::SettlingTime => "s".into(),
             Quantity::EnergyDrift => String::new(),
             Quantity::NanosecondsPerStep => "ns".into(),
-            Quantity::Probe(column, _) => match column.rsplit('.').next().map(str::len) {
-                Some(1) => length.to_string(),
-                Some(_) if column.rsplit('.').next().is_some_and(|word| word.starts_with('v')) => format!("{length}/s"),
-                _ if length == "m" => "N".into(),
-                _ => format!("kg {length}/s²"),
-            },
+            Quantity::Probe(column, _) => {
+                let word = column.rsplit('.').next().unwrap_or_default();
+                // Either of the two dimensions has a column of this word.
+                let what = Recorded::ALL.map(|(_, what)| what).into_iter();
+                let what = what.filter(|what| [2, 3].iter().any(|d| what.columns(*d).contains(&word))).next();
+                match (what, length) {
+                    (Some(Recorded::Position), _) => length.to_string(),
+                    (Some(Recorded::Velocity), _) => format!("{length}/s"),
+                    (Some(Recorded::VolumeRatio), _) => String::new(),
+                    (Some(Recorded::Stress), "m") => "Pa".into(),
+                    (Some(Recorded::Stress), _) => format!("kg/({length} s²)"),
+                    (_, "m") => "N".into(),
+                    _ => format!("kg {length}/s²"),
+                }
+            }
         }
     }
 
@@ -150,12 +159,7 @@ fn probe_columns<const D: usize>(blueprint: &Blueprint<D>) -> Vec<String> {
     let mut out = Vec::new();
     for probe in &blueprint.probes {
         for what in &probe.record {
-            let word = match what {
-                Recorded::Position => "",
-                Recorded::Velocity => "v",
-                Recorded::Reaction => "r",
-            };
-            out.extend(["x", "y", "z"].iter().take(D).map(|axis| format!("{}.{word}{axis}", probe.name)));
+            out.extend(what.columns(D).iter().map(|column| format!("{}.{column}", probe.name)));
         }
     }
     out
@@ -232,10 +236,11 @@ impl<const D: usize> Meter<D> {
                     let mut place = probe_columns(blueprint).iter().position(|c| c == column).unwrap_or(usize::MAX);
                     let mut number = 0;
                     while let Some(probe) = blueprint.probes.get(number) {
-                        if place < probe.record.len() * D {
+                        let columns: usize = probe.record.iter().map(|what| what.columns(D).len()).sum();
+                        if place < columns {
                             break;
                         }
-                        place -= probe.record.len() * D;
+                        place -= columns;
                         number += 1;
                     }
                     Gauge::Probe {

@@ -103,16 +103,62 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("bodies that have a boundary", "tijela koja imaju granicu"),
     ("a chain has none; `kind = \"force\"` acts on nodes", "lanac je nema; `kind = \"force\"` djeluje na čvorove"),
+    (
+        "the load acts on the volume of cells, and `{}` has no cells",
+        "opterećenje djeluje na obujam ćelija, a `{}` nema ćelija",
+    ),
+    (
+        "bodies that are filled: `grid`, shapes with a `filling`, volume meshes",
+        "tijela koja su ispunjena: `grid`, oblici s `filling`, mreže tijela",
+    ),
+    (
+        "`kind = \"force\"` acts on nodes; `world.gravity` on whatever has a mass",
+        "`kind = \"force\"` djeluje na čvorove; `world.gravity` na sve što ima masu",
+    ),
+    (
+        "the nodes that the load selects on `{}` hold no whole cell of it",
+        "čvorovi tijela `{}` koje opterećenje bira ne drže nijednu cijelu ćeliju",
+    ),
+    ("all nodes of one cell at least", "barem svi čvorovi jedne ćelije"),
+    (
+        "without `select` the load acts on all cells; `group` selects those of a mesh file",
+        "bez `select` opterećenje djeluje na sve ćelije; `group` bira one iz datoteke mreže",
+    ),
     ("the command changes nothing", "naredba ništa ne mijenja"),
     ("`models`, `integrator` or both", "`models`, `integrator` ili oboje"),
     ("the number of a node, \"nearest\" or \"nearest_facet\"", "broj čvora, \"nearest\" ili \"nearest_facet\""),
     ("two probes are called `{}`", "dvije sonde zovu se `{}`"),
-    ("a list of position, velocity, reaction", "popis iz position, velocity, reaction"),
+    (
+        "a list of position, velocity, reaction, contact, stress, volume_ratio",
+        "popis iz position, velocity, reaction, contact, stress, volume_ratio",
+    ),
+    (
+        "`{}` is recorded of `{}`, none of whose models knows a stress",
+        "`{}` se bilježi za `{}`, a nijedan model tog tijela ne zna za naprezanje",
+    ),
+    ("bodies with a model `fem`", "tijela s modelom `fem`"),
+    (
+        "`reaction` and `contact` are forces, which every body has",
+        "`reaction` i `contact` su sile, koje ima svako tijelo",
+    ),
     ("`record` is empty", "`record` je prazan"),
     ("`{}` is empty", "`{}` je prazan"),
     ("`{}` is recorded twice", "`{}` se bilježi dvaput"),
     ("`record` contains {#}", "`record` sadrži {#}"),
     // Bodies.
+    ("the body has `angular_velocity` and `velocity.angular`", "tijelo ima i `angular_velocity` i `velocity.angular`"),
+    ("one of them", "jedno od toga"),
+    ("`gradient` has {} rows", "`gradient` ima {} redaka"),
+    ("`gradient` has {} row", "`gradient` ima {} redak"),
+    (
+        "{} rows of {} finite numbers: how each axis of the velocity changes along every axis",
+        "redaka: {}, u svakom konačnih brojeva: {}; kako se svaka os brzine mijenja duž svake osi",
+    ),
+    (
+        "[[0.1, 0], [0, 0]] stretches along x, [[0, 1], [0, 0]] shears",
+        "[[0.1, 0], [0, 0]] rasteže duž x, [[0, 1], [0, 0]] smiče",
+    ),
+    ("[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]] stretches along x", "[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]] rasteže duž x"),
     ("two bodies are called `{}`, first in line {}", "dva tijela zovu se `{}`, prvo u retku {}"),
     ("two bodies are called `{}`", "dva tijela zovu se `{}`"),
     (

@@ -1,0 +1,121 @@
+//! `[[probe]]`: columns of `diagnostics.csv`.
+
+use super::bodies::{self, Bodies};
+use super::reader::{Reader, join, listed};
+use super::{place_of, selectors};
+use crate::document::{Data, Node, Place};
+use crate::problem::{SceneError, visible};
+use opruga_core::spec::nearest;
+use opruga_world::blueprint::{BodyBlueprint, ProbeBlueprint, Recorded};
+use opruga_world::schema;
+use std::collections::BTreeMap;
+
+/// Columns of `diagnostics.csv`.
+pub(crate) fn probes<const D: usize>(
+    reader: &mut Reader<'_>,
+    root: &Node,
+    bodies: &Bodies<D>,
+) -> Vec<ProbeBlueprint<D>> {
+    let mut probes = Vec::new();
+    let mut seen: BTreeMap<String, Place> = BTreeMap::new();
+    for (node, path) in reader.list(root, "", "probe") {
+        let values = reader.fields(node, &path, &schema::PROBE, None);
+        let name = values.text("name").unwrap_or("").to_string();
+        if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
+            bodies::check_name(reader, at, &join(&path, "name"), &name);
+            if seen.contains_key(&name) {
+                let error =
+                    SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
+                reader.report(at.place, error.path(join(&path, "name")).value(visible(&name)));
+            }
+            seen.insert(name.clone(), at.place);
+        }
+        let record = recorded(reader, node, &path);
+        let body = bodies.reference(reader, node, &path);
+        let Some(select) = selectors::of_body(reader, node, &path, bodies, body) else { continue };
+        if let Some(body) = body {
+            refuse_without_cells(reader, root, node, &path, &bodies.list[body], &record);
+            probes.push(ProbeBlueprint { name, body, select, record });
+        }
+    }
+    probes
+}
+
+/// The words of `record`, each once and at least one.
+fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
+    let words = || Recorded::ALL.iter().map(|(w, _)| *w);
+    let here = join(path, "record");
+    let Some(value) = node.get("record") else { return Vec::new() };
+    let Data::Array(items) = &value.data else {
+        reader.wrong_type(value, &here, "a list of position, velocity, reaction, contact, stress, volume_ratio");
+        return Vec::new();
+    };
+    if items.is_empty() {
+        reader.report(
+            value.place,
+            SceneError::new("scene.length", "`record` is empty")
+                .path(here.clone())
+                .value("[]")
+                .allowed(listed(words())),
+        );
+    }
+    let mut out: Vec<Recorded> = Vec::new();
+    for (k, item) in items.iter().enumerate() {
+        let place = join(&here, &k.to_string());
+        match item.text().and_then(|text| Recorded::ALL.iter().find(|(w, _)| *w == text)) {
+            Some((word, recorded)) if out.contains(recorded) => {
+                reader.report(
+                    item.place,
+                    SceneError::new("scene.duplicate_name", format!("`{word}` is recorded twice"))
+                        .path(place)
+                        .value(*word),
+                );
+            }
+            Some((_, recorded)) => out.push(*recorded),
+            None => {
+                let error = SceneError::new("scene.unknown_word", format!("`record` contains {}", item.shown()))
+                    .path(place)
+                    .value(item.shown());
+                reader.report(
+                    item.place,
+                    error.allowed(listed(words())).nearest(nearest(item.text().unwrap_or(""), words())),
+                );
+            }
+        }
+    }
+    out
+}
+
+/// The models of this library that know no stress. Those of a user may.
+const WITHOUT_STRESS: [&str; 5] = ["mass_spring", "pressure", "bending", "drag", "as_published"];
+
+/// Refuses to record the stress of a body none of whose models knows one, now or after a command.
+fn refuse_without_cells<const D: usize>(
+    reader: &mut Reader<'_>,
+    root: &Node,
+    node: &Node,
+    path: &str,
+    body: &BodyBlueprint<D>,
+    record: &[Recorded],
+) {
+    let Some((word, _)) = Recorded::ALL.iter().find(|(_, what)| what.is_of_cells() && record.contains(what)) else {
+        return;
+    };
+    let knows = |kind: &str| !WITHOUT_STRESS.contains(&kind);
+    let commands = match root.get("command").map(|commands| &commands.data) {
+        Some(Data::Array(commands)) => &commands[..],
+        _ => &[],
+    };
+    let later = commands.iter().any(|command| match command.get("models").map(|models| &models.data) {
+        Some(Data::Array(models)) => models.iter().filter_map(|model| model.get("kind")?.text()).any(knows),
+        _ => false,
+    });
+    if later || body.models.iter().any(|model| knows(model.kind())) {
+        return;
+    }
+    let name = visible(body.common_name());
+    let message = format!("`{word}` is recorded of `{name}`, none of whose models knows a stress");
+    let error = SceneError::new("scene.no_stress", message).path(join(path, "record")).value(*word);
+    let error = error.allowed("bodies with a model `fem`");
+    reader.report(place_of(node, "record"), error.hint("`reaction` and `contact` are forces, which every body has"));
+}

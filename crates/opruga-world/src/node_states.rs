@@ -1,0 +1,90 @@
+//! What the nodes of a body of finite elements are under: means of the cells around them.
+
+use crate::world::World;
+use opruga_core::potential::CellState;
+
+/// What a node is under: of the cells around it the mean by their volume at rest.
+///
+/// Cells have a mean of their own, which is exact where the stress is linear over a cell; at the boundary, where cells lie
+/// on one side only, the mean of a node is that of the cells' middles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeState {
+    /// Cauchy's stress [Pa], row by row; in the plane with what acts across it.
+    pub stress: [[f64; 3]; 3],
+    /// The volume over that at rest J.
+    pub volume_ratio: f64,
+}
+
+impl NodeState {
+    /// The von Mises stress [Pa] of the mean stress.
+    pub fn von_mises(&self) -> f64 {
+        CellState {
+            cell: 0,
+            stress: self.stress,
+            volume_ratio: self.volume_ratio,
+            smallest_volume_ratio: self.volume_ratio,
+            measure: 0.0,
+        }
+        .von_mises()
+    }
+
+    /// The parts of the stress and the von Mises stress in the order of [`crate::blueprint::Recorded::columns`] [Pa].
+    pub fn components<const D: usize>(&self) -> Vec<f64> {
+        let s = &self.stress;
+        let mut out = vec![s[0][0], s[1][1], s[2][2], s[0][1]];
+        if D == 3 {
+            out.extend([s[1][2], s[2][0]]);
+        }
+        out.push(self.von_mises());
+        out
+    }
+}
+
+/// Weighted sums of states.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    stress: [[f64; 3]; 3],
+    ratio: f64,
+    weight: f64,
+}
+
+impl Sum {
+    fn add(&mut self, weight: f64, stress: &[[f64; 3]; 3], ratio: f64) {
+        for (sum, own) in self.stress.as_flattened_mut().iter_mut().zip(stress.as_flattened()) {
+            *sum += weight * own;
+        }
+        self.ratio += weight * ratio;
+        self.weight += weight;
+    }
+    fn mean(&self) -> Option<NodeState> {
+        let stress = self.stress.map(|row| row.map(|s| s / self.weight));
+        (self.weight > 0.0).then(|| NodeState { stress, volume_ratio: self.ratio / self.weight })
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// What the nodes of a body are under; none for a node around which no cell has a stress, empty where the body is not there.
+    pub fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
+        if self.handle(body).is_none() {
+            return Vec::new();
+        }
+        let of_cell: Vec<&[u32]> = self.blueprint.bodies[body].mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
+        let mut sums = vec![Sum::default(); self.node_count(body)];
+        for state in self.cell_states(body) {
+            for node in of_cell[state.cell as usize] {
+                sums[*node as usize].add(state.measure, &state.stress, state.volume_ratio);
+            }
+        }
+        sums.iter().map(Sum::mean).collect()
+    }
+
+    /// The mean over some nodes; none where no node has a state.
+    pub(crate) fn mean_of_cells(&self, body: usize, nodes: &[u32]) -> Option<NodeState> {
+        let states = self.node_states(body);
+        let mut sum = Sum::default();
+        for state in nodes.iter().filter_map(|node| states.get(*node as usize).copied().flatten()) {
+            sum.add(1.0, &state.stress, state.volume_ratio);
+        }
+        sum.mean()
+    }
+}
