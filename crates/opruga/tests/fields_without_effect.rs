@@ -106,6 +106,9 @@ fn conditions_name_fields_and_words_that_exist() {
                         let Allowed::Choice(choice) = other(name).range else { panic!("{}: `{name}`", spec.kind) };
                         assert!(words.iter().all(|word| choice.contains(word)), "{}: {words:?}", spec.kind);
                     }
+                    Condition::GivenOneOf(names) => names.iter().for_each(|name| {
+                        other(name);
+                    }),
                     Condition::Given(name) | Condition::NotGiven(name) | Condition::NotZero(name) => {
                         other(name);
                     }

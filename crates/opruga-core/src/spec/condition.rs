@@ -11,6 +11,8 @@ pub enum Condition {
     Word(&'static str, &'static [&'static str]),
     /// Another field is given, or true.
     Given(&'static str),
+    /// One at least of some other fields is given, or true.
+    GivenOneOf(&'static [&'static str]),
     /// Another field is not given, or false.
     NotGiven(&'static str),
     /// Another field is another number than zero.
@@ -25,6 +27,7 @@ impl Condition {
             Condition::Dimension(wanted) => wanted == dimension,
             Condition::Word(name, words) => values.text(name).is_some_and(|word| words.contains(&word)),
             Condition::Given(name) => given(name),
+            Condition::GivenOneOf(names) => names.iter().any(|name| given(name)),
             Condition::NotGiven(name) => !given(name),
             Condition::NotZero(name) => values.number(name).is_none_or(|number| number != 0.0),
         }
@@ -40,6 +43,10 @@ impl core::fmt::Display for Condition {
                 write!(f, "where `{name}` is {}", words.join(" or "))
             }
             Condition::Given(name) => write!(f, "with `{name}`"),
+            Condition::GivenOneOf(names) => {
+                let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+                write!(f, "with {}", names.join(" or "))
+            }
             Condition::NotGiven(name) => write!(f, "without `{name}`"),
             Condition::NotZero(name) => write!(f, "where `{name}` is not 0"),
         }

@@ -30,7 +30,8 @@ pub struct AtPoint<const D: usize> {
 /// energy, stress and tangent.
 pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>, BuildError> {
     let entry = entry(values)?;
-    let law = if values.text("plane") == Some("stress") { (entry.plane_stress)() } else { (entry.plane_strain)() };
+    let law =
+        if values.text("plane") == Some("stress") { (entry.cold.plane_stress)() } else { (entry.cold.plane_strain)() };
     let mut point = ask(&*law, values, gradient)?;
     point.across = point.across.or(Some(1.0));
     Ok(point)
@@ -41,7 +42,7 @@ pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>,
 /// # Errors
 /// As [`in_plane`].
 pub fn in_space(values: &Values, gradient: &[[f64; 3]; 3]) -> Result<AtPoint<3>, BuildError> {
-    ask(&*(entry(values)?.space)(), values, gradient)
+    ask(&*(entry(values)?.cold.space)(), values, gradient)
 }
 
 fn entry(values: &Values) -> Result<&'static materials::Entry, BuildError> {
@@ -60,7 +61,7 @@ fn ask<const D: usize>(law: &dyn Law<D>, values: &Values, gradient: &[[f64; D]; 
     let [mu, lambda] = lame(number("youngs_modulus"), ratio);
     // One point in all lanes of a pack.
     let spread = |numbers: &[f64]| numbers.iter().flat_map(|x| [*x; WIDTH]).collect::<Vec<f64>>();
-    let (f, parameters) = (spread(gradient.as_flattened()), spread(&[mu, lambda, own]));
+    let (f, parameters) = (spread(gradient.as_flattened()), spread(&[mu, lambda, own, 1.0]));
     debug_assert_eq!(parameters.len(), PARAMETERS * WIDTH);
     let points = Points { count: 1, gradient: &f, parameters: &parameters };
     let (mut energy, mut across) = (vec![0.0; WIDTH], vec![1.0; WIDTH]);

@@ -48,6 +48,11 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
         }
         let numbers = Numbers::new(ingredients, &chosen)?;
+        if numbers.heated && first.text("locking") == Some("nodal_volume") {
+            let message = "`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know; allowed: \
+                           \"refuse\" or \"accept\"; hint: `order = 2` for the body, or quadrilaterals and hexahedra, do not lock either";
+            return Err(refuse("model.locking", message));
+        }
         Ok(Builder {
             ingredients,
             chosen,
@@ -57,10 +62,11 @@ impl<'a, const D: usize> Builder<'a, D> {
         })
     }
 
-    pub(super) fn entry(&self) -> Result<&'static materials::Entry, BuildError> {
+    pub(super) fn laws(&self) -> Result<&'static materials::Laws, BuildError> {
         let name = self.ingredients.values[0].text("material").unwrap_or("");
         let found = materials::ALL.iter().find(|entry| entry.name == name);
-        found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))
+        let entry = found.ok_or_else(|| refuse("scene.unknown_name", format!("there is no material `{name}`")))?;
+        Ok(if self.numbers.heated { &entry.heated } else { &entry.cold })
     }
 
     /// What holds for linear simplices near incompressibility.

@@ -11,8 +11,8 @@ use opruga_core::potential::Definiteness;
 use opruga_math::matrix::Matrix;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
-/// Numbers of [`Parameters`] at a point.
-pub(super) const PARAMETERS: usize = 3;
+/// Numbers at a point: those of [`Parameters`], and the growth by heat.
+pub(super) const PARAMETERS: usize = 4;
 
 /// Packs of points: for each pack D² packs of F, row by row, and [`PARAMETERS`] packs.
 #[derive(Clone, Copy, Debug)]

@@ -23,6 +23,9 @@
 //!
 //! **Damping** is that of Kelvin and Voigt: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
+//! **Heat**: a point that has grown by g = 1 + α ΔT has the energy g³ ψ(F/g), under the law of small strain ψ(ε − αΔT 1) (file
+//! `heat`); where nothing expands, nothing of that is computed.
+//!
 //! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. Boxes bend
 //! at small strain as Hooke's law of their E and ν lets them; how much a bent cell swells across is taken from there in all states.
 //! Corotated laws have no unique rotation, and so no unique force, where the two smallest stretches are opposite.
@@ -32,6 +35,7 @@ mod boxes;
 mod builder;
 mod contraction;
 mod elements;
+mod heat;
 mod law;
 mod mass;
 pub mod material;
@@ -73,9 +77,9 @@ impl Model<2> for FemModel {
     }
     fn build(&self, ingredients: &Ingredients<2>) -> Result<Box<dyn Potential<2>>, BuildError> {
         let builder = Builder::new(ingredients)?;
-        let entry = builder.entry()?;
+        let laws = builder.laws()?;
         let (law, space) =
-            if builder.stress { (entry.plane_stress, None) } else { (entry.plane_strain, Some(entry.space)) };
+            if builder.stress { (laws.plane_stress, None) } else { (laws.plane_strain, Some(laws.space)) };
         let cells = &ingredients.mesh.cells;
         let mut built = Built::NOTHING;
         builder.add::<Triangle, 3>(&mut built, &cells.triangles, 0, law, space)?;
@@ -93,7 +97,7 @@ impl Model<3> for FemModel {
     }
     fn build(&self, ingredients: &Ingredients<3>) -> Result<Box<dyn Potential<3>>, BuildError> {
         let builder = Builder::new(ingredients)?;
-        let law = builder.entry()?.space;
+        let law = builder.laws()?.space;
         let cells = &ingredients.mesh.cells;
         let mut built = Built::NOTHING;
         builder.add::<Tetrahedron, 4>(&mut built, &cells.tetrahedra, 0, law, None)?;

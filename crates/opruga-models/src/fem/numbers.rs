@@ -19,6 +19,9 @@ const LOCKS_ABOVE: f64 = 0.45;
 pub(super) const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
 const POISSONS_RATIO: [&str; 2] = ["poissons_ratio", "poissons_ratio_of_cells"];
 const DAMPING: [&str; 2] = ["damping", "damping_of_cells"];
+pub(super) const EXPANSION: [&str; 2] = ["thermal_expansion", "thermal_expansion_of_cells"];
+const TEMPERATURE: [&str; 2] = ["temperature", "temperature_of_cells"];
+const REFERENCE: [&str; 2] = ["reference_temperature", "reference_temperature_of_cells"];
 
 /// The numbers of the material of all cells.
 pub(super) struct Numbers<'a> {
@@ -27,8 +30,13 @@ pub(super) struct Numbers<'a> {
     moduli: Option<&'a [f64]>,
     ratios: Option<&'a [f64]>,
     times: Option<&'a [f64]>,
+    expansions: Option<&'a [f64]>,
+    temperatures: Option<&'a [f64]>,
+    references: Option<&'a [f64]>,
     /// Whether any cell takes energy out.
     pub(super) damped: bool,
+    /// Whether any cell has grown or shrunk by heat.
+    pub(super) heated: bool,
 }
 
 impl<'a> Numbers<'a> {
@@ -45,23 +53,36 @@ impl<'a> Numbers<'a> {
             moduli: of(YOUNGS_MODULUS)?,
             ratios: of(POISSONS_RATIO)?,
             times: of(DAMPING)?,
+            expansions: of(EXPANSION)?,
+            temperatures: of(TEMPERATURE)?,
+            references: of(REFERENCE)?,
             damped: false,
+            heated: false,
         };
         first.check_choices(&SPEC)?;
         let cells = || (0..chosen.len()).filter(|cell| chosen[*cell]).map(|cell| cell as u32);
         for (body, values) in ingredients.values.iter().enumerate() {
             numbers.damped |= cells().any(|cell| numbers.time(cell, body) > 0.0);
+            for cell in cells() {
+                let growth = numbers.growth(cell, body);
+                if !(growth > 0.0 && growth.is_finite()) {
+                    return Err(refuse("model.temperature", numbers.no_growth(cell, body)));
+                }
+            }
             cells().try_for_each(|cell| refuse_what_is_not_convex(values, numbers.ratio(cell, body)))?;
         }
+        let bodies = 0..ingredients.values.len();
+        let heated = bodies.into_iter().any(|body| cells().any(|cell| numbers.growth(cell, body) != 1.0));
+        numbers.heated = heated;
         Ok(numbers)
     }
 
-    /// μ, λ, the material's own number and the retardation time of a cell of a body.
+    /// μ, λ, the material's own number, the growth by heat and the retardation time of a cell of a body.
     pub(super) fn of(&self, cell: u32, body: usize) -> [f64; NUMBERS] {
         let modulus = self.number(YOUNGS_MODULUS[0], self.moduli, cell, body);
         let ratio = self.ratio(cell, body);
         let [mu, lambda] = lame(modulus, ratio);
-        [mu, lambda, self.number("mooney_share", None, cell, body), self.time(cell, body)]
+        [mu, lambda, self.number("mooney_share", None, cell, body), self.growth(cell, body), self.time(cell, body)]
     }
 
     /// Refuses linear cells near incompressibility.
@@ -85,6 +106,26 @@ impl<'a> Numbers<'a> {
 
     fn ratio(&self, cell: u32, body: usize) -> f64 {
         self.number(POISSONS_RATIO[0], self.ratios, cell, body)
+    }
+    /// T and T₀ [K]: a body of which nothing is said has the temperature of rest.
+    fn temperatures(&self, cell: u32, body: usize) -> [f64; 2] {
+        let reference = self.number(REFERENCE[0], self.references, cell, body);
+        let own = || self.values[body.min(self.values.len() - 1)].number(TEMPERATURE[0]).unwrap_or(reference);
+        [self.temperatures.map_or_else(own, |all| all[cell as usize]), reference]
+    }
+    /// g = 1 + α (T − T₀).
+    fn growth(&self, cell: u32, body: usize) -> f64 {
+        let [now, reference] = self.temperatures(cell, body);
+        1.0 + self.number(EXPANSION[0], self.expansions, cell, body) * (now - reference)
+    }
+    /// Why the growth of a cell is refused.
+    fn no_growth(&self, cell: u32, body: usize) -> String {
+        let ([now, reference], growth) = (self.temperatures(cell, body), self.growth(cell, body));
+        let expansion = self.number(EXPANSION[0], self.expansions, cell, body);
+        format!(
+            "cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K; \
+             allowed: more than 0; hint: steel has 1.2e-5 1/K, rubber 2e-4 1/K"
+        )
     }
     fn time(&self, cell: u32, body: usize) -> f64 {
         self.number(DAMPING[0], self.times, cell, body)

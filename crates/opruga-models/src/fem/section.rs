@@ -26,8 +26,8 @@ use opruga_math::{Column, ROW, WIDTH};
 /// Packs of points that are looked at together, at most.
 pub(super) const MOST_PACKS: usize = 9;
 
-/// Numbers of an element: μ, λ, the material's own, retardation time.
-pub(super) const NUMBERS: usize = 4;
+/// Numbers of an element: μ, λ, the material's own, growth by heat, retardation time.
+pub(super) const NUMBERS: usize = 5;
 
 /// Packs of points in a share: a hundred kilobytes, half a millisecond at most.
 const SHARE: usize = 512;

@@ -1,7 +1,7 @@
 //! Parameters of finite elements.
 
 use super::materials::NAMES;
-use super::numbers::YOUNGS_MODULUS;
+use super::numbers::{EXPANSION, YOUNGS_MODULUS};
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Spec};
 
 /// The parameters of `fem`.
@@ -15,7 +15,9 @@ Quadrilaterals and hexahedra bend and twist with the strains of assumed stresses
 Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise: \
 `nodal_volume` is the remedy. \
 In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
-Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Equations, sources and measurements: docs/finite-elements.md.",
+Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. \
+Heat: with `thermal_expansion` a body that is free grows by g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it grows \
+by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -69,6 +71,53 @@ Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the ra
             Default::Absent,
             "The name of numbers of the mesh file, one per cell, that are the retardation time [s].",
         ),
+        Field::new(
+            "thermal_expansion",
+            Allowed::ANY,
+            "1/K",
+            Default::Absent,
+            "Coefficient α of linear thermal expansion: what is free grows by 1 + α (T − T₀) in every direction; 0 where the scene is silent.",
+        )
+        .applies(&[Condition::NotGiven("thermal_expansion_of_cells")]),
+        Field::new(
+            "thermal_expansion_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are the coefficient of thermal expansion [1/K].",
+        ),
+        Field::new(
+            "temperature",
+            Allowed::NOT_NEGATIVE,
+            "K",
+            Default::Absent,
+            "Temperature T; that of rest where the scene is silent.",
+        )
+        .applies(&[Condition::NotGiven("temperature_of_cells"), Condition::GivenOneOf(&EXPANSION)]),
+        Field::new(
+            "temperature_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are the temperature [K].",
+        )
+        .applies(&[Condition::GivenOneOf(&EXPANSION)]),
+        Field::new(
+            "reference_temperature",
+            Allowed::NOT_NEGATIVE,
+            "K",
+            Default::Number(293.15),
+            "Temperature T₀ at which the shape at rest is free of stress.",
+        )
+        .applies(&[Condition::NotGiven("reference_temperature_of_cells"), Condition::GivenOneOf(&EXPANSION)]),
+        Field::new(
+            "reference_temperature_of_cells",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of numbers of the mesh file, one per cell, that are the temperature of rest [K].",
+        )
+        .applies(&[Condition::GivenOneOf(&EXPANSION)]),
         Field::new(
             "mass",
             Allowed::Choice(&["lumped", "consistent"]),

@@ -197,6 +197,32 @@ pub(super) const FIELDS: &[(&str, &str, &str)] = &[
         "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su Poissonov omjer.",
     ),
     (
+        "model.fem.thermal_expansion",
+        "toplinsko rastezanje",
+        "Koeficijent α linearnog toplinskog rastezanja: što je slobodno, naraste za 1 + α (T − T₀) u svakom smjeru; 0 gdje prizor šuti.",
+    ),
+    (
+        "model.fem.thermal_expansion_of_cells",
+        "toplinsko rastezanje ćelija",
+        "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su koeficijent toplinskog rastezanja [1/K].",
+    ),
+    ("model.fem.temperature", "temperatura", "Temperatura T; ona mirovanja gdje prizor šuti."),
+    (
+        "model.fem.temperature_of_cells",
+        "temperatura ćelija",
+        "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su temperatura [K].",
+    ),
+    (
+        "model.fem.reference_temperature",
+        "temperatura mirovanja",
+        "Temperatura T₀ na kojoj oblik u mirovanju nema naprezanja.",
+    ),
+    (
+        "model.fem.reference_temperature_of_cells",
+        "temperatura mirovanja ćelija",
+        "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su temperatura mirovanja [K].",
+    ),
+    (
         "model.fem.damping_of_cells",
         "prigušenje ćelija",
         "Ime brojeva iz datoteke mreže, po jedan za ćeliju, koji su vrijeme zaostajanja [s].",

@@ -120,6 +120,10 @@ impl Language {
                 format!("gdje je „{}” {}", field(name), words.join(" ili "))
             }
             Condition::Given(name) => format!("uz „{}”", field(name)),
+            Condition::GivenOneOf(names) => {
+                let names: Vec<String> = names.iter().map(|name| format!("„{}”", field(name))).collect();
+                format!("uz {}", names.join(" ili "))
+            }
             Condition::NotGiven(name) => format!("bez „{}”", field(name)),
             Condition::NotZero(name) => format!("gdje „{}” nije 0", field(name)),
         };

@@ -4,6 +4,10 @@
 /// its own, `{~}` for a part of a sentence that is one of these sentences itself. The first that fits counts.
 pub(super) const SENTENCES: &[(&str, &str)] = &[
     // Models.
+    (
+        "the selected nodes hold no whole cell of the body; allowed: all nodes of one cell at least",
+        "odabrani čvorovi ne drže nijednu cijelu ćeliju tijela; dopušteno: barem svi čvorovi jedne ćelije",
+    ),
     ("the body has no {} edges to carry springs", "tijelo nema bridova ({}) koji bi nosili opruge"),
     ("edge {} has no length; `modulus` needs one", "brid {} nema duljinu, a `modulus` je treba"),
     ("exactly one of `{}` and `{}` must be given", "treba zadati točno jedno od `{}` i `{}`"),
@@ -56,6 +60,18 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
         "`{}` of cell {} is {}; allowed: {~}; hint: the numbers are in the file of the mesh; `{}` gives one for all cells",
         "`{}` ćelije {} je {}; dopušteno: {~}; savjet: brojevi su u datoteci mreže; `{}` daje jedan za sve ćelije",
+    ),
+    (
+        "cell {} would be {} times as long by `thermal_expansion` = {} 1/K from {} K to {} K; allowed: more than 0; hint: steel has \
+         1.2e-5 1/K, rubber 2e-4 1/K",
+        "ćelija {} bila bi dulja {} puta uz `thermal_expansion` = {} 1/K od {} K do {} K; dopušteno: više od 0; savjet: čelik ima \
+         1.2e-5 1/K, guma 2e-4 1/K",
+    ),
+    (
+        "`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know; allowed: {}; hint: \
+         `order = 2` for the body, or quadrilaterals and hexahedra, do not lock either",
+        "`locking` je \"nodal_volume\", a tijelo se rasteže toplinom, za koju obujmi čvorova ne znaju; dopušteno: {}; savjet: \
+         `order = 2` tijelu, ili četverokuti i heksaedri, također se ne ukoče",
     ),
     ("there is no material `{}`", "nema materijala `{}`"),
     (

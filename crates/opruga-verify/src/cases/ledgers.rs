@@ -112,6 +112,7 @@ pub(super) const CASES: &[Case] = &[
         measure: rub,
         ..LINEAR
     },
+    super::heat::START,
 ];
 
 /// What a ball keeps in flight.

@@ -6,6 +6,7 @@
 mod balloons;
 mod beams;
 mod contact;
+mod heat;
 mod integrators;
 mod ledgers;
 mod materials;
@@ -43,6 +44,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         beams::CASES,
         springs::CASES,
         solids::CASES,
+        heat::CASES,
         materials::CASES,
         pressure::CASES,
         balloons::CASES,

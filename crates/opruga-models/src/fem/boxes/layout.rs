@@ -163,7 +163,7 @@ mod tests {
         let cells: Vec<Cell<N>> = nodes.iter().enumerate().map(number).collect();
         let (layout, thickness) = (Layout::Single, 1.0);
         let plan = Plan { layout, positions, thickness, plane_stress: false, cells: &cells, mean: false };
-        Boxes::new::<E, D, N>(&plan, &|cell, _| [moduli(cell), moduli(cell), 0.0, 0.0])
+        Boxes::new::<E, D, N>(&plan, &|cell, _| [moduli(cell), moduli(cell), 0.0, 1.0, 0.0])
     }
     /// How many entries of the shares and of X may be something.
     fn entries(boxes: &Boxes, shares: usize, response: usize) -> [usize; 2] {

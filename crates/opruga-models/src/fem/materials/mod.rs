@@ -16,12 +16,21 @@ pub use neo_hookean::NeoHookean;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 
+use super::heat::{Heated, HeatedSlice};
 use super::law::{Law, Lift};
 use super::plane_stress::PlaneStress;
 
-/// A material of the list: its word and its laws in the plane (strain and stress) and in space.
+/// A material of the list: its word and its laws.
 pub(super) struct Entry {
     pub(super) name: &'static str,
+    /// At the temperature of rest.
+    pub(super) cold: Laws,
+    /// Where any point may be warmer or colder.
+    pub(super) heated: Laws,
+}
+
+/// Laws of a material in the plane (strain and stress) and in space.
+pub(super) struct Laws {
     pub(super) plane_strain: fn() -> Box<dyn Law<2>>,
     pub(super) plane_stress: fn() -> Box<dyn Law<2>>,
     pub(super) space: fn() -> Box<dyn Law<3>>,
@@ -34,9 +43,18 @@ macro_rules! entries {
         /// All materials.
         pub(super) const ALL: &[Entry] = &[$(Entry {
             name: $name,
-            plane_strain: || Box::new(Lift($material)),
-            plane_stress: || Box::new(PlaneStress(Box::new(Lift($material)))),
-            space: || Box::new(Lift($material)),
+            cold: Laws {
+                plane_strain: || Box::new(Lift($material)),
+                plane_stress: || Box::new(PlaneStress(Box::new(Lift($material)))),
+                space: || Box::new(Lift($material)),
+            },
+            heated: Laws {
+                plane_strain: || {
+                    Box::new(HeatedSlice { plane: Box::new(Lift($material)), space: Box::new(Lift($material)) })
+                },
+                plane_stress: || Box::new(Heated(Box::new(PlaneStress(Box::new(Lift($material)))))),
+                space: || Box::new(Heated(Box::new(Lift($material)))),
+            },
         }),*];
     };
 }

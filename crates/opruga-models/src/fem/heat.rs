@@ -1,0 +1,180 @@
+//! Thermal expansion: laws of bodies that are warmer or colder than at rest.
+//!
+//! A point that has grown by g = 1 + α ΔT in every direction is under the law of what is left of its deformation,
+//!
+//! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e:
+//!
+//! g³ is the volume of the free heated body over that at rest, for which ψ counts. The law of small strain takes the thermal strain
+//! away instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both hold in space and for a plate, whose
+//! thickness finds its own stretch. In plane strain nothing moves across the plane, so that what is left there is 1/g, and
+//! the law is asked in space.
+//!
+//! # Source
+//! Vujošević, Lubarda, "Finite-strain thermoelasticity based on multiplicative decomposition of deformation gradient",
+//! Theor. Appl. Mech. 28–29 (2002); for small strain Timoshenko, Goodier, *Theory of elasticity*, chapter 13.
+
+use super::law::{Law, PARAMETERS, Points};
+use super::section::{MOST_PACKS, Room};
+use opruga_core::potential::Definiteness;
+use opruga_math::{Simd, WIDTH};
+
+/// A law in space, or of a plate, under heat.
+#[derive(Debug)]
+pub(super) struct Heated<const D: usize>(pub(super) Box<dyn Law<D>>);
+
+/// A law in plane strain under heat: that of space where a point is warmer or colder, that of the plane where it is not.
+#[derive(Debug)]
+pub(super) struct HeatedSlice {
+    pub(super) plane: Box<dyn Law<2>>,
+    pub(super) space: Box<dyn Law<3>>,
+}
+
+/// g of the points of a pack.
+fn growths<'a>(points: &Points<'a>, point: usize) -> &'a [f64] {
+    &points.parameters[(point * PARAMETERS + PARAMETERS - 1) * WIDTH..][..WIDTH]
+}
+
+/// Multiplies some packs of every pack of points by gᵏ, lane by lane.
+fn scale(points: &Points<'_>, packs: usize, power: i32, numbers: &mut [f64]) {
+    for (point, own) in numbers.chunks_exact_mut(packs * WIDTH).enumerate().take(points.count) {
+        let growths = growths(points, point);
+        for pack in own.chunks_exact_mut(WIDTH) {
+            for (number, growth) in pack.iter_mut().zip(growths) {
+                for _ in 0..power {
+                    *number *= growth;
+                }
+                if power < 0 {
+                    *number /= growth;
+                }
+            }
+        }
+    }
+}
+
+/// The power of g in ψ_T.
+fn power(turns: bool) -> i32 {
+    if turns { 3 } else { 2 }
+}
+
+impl<const D: usize> Heated<D> {
+    /// What is left of the deformation gradients.
+    fn elastic(points: &Points<'_>) -> Room<{ MOST_PACKS * 9 * WIDTH }> {
+        let mut room = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        let count = points.count * D * D * WIDTH;
+        room.0[..count].copy_from_slice(&points.gradient[..count]);
+        scale(points, D * D, -1, &mut room.0);
+        room
+    }
+}
+
+impl<const D: usize> Law<D> for Heated<D> {
+    fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]) {
+        let gradient = Heated::<D>::elastic(&points);
+        self.0.stress(simd, Points { gradient: &gradient.0, ..points }, energy, stress);
+        let power = power(self.turns());
+        scale(&points, 1, power, energy);
+        scale(&points, D * D, power - 1, stress);
+    }
+    fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]) {
+        let gradient = Heated::<D>::elastic(&points);
+        self.0.tangent(simd, Points { gradient: &gradient.0, ..points }, keep, tangent);
+        scale(&points, D * D * D * D, power(self.turns()) - 2, tangent);
+    }
+    fn thickness(&self, simd: Simd, points: Points<'_>, out: &mut [f64]) -> bool {
+        let gradient = Heated::<D>::elastic(&points);
+        let found = self.0.thickness(simd, Points { gradient: &gradient.0, ..points }, out);
+        if found {
+            scale(&points, 1, 1, out);
+        }
+        found
+    }
+    fn turns(&self) -> bool {
+        self.0.turns()
+    }
+    fn cancels(&self) -> bool {
+        self.0.cancels()
+    }
+}
+
+impl HeatedSlice {
+    /// Deformation gradients of space: nothing moves across the plane, where 1/g is left.
+    fn raised(points: &Points<'_>) -> Room<{ MOST_PACKS * 9 * WIDTH }> {
+        let mut room = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        for point in 0..points.count {
+            for (k, at) in [0, 1, 3, 4].into_iter().enumerate() {
+                room.0[(point * 9 + at) * WIDTH..][..WIDTH]
+                    .copy_from_slice(&points.gradient[(point * 4 + k) * WIDTH..][..WIDTH]);
+            }
+            room.0[(point * 9 + 8) * WIDTH..][..WIDTH].fill(1.0);
+        }
+        scale(points, 9, -1, &mut room.0);
+        room
+    }
+
+    /// Puts what the law of the plane says in the place of what that of space says, where a point has not grown: a body is under
+    /// the same numbers whatever those beside it are.
+    fn keep_what_is_cold(points: &Points<'_>, packs: usize, cold: &[f64], numbers: &mut [f64]) {
+        for point in 0..points.count {
+            let growths = growths(points, point);
+            for pack in 0..packs {
+                let at = (point * packs + pack) * WIDTH;
+                for l in (0..WIDTH).filter(|l| growths[*l] == 1.0) {
+                    numbers[at + l] = cold[at + l];
+                }
+            }
+        }
+    }
+
+    fn has_cold(points: &Points<'_>) -> bool {
+        (0..points.count).any(|point| growths(points, point).contains(&1.0))
+    }
+}
+
+impl Law<2> for HeatedSlice {
+    fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]) {
+        let gradient = HeatedSlice::raised(&points);
+        let mut in_space = Room([0.0; MOST_PACKS * 9 * WIDTH]);
+        self.space.stress(simd, Points { gradient: &gradient.0, ..points }, energy, &mut in_space.0);
+        for point in 0..points.count {
+            for (k, at) in [0, 1, 3, 4].into_iter().enumerate() {
+                stress[(point * 4 + k) * WIDTH..][..WIDTH]
+                    .copy_from_slice(&in_space.0[(point * 9 + at) * WIDTH..][..WIDTH]);
+            }
+        }
+        let power = power(self.turns());
+        scale(&points, 1, power, energy);
+        scale(&points, 4, power - 1, stress);
+        if HeatedSlice::has_cold(&points) {
+            let mut cold = (Room([0.0; MOST_PACKS * WIDTH]), Room([0.0; MOST_PACKS * 4 * WIDTH]));
+            self.plane.stress(simd, points, &mut cold.0.0, &mut cold.1.0);
+            HeatedSlice::keep_what_is_cold(&points, 1, &cold.0.0, energy);
+            HeatedSlice::keep_what_is_cold(&points, 4, &cold.1.0, stress);
+        }
+    }
+    fn tangent(&self, simd: Simd, points: Points<'_>, keep: Definiteness, tangent: &mut [f64]) {
+        let gradient = HeatedSlice::raised(&points);
+        let mut in_space = Room([0.0; MOST_PACKS * 81 * WIDTH]);
+        self.space.tangent(simd, Points { gradient: &gradient.0, ..points }, keep, &mut in_space.0);
+        // A part of a matrix without negative eigenvalues has none either.
+        for point in 0..points.count {
+            for (row, from) in [0, 1, 3, 4].into_iter().enumerate() {
+                for (column, at) in [0, 1, 3, 4].into_iter().enumerate() {
+                    tangent[((point * 4 + row) * 4 + column) * WIDTH..][..WIDTH]
+                        .copy_from_slice(&in_space.0[((point * 9 + from) * 9 + at) * WIDTH..][..WIDTH]);
+                }
+            }
+        }
+        scale(&points, 16, power(self.turns()) - 2, tangent);
+        if HeatedSlice::has_cold(&points) {
+            let mut cold = Room([0.0; MOST_PACKS * 16 * WIDTH]);
+            self.plane.tangent(simd, points, keep, &mut cold.0);
+            HeatedSlice::keep_what_is_cold(&points, 16, &cold.0, tangent);
+        }
+    }
+    fn turns(&self) -> bool {
+        self.space.turns()
+    }
+    fn cancels(&self) -> bool {
+        self.space.cancels()
+    }
+}
