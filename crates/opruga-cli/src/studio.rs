@@ -3,9 +3,9 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::interrupt;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -66,14 +66,7 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     let mut command = match source_tree(|name| std::env::var_os(name)) {
         Some((cargo, root)) => {
             eprintln!("starting the studio; cargo builds it where it has changed, which takes minutes the first time");
-            let mut command = Command::new(cargo);
-            command.arg("run").arg("--quiet").arg("--manifest-path").arg(root.join("Cargo.toml"));
-            command.args(["--package", "opruga-studio"]);
-            if !cfg!(debug_assertions) {
-                command.arg("--release");
-            }
-            command.arg("--");
-            command
+            built(&cargo, &root)
         }
         None => {
             let beside = std::env::current_exe().ok().map(|own| beside(&own)).filter(|path| path.is_file());
@@ -97,6 +90,19 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
         Some(code) => Ok(u8::try_from(code).unwrap_or(1)),
         None => Err(Failure::Interrupted),
     }
+}
+
+/// What builds the studio and starts it. Cargo is not told to be quiet, and writes where this program writes: for minutes nothing else
+/// would be seen.
+fn built(cargo: &OsStr, root: &Path) -> Command {
+    let mut command = Command::new(cargo);
+    command.arg("run").arg("--manifest-path").arg(root.join("Cargo.toml"));
+    command.args(["--package", "opruga-studio"]);
+    if !cfg!(debug_assertions) {
+        command.arg("--release");
+    }
+    command.arg("--").stderr(Stdio::inherit());
+    command
 }
 
 /// Waits for the end of a program, which is asked to end as soon as this one is: it saves what was done, also where this one does not
@@ -182,6 +188,16 @@ mod tests {
         let mut listens = [0];
         std::io::Read::read_exact(&mut child.stdout.take().expect("its words"), &mut listens).expect("a line");
         assert_eq!(wait(child, &AtomicBool::new(true)).expect("its end").code(), Some(7));
+    }
+
+    #[test]
+    fn cargo_is_not_told_to_be_quiet_while_it_builds_the_studio() {
+        let command = built(OsStr::new("cargo"), Path::new("/source"));
+        let arguments: Vec<&str> = command.get_args().filter_map(OsStr::to_str).collect();
+        assert_eq!(arguments[..2], ["run", "--manifest-path"]);
+        assert_eq!(arguments[3..5], ["--package", "opruga-studio"]);
+        assert!(!arguments.iter().any(|word| matches!(*word, "--quiet" | "-q")), "{arguments:?}");
+        assert_eq!(arguments.last(), Some(&"--"));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod texts;
+mod window;
 
 use common::*;
 use serde_json::Value;
