@@ -1,21 +1,26 @@
 //! The window: what is where, shortcuts, messages.
 
+mod arrivals;
+#[cfg(not(target_arch = "wasm32"))]
+mod closing;
 mod help;
+mod keys;
 mod message;
 
 use crate::canvas::{Canvas, Tool};
 use crate::differences::Difference;
-use crate::hand::{Arrived, Hand};
+use crate::hand::Hand;
 use crate::panels::gallery::Gallery;
 use crate::panels::keeping::Keeping;
 use crate::panels::properties::Properties;
 use crate::panels::{bars, palette, plots, status};
+use crate::preferences::{Preferences, Store};
 use crate::runner::Link;
 use crate::said::Said;
-use crate::session::{Edit, Placed, Request, Session};
+use crate::session::{Edit, Request, Session};
 use crate::shown::{Severity, Show, Shown};
 use crate::words::Language;
-use egui::{Align2, Color32, FontId, Frame, Key, Margin, Modifiers, Panel, Ui};
+use egui::{Align2, Color32, FontId, Frame, Margin, Panel, Theme, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -39,8 +44,13 @@ pub struct Studio {
     gallery: Gallery,
     keeping: Keeping,
     hand: Hand,
+    /// Shapes that wait for the pointer.
+    landing: arrivals::Waiting,
     /// The language of the interface.
     pub language: Language,
+    theme: Theme,
+    /// Where language and theme are kept.
+    store: Store,
     show: Show,
     plots_open: bool,
     /// Whether the properties are open in a window that is too narrow to show them always.
@@ -67,6 +77,9 @@ pub struct Studio {
     /// Where what is done is kept against the loss of the window.
     #[cfg(not(target_arch = "wasm32"))]
     rescue: Option<crate::rescue::Rescue>,
+    /// Whether the window is about to close.
+    #[cfg(not(target_arch = "wasm32"))]
+    closing: closing::Closing,
 }
 
 impl Studio {
@@ -76,6 +89,7 @@ impl Studio {
     /// Where the system gives no thread.
     pub fn new(session: Session, context: &egui::Context) -> std::io::Result<Studio> {
         crate::theme::apply(context);
+        context.add_plugin(crate::taps::Taps::default());
         let waker = context.clone();
         let link = Link::start(session, move || waker.request_repaint())?;
         Ok(Studio {
@@ -85,7 +99,10 @@ impl Studio {
             gallery: Gallery::default(),
             keeping: Keeping::default(),
             hand: Default::default(),
+            landing: Vec::new(),
             language: Language::default(),
+            theme: Theme::Dark,
+            store: Store::default(),
             show: Show::default(),
             plots_open: false,
             drawer_open: false,
@@ -101,7 +118,23 @@ impl Studio {
             drawn_by: None,
             #[cfg(not(target_arch = "wasm32"))]
             rescue: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            closing: Default::default(),
         })
+    }
+
+    /// Takes over what a person prefers from where it is kept, and keeps there what they choose from now on.
+    pub fn prefer(&mut self, store: Store, context: &egui::Context) {
+        let kept = store.read();
+        (self.language, self.theme) = (kept.language, kept.theme);
+        context.set_theme(self.theme);
+        self.store = store;
+    }
+
+    /// Keeps pictures of scenes in this folder, which need not be drawn again then.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn keep_pictures_in(&mut self, folder: std::path::PathBuf) {
+        self.gallery.cache = Some(folder);
     }
 
     /// Keeps what is done there, against the loss of the window.
@@ -116,6 +149,8 @@ impl Studio {
     pub fn move_to(&mut self, context: &egui::Context, drawn_by: [String; 2]) {
         self.drawn_by = Some(drawn_by);
         crate::theme::apply(context);
+        context.set_theme(self.theme);
+        context.add_plugin(crate::taps::Taps::default());
         let waker = context.clone();
         self.link.wake_by(move || waker.request_repaint());
         self.canvas.forget_textures();
@@ -152,6 +187,14 @@ impl Studio {
         self.canvas.is_drawing() || self.gallery.is_drawing() || self.keeping.is_working()
     }
 
+    /// Whether a question stands before everything else.
+    fn is_asking(&self) -> bool {
+        #[cfg(target_arch = "wasm32")]
+        return false;
+        #[cfg(not(target_arch = "wasm32"))]
+        self.closing.is_asking()
+    }
+
     /// Shows the window for one frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
@@ -166,7 +209,11 @@ impl Studio {
         self.keeping.poll(&self.link);
         self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
-        self.shortcuts(ui, &shown, &mut asks);
+        #[cfg(not(target_arch = "wasm32"))]
+        self.close(ui, &shown);
+        if !self.is_asking() {
+            self.shortcuts(ui, &shown, &mut asks);
+        }
         self.dropped(ui, &shown, &mut asks);
         self.properties.hash = false;
         let words = self.language;
@@ -296,10 +343,12 @@ impl Studio {
                     Language::English => Language::Croatian,
                     Language::Croatian => Language::English,
                 };
+                self.store.write(Preferences { language: self.language, theme: self.theme });
             }
             Chosen::Theme => {
-                let dark = ui.visuals().dark_mode;
-                ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+                self.theme = if ui.visuals().dark_mode { Theme::Light } else { Theme::Dark };
+                ui.ctx().set_theme(self.theme);
+                self.store.write(Preferences { language: self.language, theme: self.theme });
             }
             Chosen::Keep(what) => self.keeping.begin(what, &self.link, self.show),
             Chosen::Link => self.hand.copy_link(&self.link),
@@ -328,7 +377,8 @@ impl Studio {
                         if rect.width() > NARROW {
                             ui.separator();
                         }
-                        palette::menu(ui, shown, words, self.canvas.middle(shown), asks);
+                        let pointer = ui.input(|i| i.pointer.interact_pos());
+                        palette::menu(ui, shown, words, self.canvas.landing(shown, pointer), asks);
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
                         }
@@ -360,110 +410,6 @@ impl Studio {
             asks.push(Request::Open { name: name.into(), text: text.into(), files });
         }
         self.help(ui);
-    }
-
-    fn shortcuts(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
-        if ui.ctx().text_edit_focused() {
-            return;
-        }
-        // A slider or a button that has the focus takes keys itself, but none with Ctrl.
-        let focused = ui.ctx().memory(|m| m.focused().is_some());
-        let pressed = |modifiers: Modifiers, key: Key| {
-            (modifiers.command || !focused) && ui.input_mut(|i| i.consume_key(modifiers, key))
-        };
-        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
-            asks.push(Request::Redo);
-        }
-        if pressed(Modifiers::COMMAND, Key::Z) {
-            asks.push(Request::Undo);
-        }
-        if pressed(Modifiers::COMMAND, Key::S) {
-            self.keeping.begin(crate::panels::keeping::What::Scene, &self.link, self.show);
-        }
-        if (self.help_open || self.gallery.open) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
-            (self.help_open, self.gallery.open) = (false, false);
-        }
-        let selected = self.canvas.selected.clone();
-        if let Some(name) = selected {
-            let place = |turned: f64, scaled: f64| {
-                Request::Edit(Edit::Place(name.clone(), Placed { moved: [0.0; 3], turned, scaled }))
-            };
-            let fifteen = 15f64.to_radians();
-            if pressed(Modifiers::COMMAND, Key::D) {
-                asks.push(Request::Edit(Edit::Duplicate(name.clone())));
-            }
-            if pressed(Modifiers::NONE, Key::Delete) {
-                asks.push(Request::Edit(Edit::Delete(name.clone())));
-                self.canvas.selected = None;
-            }
-            for (key, request) in [
-                (Key::OpenBracket, place(fifteen, 1.0)),
-                (Key::CloseBracket, place(-fifteen, 1.0)),
-                (Key::Plus, place(0.0, 1.1)),
-                (Key::Minus, place(0.0, 1.0 / 1.1)),
-            ] {
-                if pressed(Modifiers::NONE, key) {
-                    asks.push(request);
-                }
-            }
-        }
-        // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along. Where it was
-        // let go before the pointer, nobody has forgotten that until it is pressed anew.
-        let anew = |event: &egui::Event| {
-            matches!(event, egui::Event::Key { key: Key::Space, pressed: true, repeat: false, .. })
-        };
-        if ui.input(|i| i.events.iter().any(anew)) {
-            self.canvas.panned = false;
-        }
-        let let_go = !focused && ui.input(|i| i.key_released(Key::Space) && !i.pointer.any_down());
-        if let_go && !std::mem::take(&mut self.canvas.panned) {
-            asks.push(Request::Play(!shown.playing));
-        }
-        if pressed(Modifiers::NONE, Key::ArrowRight) {
-            asks.push(Request::Step);
-        }
-        if pressed(Modifiers::NONE, Key::Home) {
-            asks.push(Request::Reset);
-        }
-        let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
-        for (key, tool) in keys.into_iter().zip(Tool::ALL) {
-            if pressed(Modifiers::NONE, key) {
-                self.canvas.tool = tool;
-            }
-        }
-        if pressed(Modifiers::NONE, Key::F) {
-            self.canvas.fit();
-        }
-        if pressed(Modifiers::NONE, Key::C) {
-            self.canvas.focus(shown);
-        }
-        if pressed(Modifiers::NONE, Key::B) {
-            asks.push(Request::Compare(shown.beside.is_none()));
-        }
-        if pressed(Modifiers::NONE, Key::P) {
-            self.plots_open = !self.plots_open;
-        }
-        if pressed(Modifiers::NONE, Key::G) {
-            self.gallery.open = !self.gallery.open;
-        }
-        if pressed(Modifiers::NONE, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Questionmark) {
-            self.help_open = !self.help_open;
-        }
-    }
-
-    /// Files that were dropped on the window or chosen: scenes are opened, shapes become bodies.
-    fn dropped(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
-        for arrived in self.hand.arrived(ui) {
-            match arrived {
-                // In the middle of what is seen, and not so large that nothing else is.
-                Arrived::Request(Request::Take(shape, ..)) => {
-                    let size = opruga::draw::nice_length(0.3 * self.canvas.room(shown));
-                    asks.push(Request::Take(shape, self.canvas.middle(shown), size));
-                }
-                Arrived::Request(request) => asks.push(request),
-                Arrived::Told(severity, said) => self.keeping.tell(severity, said),
-            }
-        }
     }
 }
 

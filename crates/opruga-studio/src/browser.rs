@@ -52,6 +52,18 @@ pub(crate) fn set_fragment(fragment: &str) -> Result<String, Said> {
     window.location().href().map_err(|_| failed())
 }
 
+/// What the browser keeps for this page under a name; none where it keeps nothing, as in a private window.
+pub(crate) fn stored(name: &str) -> Option<String> {
+    window()?.local_storage().ok()??.get_item(name).ok()?
+}
+
+/// Keeps a text there. Where the browser keeps nothing it is gone with the page.
+pub(crate) fn store(name: &str, text: &str) {
+    if let Some(Ok(Some(storage))) = window().map(|window| window.local_storage()) {
+        let _ = storage.set_item(name, text);
+    }
+}
+
 /// Hands a file to the person as a download.
 pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Said> {
     let failed = |_: JsValue| Said::NoDownload(name.into());

@@ -1,11 +1,13 @@
 //! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
 //! runs what was done here.
 
+mod commands;
 mod kinds;
 mod overrides;
+mod taken_over;
 
+pub use commands::{add_table, command_table};
 pub use kinds::kind_table;
-use opruga::blueprint::{Action, CommandBlueprint, Selector};
 use opruga::core::spec::{Value, Values};
 use opruga::io::{Files, SceneError, scene};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
@@ -53,18 +55,14 @@ impl Document {
 
     /// The number of commands.
     pub fn commands(&self) -> usize {
-        self.text.get("command").and_then(Item::as_array_of_tables).map_or(0, ArrayOfTables::len)
+        let Some(item) = self.text.get("command") else { return 0 };
+        item.as_array_of_tables().map(ArrayOfTables::len).or(item.as_array().map(Array::len)).unwrap_or(0)
     }
 
     /// Writes a command behind the others; its number, for [`Document::end_command`].
     pub fn push_command(&mut self, table: Table) -> usize {
         let item = self.text.entry("command").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
-        if let Some(inline) = item.as_array().cloned() {
-            // `command = [{ … }]` becomes `[[command]]`, which can be added to.
-            let tables = inline.iter().filter_map(Toml::as_inline_table).map(|t| t.clone().into_table());
-            *item = Item::ArrayOfTables(tables.collect());
-        }
-        match item.as_array_of_tables_mut() {
+        match tables(item) {
             Some(tables) => {
                 tables.push(table);
                 tables.len() - 1
@@ -245,6 +243,19 @@ impl Document {
         bare
     }
 
+    /// The scene with this body alone, and without anything that names a body.
+    pub fn alone(&self, body: &InlineTable) -> Document {
+        let mut alone = self.clone();
+        for key in ["body", "command", "load", "probe"] {
+            alone.text.remove(key);
+        }
+        let mut body = body.clone();
+        // Which nodes it has pinned does not matter.
+        body.remove("pin");
+        alone.push_body(&body);
+        alone
+    }
+
     /// Gives the nodes of a body other numbers wherever they are named.
     pub fn rename_nodes(&mut self, name: &str, other: &dyn Fn(u32) -> u32) {
         let renamed = |number: i64| u32::try_from(number).map_or(number, |node| i64::from(other(node)));
@@ -365,6 +376,15 @@ pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) ->
     errors.into_iter().map(|error| told(error).to_string()).collect::<Vec<_>>().join("\n")
 }
 
+/// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be added to.
+fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
+    if let Some(inline) = item.as_array().cloned() {
+        let tables = inline.iter().filter_map(Toml::as_inline_table).map(|t| t.clone().into_table());
+        *item = Item::ArrayOfTables(tables.collect());
+    }
+    item.as_array_of_tables_mut()
+}
+
 /// Gives the nodes of a selection other numbers; several that come to the same one are named once.
 fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
     if let Some(node) = select.get("node").and_then(Item::as_integer) {
@@ -407,80 +427,4 @@ pub fn toml(value: &Value) -> Toml {
         Value::Integers(x) => Toml::Array(x.iter().map(|n| i64::from(*n)).collect()),
         Value::Rows(rows) => Toml::Array(rows.iter().map(|row| Toml::Array(numbers(row))).collect()),
     }
-}
-
-/// A command as the scene file writes it, on the body of this name; none for what has no such form.
-pub fn command_table<const D: usize>(command: &CommandBlueprint<D>, body: &str) -> Option<Table> {
-    let mut table = Table::new();
-    table.decor_mut().set_prefix("\n");
-    let word = match &command.action {
-        Action::Drag { .. } => "drag",
-        Action::Push { .. } => "push",
-        Action::Pin { .. } => "pin",
-        Action::Free { .. } => "free",
-        Action::Set { .. } => "set",
-        Action::Remove { .. } => "remove",
-        Action::Change { .. } => "change",
-        Action::Add(_) => return None,
-    };
-    table["do"] = toml_edit::value(word);
-    table["at"] = toml_edit::value(command.at);
-    if matches!(word, "drag" | "push" | "pin") {
-        table["until"] = toml_edit::value(command.until);
-    }
-    let select = |select: &Selector<D>| match select {
-        Selector::Nodes(nodes) => {
-            let mut inline = InlineTable::new();
-            inline.insert("nodes", Toml::Array(nodes.iter().map(|n| i64::from(*n)).collect()));
-            Some(inline)
-        }
-        _ => None,
-    };
-    if !matches!(word, "set") {
-        table["body"] = toml_edit::value(body);
-    }
-    match &command.action {
-        Action::Drag { node, path, stiffness, .. } => {
-            match node {
-                Some(node) => table["node"] = toml_edit::value(i64::from(*node)),
-                None => table["node"] = toml_edit::value("nearest"),
-            }
-            if let Some(stiffness) = stiffness {
-                table["stiffness"] = toml_edit::value(*stiffness);
-            }
-            table["path"] = Item::Value(toml(&Value::Rows(path.clone())));
-        }
-        Action::Push { select: nodes, force, .. } => {
-            table["select"] = toml_edit::value(select(nodes)?);
-            table["force"] = toml_edit::value(numbers(force));
-        }
-        Action::Pin { select: nodes, .. } | Action::Free { select: nodes, .. } => {
-            table["select"] = toml_edit::value(select(nodes)?)
-        }
-        Action::Set { path, value } => {
-            table["path"] = toml_edit::value(path.as_str());
-            table["value"] = Item::Value(toml(value));
-        }
-        Action::Change { models, integrator, .. } => {
-            if let Some(models) = models {
-                let list: Array = models.iter().map(|model| Toml::InlineTable(kind_table(model, D))).collect();
-                table["models"] = toml_edit::value(list);
-            }
-            if let Some(integrator) = integrator {
-                table["integrator"] = toml_edit::value(kind_table(integrator, D));
-            }
-        }
-        Action::Remove { .. } | Action::Add(_) => {}
-    }
-    Some(table)
-}
-
-/// A command that adds a body.
-pub fn add_table(at: f64, body: &InlineTable) -> Table {
-    let mut table = Table::new();
-    table.decor_mut().set_prefix("\n");
-    table["do"] = toml_edit::value("add");
-    table["at"] = toml_edit::value(at);
-    table["body"] = toml_edit::value(body.clone());
-    table
 }

@@ -4,7 +4,7 @@ use crate::said::Said;
 use crate::session::Request;
 use opruga::io::{Files, scene};
 use std::path::Path;
-use toml_edit::{Array, DocumentMut, InlineTable, Value};
+use toml_edit::{DocumentMut, InlineTable};
 
 /// Endings of files that become bodies, with the fields of their shape.
 const SHAPES: [(&str, &str, bool); 6] = [
@@ -67,16 +67,13 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Its body in a scene that others are in, of this size [m], with its middle at a point, from a file that is called so there.
-    pub fn body(&self, file: &str, middle: [f64; 3], size: f64) -> Option<InlineTable> {
+    /// Its body in a scene that others are in, of this size [m], from a file that is called so there.
+    pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
         let document: DocumentMut = self.text.parse().ok()?;
         let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
         body.insert("name", self.name.as_str().into());
-        let hundredths = |x: &f64| Value::from((100.0 * x).round() / 100.0);
-        body.insert(
-            "position",
-            Array::from_iter(middle[..if self.space { 3 } else { 2 }].iter().map(hundredths)).into(),
-        );
+        // It is set down where there is room for it.
+        body.remove("position");
         let shape = body.get_mut("shape")?.as_inline_table_mut()?;
         shape.insert("file", file.into());
         shape.insert("size", size.into());

@@ -1,6 +1,9 @@
 //! A world of either dimension behind one face: what a person does to it, as commands of the scene file.
 
 mod arrows;
+mod exploded;
+
+pub use exploded::Exploded;
 
 use crate::document::{FOR_EVER, command_table};
 use crate::samples::Sample;
@@ -54,6 +57,8 @@ pub trait Engine: Send {
     fn end(&self) -> u64;
     /// What is odd in the present state, also about shapes, which are looked at anew by every call.
     fn warnings_at_the_end(&mut self) -> Vec<Warning>;
+    /// The first body that has grown beyond every measure of the scene.
+    fn exploded(&mut self) -> Option<Exploded>;
     /// The hash of the state.
     fn hash(&self) -> u64;
     /// Pulls a node of a body toward a pointer that is led.
@@ -123,6 +128,8 @@ struct Living<const D: usize> {
     known: usize,
     /// What was odd about the scene and its files.
     odd: Vec<Warning>,
+    /// The longest side of the box around all bodies at the start [m].
+    size: f64,
 }
 
 /// Builds the world of a scene, about which something was odd.
@@ -137,7 +144,8 @@ pub fn build(blueprint: AnyBlueprint, odd: Vec<Warning>, options: &Options) -> R
     ) -> Result<Box<dyn Engine>, WorldError> {
         let world = World::new(blueprint, options.clone())?;
         let (scenery, known) = (Scenery::new(&world), world.blueprint().bodies.len());
-        Ok(Box::new(Living { world, scenery, known, odd }))
+        let size = exploded::size_of(&world);
+        Ok(Box::new(Living { world, scenery, known, odd, size }))
     }
     match blueprint {
         AnyBlueprint::Plane(blueprint) => living(blueprint, odd, options),
@@ -230,6 +238,9 @@ impl<const D: usize> Engine for Living<D> {
     fn warnings_at_the_end(&mut self) -> Vec<Warning> {
         self.world.look_at_steps_again();
         self.world.warnings_at_the_end().into_iter().chain(self.odd.iter().cloned()).collect()
+    }
+    fn exploded(&mut self) -> Option<Exploded> {
+        self.first_exploded()
     }
     fn hash(&self) -> u64 {
         self.world.state_hash()

@@ -23,10 +23,12 @@ pub mod handing;
 pub mod measure;
 mod normals;
 pub mod panels;
+pub mod preferences;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod rescue;
 pub mod runner;
 pub mod share;
+mod taps;
 pub mod theme;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod wanted;

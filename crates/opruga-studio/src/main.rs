@@ -4,6 +4,7 @@ use opruga::Options;
 use opruga::io::problem::visible;
 use opruga_studio::app::{FIRST_SCENE, Studio};
 use opruga_studio::measure::{self, Measured};
+use opruga_studio::preferences::{Store, folders};
 use opruga_studio::rescue::{self, Rescue};
 use opruga_studio::said::Said;
 use opruga_studio::session::Request;
@@ -90,6 +91,10 @@ fn main() -> ExitCode {
         Box::new(move |creation| {
             let mut studio = Studio::new(session, &creation.egui_ctx)?;
             is_open.store(true, Ordering::Relaxed);
+            studio.prefer(Store::of_the_person(), &creation.egui_ctx);
+            if let Some(folder) = folders::cache(|name| std::env::var_os(name)) {
+                studio.keep_pictures_in(folder.join("thumbnails"));
+            }
             if let Some(count) = measured {
                 return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }

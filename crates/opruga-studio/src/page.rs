@@ -4,6 +4,7 @@ use crate::app::{FIRST_SCENE, Studio};
 use crate::document::Document;
 use crate::engine;
 use crate::measure::Watch;
+use crate::preferences::Store;
 use crate::runner::Copied;
 use crate::said::Said;
 use crate::session::{self, Request, Session};
@@ -89,6 +90,7 @@ impl egui::Plugin for Places {
 pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: String) -> Result<Page, JsValue> {
     let (session, refused) = first_session().map_err(|error| JsValue::from_str(&error.to_string()))?;
     let mut studio = Studio::new(session, &Context::default()).map_err(|e| JsValue::from_str(&e.to_string()))?;
+    studio.prefer(Store::Browser, &Context::default());
     studio.ask(Request::Play(true));
     if let Some(refused) = refused {
         studio.tell(Severity::Refused, refused);

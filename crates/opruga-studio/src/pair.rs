@@ -2,7 +2,7 @@
 
 use crate::differences::{Difference, Twins, right_of};
 use crate::document::{Document, without_lines};
-use crate::engine::{self, Common, Engine, Given};
+use crate::engine::{self, Common, Engine, Exploded, Given};
 use crate::said::Said;
 use crate::samples::Sample;
 use crate::shown::{Beside, Show, Shown};
@@ -118,7 +118,7 @@ impl Engine for Pair {
                 return Err(WorldError::BrokenOff);
             }
             Err(error) => self.stopped = Some(error.to_string()),
-            Ok(()) => {}
+            Ok(()) => self.stopped = self.right.exploded().map(|exploded| exploded.to_string()),
         }
         Ok(())
     }
@@ -184,6 +184,9 @@ impl Engine for Pair {
     }
     fn warnings_at_the_end(&mut self) -> Vec<Warning> {
         self.left.warnings_at_the_end()
+    }
+    fn exploded(&mut self) -> Option<Exploded> {
+        self.left.exploded()
     }
     fn hash(&self) -> u64 {
         self.left.hash()

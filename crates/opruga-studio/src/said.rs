@@ -1,5 +1,6 @@
 //! What is said to the person, as data: the interface puts it into words of its language ([`crate::words`]).
 
+use crate::engine::Exploded;
 use crate::words::Language;
 use opruga::WorldError;
 
@@ -28,6 +29,10 @@ pub enum Step {
     Delete,
     /// Another scene was opened instead of the one of this name.
     Open(String),
+    /// A body was pulled by a hand.
+    Pull,
+    /// A body was pushed by a hand.
+    Push,
     /// A point was pinned, or taken elsewhere and pinned there.
     Pin,
     /// A point was let go.
@@ -47,6 +52,8 @@ pub enum Said {
     Because(String),
     /// What a world refuses.
     World(WorldError),
+    /// A body has grown beyond every measure, and time stands.
+    Exploded(Exploded),
     /// This was undone, and the scene is at this time \[s\].
     Undone(Step, f64),
     /// This was done again, and the scene is at this time \[s\].

@@ -277,6 +277,8 @@ pub struct Shown {
     /// How often another state took the place of the one before at once, as by undo, reset or a way through time: what was
     /// fitted to the states before is fitted anew.
     pub replaced: u64,
+    /// How often a person went back to the start and left what was done: a view begins anew with it.
+    pub resets: u64,
     /// The same scene under another configuration.
     pub beside: Option<Beside>,
     /// Bodies that were set down anew under another name: old and new.

@@ -5,6 +5,7 @@ mod details;
 mod ends;
 mod messages;
 mod named;
+mod own;
 mod parts;
 mod readers;
 #[cfg(test)]
@@ -22,6 +23,19 @@ pub enum Language {
     English,
     /// Croatian.
     Croatian,
+}
+
+impl Language {
+    /// All of them.
+    pub const EVERY: [Language; 2] = [Language::English, Language::Croatian];
+
+    /// Its two letters in ISO 639.
+    pub fn code(self) -> &'static str {
+        match self {
+            Language::English => "en",
+            Language::Croatian => "hr",
+        }
+    }
 }
 
 macro_rules! words {
@@ -74,6 +88,9 @@ words! {
     language: "Hrvatski", "English";
     dark: "Dark", "Tamno";
     light: "Light", "Svijetlo";
+    close_question: "`{}` was changed since it was opened or saved. Save it before the window closes?", "Prizor `{}` mijenjan je otkako je otvoren ili spremljen. Spremiti ga prije zatvaranja prozora?";
+    discard: "Discard", "Odbaci";
+    cancel: "Cancel", "Odustani";
     help: "Help", "Pomoć";
     close: "Close", "Zatvori";
     pull: "Pull", "Vuci";
@@ -216,6 +233,8 @@ words! {
     step_turn: "turn", "zakret";
     step_scale: "scaling", "promjena veličine";
     step_delete: "delete", "brisanje";
+    step_pull: "pull", "povlačenje";
+    step_push: "push", "guranje";
     step_pin: "pin a point", "pribadanje točke";
     step_unpin: "free a point", "oslobađanje točke";
     step_reset: "reset", "povratak na početak";

@@ -40,6 +40,10 @@ impl Canvas {
     /// An arrow at the border where no body is in sight, and a button that shows them all again.
     pub(super) fn point_to_bodies(&mut self, ui: &Ui, shown: &Shown, legend: Option<Rect>, language: Language) {
         let (Some(way), Some(rect)) = (self.away(shown), self.rect) else { return };
+        // A file that is about to be dropped has a hint of its own.
+        if !ui.input(|i| i.raw.hovered_files.is_empty()) {
+            return;
+        }
         let high = self.tools.map_or(rect.top(), |tools| tools.bottom());
         let text = RichText::new(language.away()).size(15.0).color(Color32::WHITE);
         let galley =

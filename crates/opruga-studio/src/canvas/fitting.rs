@@ -16,9 +16,26 @@ impl Canvas {
             return;
         }
         self.range = None;
-        if std::mem::take(&mut self.far) {
+        if std::mem::replace(&mut self.resets, shown.resets) != shown.resets {
+            // The start is looked at as it was at first, wherever a person has taken the view since.
+            self.far = false;
+            self.fit();
+        } else if std::mem::take(&mut self.far) {
             self.fit();
         } else if let (Some(_), Some(view)) = (self.fitted_size, &mut self.scales) {
+            [view.low, view.high] = self.first;
+            self.flat.fit(view, rect, self.tools);
+        }
+    }
+
+    /// Looks as at first where a body has just exploded and nobody has moved the view: what there is to be seen is where it was.
+    fn stay_if_exploded(&mut self, shown: &Shown, rect: Rect) {
+        let exploded = shown.message.as_ref().filter(|message| matches!(message.said, Said::Exploded(_)));
+        let number = exploded.map(|message| message.number);
+        if std::mem::replace(&mut self.exploded, number) != number
+            && number.is_some()
+            && let (Some(_), Some(view)) = (self.fitted_size, &mut self.scales)
+        {
             [view.low, view.high] = self.first;
             self.flat.fit(view, rect, self.tools);
         }
@@ -50,6 +67,7 @@ impl Canvas {
     pub(super) fn fit_if_new(&mut self, shown: &Shown, rect: Rect) {
         self.fit_if_replaced(shown, rect);
         self.fit_if_lost(shown, rect);
+        self.stay_if_exploded(shown, rect);
         if self.fitted == shown.opened && self.scales.is_some() {
             // The view follows the window until somebody moves it.
             if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
@@ -57,7 +75,10 @@ impl Canvas {
                     self.flat.fit(view, rect, self.tools);
                     self.space.look_at_all(view, rect.size());
                     self.fitted_size = Some(rect.size());
-                } else if matches!(self.doing, Doing::Nothing) && self.flat.widen(view, &self.first, shown, rect) {
+                } else if matches!(self.doing, Doing::Nothing)
+                    && self.exploded.is_none()
+                    && self.flat.widen(view, &self.first, shown, rect)
+                {
                     self.flat.fit(view, rect, self.tools);
                 }
             }
@@ -150,10 +171,36 @@ mod tests {
         assert!(canvas.range > first.1, "slowly, while nothing is replaced");
         seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
         assert_eq!((canvas.flat.scale, canvas.range), first);
-        // A view that somebody has moved stays.
+        // A view that somebody has moved stays, but where the scene begins anew.
         (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
         seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
         assert_eq!(canvas.flat.scale, 7.0);
+        canvas.flat.pan(egui::Vec2::new(9000.0, 0.0), false);
+        seen(&mut canvas, &Shown { replaced: 3, resets: 1, ..ball(0.0, 20.0) });
+        assert_eq!((canvas.flat.scale, canvas.range), first);
+        assert!(RECT.contains(canvas.on_screen(&ball(0.0, 20.0), [0.0, 0.5, 0.0]).expect("a place")));
+    }
+
+    #[test]
+    fn the_view_stays_where_a_body_explodes_and_does_not_follow_what_is_left_of_it() {
+        let mut canvas = Canvas::default();
+        seen(&mut canvas, &ball(0.0, 20.0));
+        let first = canvas.flat;
+        for x in [1.0, 1.5, 1.9] {
+            seen(&mut canvas, &ball(x, 20.0));
+        }
+        assert!(canvas.flat.scale < first.scale, "it widens for a body that leaves it");
+        let exploded =
+            crate::engine::Exploded { body: "ball".into(), integrator: "explicit_euler".into(), unstable: true };
+        let said = Said::Exploded(exploded);
+        let text = said.to_string();
+        let message = Message { number: 3, severity: Severity::Refused, said, text, offer: None, frame_seconds: None };
+        let mut lost = Shown { message: Some(message), ..ball(0.0, 20.0) };
+        lost.extents[0].corners = [[-80.0, -70.0, 0.0], [90.0, 85.0, 0.0]];
+        for _ in 0..5 {
+            seen(&mut canvas, &lost);
+            assert_eq!((canvas.flat.scale, canvas.flat.middle()), (first.scale, first.middle()));
+        }
     }
 
     #[test]

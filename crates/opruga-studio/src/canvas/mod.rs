@@ -83,6 +83,10 @@ pub struct Canvas {
     fitted: u64,
     /// How often the state was replaced when it was seen last.
     replaced: u64,
+    /// How often a person had gone back to the start then.
+    resets: u64,
+    /// The number of the message of a body that has exploded, while there is one.
+    exploded: Option<u64>,
     /// The number of the message of the last motion that has failed.
     failed: Option<u64>,
     /// Whether the view was fitted to what such a motion has left far away.
@@ -136,8 +140,18 @@ impl Canvas {
         }
     }
 
-    /// The middle of what is seen [m]: where new bodies are put.
-    pub fn middle(&self, shown: &Shown) -> [f64; 3] {
+    /// Where new bodies are put [m]: at the pointer where that is on the scene, else in the middle of what is seen.
+    pub fn landing(&self, shown: &Shown, pointer: Option<Pos2>) -> [f64; 3] {
+        let left = self.rect.zip(pointer).filter(|(rect, at)| rect.contains(*at));
+        // The scene beside it is seen alike.
+        let right = self.other.zip(self.rect).zip(pointer).filter(|((other, _), at)| other.contains(*at));
+        let right = right.map(|((other, rect), at)| (rect, at - other.min.to_vec2() + rect.min.to_vec2()));
+        let point = left.or(right).and_then(|(rect, at)| self.point(shown, rect, at, 0.0));
+        point.unwrap_or_else(|| self.middle(shown))
+    }
+
+    /// The middle of what is seen [m].
+    fn middle(&self, shown: &Shown) -> [f64; 3] {
         if shown.dimension == 3 { self.space.eye().map_or([0.0; 3], |eye| eye.target) } else { self.flat.middle() }
     }
 
@@ -188,8 +202,14 @@ impl Canvas {
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
         if self.other.is_some() != other.is_some() {
-            // There is half the room, or twice as much: everything is shown as it is now.
-            self.fit();
+            // There is half the room, or twice as much: everything is shown as it is now, or as it was before a body exploded.
+            match (self.exploded, &mut self.scales) {
+                (Some(_), Some(view)) => {
+                    [view.low, view.high] = self.first;
+                    self.fitted_size = Some(Vec2::ZERO);
+                }
+                _ => self.fit(),
+            }
         }
         let below = other.is_some_and(|other| other.top() > rect.top());
         self.flat.foot = if other.is_some() { Captions::FOOT[usize::from(below)] } else { 0.0 };

@@ -99,6 +99,8 @@ impl Canvas {
             && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
+            // A file that is about to be dropped has a hint of its own.
+            && painter.ctx().input(|i| i.raw.hovered_files.is_empty())
             // Where the scene itself pulls, its force is to be read.
             && shown.pulls.is_empty()
             && let Some(body) = shown.picture.bodies.first()

@@ -1,27 +1,25 @@
 //! The scenes that come with the program, with pictures of them that are drawn beside the interface while they are looked at.
 
+use super::thumbnails::{self, Pixels, SIZE};
 use crate::words::Language;
 use crate::work;
 use egui::{Color32, ColorImage, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2};
-use opruga::draw::{Image, View, draw_scene};
-use opruga::io::scene;
-use opruga::pictures::Scenery;
-use opruga::{Options, World, blueprint::AnyBlueprint};
 use std::collections::BTreeMap;
-use std::sync::mpsc::{Receiver, channel};
-
-/// The size of a picture in pixels.
-const SIZE: [u32; 2] = [256, 160];
-/// Nodes times frames up to which a scene is run for its picture.
-const WORK: u64 = 3_000_000;
+use std::sync::mpsc::{Receiver, TryRecvError};
 
 /// The window with the scenes.
 #[derive(Default)]
 pub struct Gallery {
     /// Whether it is open.
     pub open: bool,
-    pictures: BTreeMap<&'static str, TextureHandle>,
-    coming: Option<Receiver<(&'static str, Image)>>,
+    /// Where pictures are kept from one start to the next.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub cache: Option<std::path::PathBuf>,
+    /// Those that were drawn; none where that cannot be.
+    pictures: BTreeMap<&'static str, Option<TextureHandle>>,
+    coming: Option<(&'static str, Receiver<Option<Pixels>>)>,
+    /// The scenes whose cards are in sight.
+    seen: Vec<&'static str>,
 }
 
 impl core::fmt::Debug for Gallery {
@@ -39,7 +37,7 @@ impl Gallery {
 
     /// Whether pictures are still to come.
     pub fn is_drawing(&self) -> bool {
-        self.open && self.coming.is_some() && self.pictures.len() < opruga::scenes::names().count()
+        self.open && self.coming.is_some()
     }
 
     /// Shows the window if it is open; the name of the scene that was chosen.
@@ -47,7 +45,7 @@ impl Gallery {
         if !self.open {
             return None;
         }
-        self.take(ui);
+        self.seen.clear();
         let mut chosen = None;
         let mut open = true;
         let room = ui.ctx().content_rect();
@@ -74,16 +72,20 @@ impl Gallery {
                     });
                 });
             });
+        self.take(ui);
         self.open = open && chosen.is_none();
         chosen
     }
 
-    fn card(&self, ui: &mut Ui, name: &'static str, words: Language, here: bool) -> bool {
+    fn card(&mut self, ui: &mut Ui, name: &'static str, words: Language, here: bool) -> bool {
         ui.vertical(|ui| {
             ui.set_width(256.0);
             let (rect, response) = ui.allocate_exact_size(Vec2::new(256.0, 160.0), Sense::click());
+            if ui.is_rect_visible(rect) {
+                self.seen.push(name);
+            }
             let painter = ui.painter();
-            match self.pictures.get(name) {
+            match self.pictures.get(name).and_then(Option::as_ref) {
                 Some(picture) => {
                     let all = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                     painter.image(picture.id(), rect, all, Color32::WHITE);
@@ -112,57 +114,67 @@ impl Gallery {
         .inner
     }
 
-    /// Takes pictures that are done; orders them when the window is opened for the first time.
+    /// Takes a picture that is done, and orders the first one that is seen and not there yet: those that nobody looks at are not drawn.
     fn take(&mut self, ui: &Ui) {
-        let coming = self.coming.get_or_insert_with(|| {
-            let (sender, receiver) = channel();
+        if let Some((name, coming)) = &self.coming {
+            let done = match coming.try_recv() {
+                Ok(pixels) => pixels,
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => None,
+            };
+            let picture = done.map(|pixels| {
+                let picture = ColorImage::from_rgba_unmultiplied(SIZE.map(|side| side as usize), &pixels);
+                ui.ctx().load_texture(*name, picture, TextureOptions::LINEAR)
+            });
+            self.pictures.insert(name, picture);
+            self.coming = None;
+        }
+        if let Some(name) = self.seen.iter().find(|name| !self.pictures.contains_key(*name)).copied() {
+            #[cfg(not(target_arch = "wasm32"))]
+            let picture = thumbnails::kept_or_drawn(name, self.cache.clone());
+            #[cfg(target_arch = "wasm32")]
+            let picture = thumbnails::draw(name);
             let context = ui.ctx().clone();
-            // The pictures come one by one; nothing is to be said when all are there.
-            drop(work::spawn(async move {
-                for name in opruga::scenes::names() {
-                    work::breathe().await;
-                    let Some(image) = thumbnail(name).await else { continue };
-                    if sender.send((name, image)).is_err() {
-                        return;
-                    }
-                    context.request_repaint();
-                }
-            }));
-            receiver
-        });
-        for (name, image) in coming.try_iter() {
-            let size = [image.width() as usize, image.height() as usize];
-            let picture = ColorImage::from_rgba_unmultiplied(size, image.pixels());
-            self.pictures.insert(name, ui.ctx().load_texture(name, picture, TextureOptions::LINEAR));
+            let coming = work::spawn(async move {
+                let picture = picture.await;
+                context.request_repaint();
+                picture
+            });
+            self.coming = Some((name, coming));
         }
     }
 }
 
-/// A picture of a scene a little after its start; of a large one at its start.
-async fn thumbnail(name: &str) -> Option<Image> {
-    let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
-    let text = opruga::scenes::find(name)?;
-    let (blueprint, _) = scene::read(text.as_bytes(), name, &opruga::catalogue(), &options).ok()?;
-    match blueprint {
-        AnyBlueprint::Plane(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
-        AnyBlueprint::Space(blueprint) => picture(World::new(blueprint, Options::default()).ok()?).await,
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-async fn picture<const D: usize>(mut world: World<D>) -> Option<Image> {
-    let nodes: u64 = world.bodies().map(|body| world.node_count(body) as u64).sum();
-    let frames = (0.25 * world.blueprint().time.seconds / world.blueprint().time.frame) as u64;
-    let work = nodes * frames * u64::from(world.blueprint().time.substeps);
-    if work <= 32 * WORK {
-        for _ in 0..frames {
-            work::breathe().await;
-            world.frame().ok()?;
+    /// A window of this size in which the gallery is looked at until nothing is drawn any more.
+    fn looked_at(size: [f32; 2]) -> Gallery {
+        let (context, mut gallery) = (egui::Context::default(), Gallery { open: true, ..Gallery::default() });
+        let begin = std::time::Instant::now();
+        for picture in 0.. {
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size.into()));
+            let mut output = context.run_ui(egui::RawInput { screen_rect, ..Default::default() }, |ui| {
+                gallery.show(ui, Language::English, "ball");
+            });
+            output.textures_delta.clear();
+            if picture > 3 && !gallery.is_drawing() {
+                break;
+            }
+            assert!(begin.elapsed().as_secs() < 240, "it is still drawing");
+            std::thread::sleep(std::time::Duration::from_millis(2));
         }
+        gallery
     }
-    let scenery = Scenery::new(&world);
-    let moment = scenery.capture(&mut world, false);
-    let mut picture = scenery.picture(&moment);
-    picture.bodies.iter_mut().for_each(|body| body.label.clear());
-    let view = View::fit([&picture]).ok()?;
-    draw_scene(&picture, &view, [252, 252, 253], SIZE).ok()
+
+    #[test]
+    fn pictures_that_nobody_sees_are_not_drawn() {
+        let gallery = looked_at([420.0, 420.0]);
+        let (drawn, all) = (gallery.pictures.len(), opruga::scenes::names().count());
+        assert!((1..8).contains(&drawn) && all > 20, "{drawn} of {all}");
+        let first = opruga::scenes::names().next().expect("a scene");
+        assert!(gallery.pictures.contains_key(first), "{:?}", gallery.pictures.keys());
+        assert!(gallery.pictures.values().all(Option::is_some));
+    }
 }

@@ -78,6 +78,8 @@ pub struct Keeping {
     message: Option<(Said, Severity)>,
     /// How much was said so far.
     told: u64,
+    /// The files of the scene that was saved last; none where that was refused.
+    saved: Option<Vec<String>>,
 }
 
 impl Keeping {
@@ -91,6 +93,16 @@ impl Keeping {
         self.making.iter().map(|making| (making.what, making.progress.hundredths()))
     }
 
+    /// Whether the scene is being saved.
+    pub fn is_saving(&self) -> bool {
+        self.making.iter().any(|making| making.what == What::Scene)
+    }
+
+    /// The files of the scene that was saved last; none where that was refused.
+    pub fn saved(&self) -> Option<&[String]> {
+        self.saved.as_deref()
+    }
+
     /// Begins to make a file, beside those that are being made.
     pub fn begin(&mut self, what: What, link: &Link, show: Show) {
         self.message = None;
@@ -99,7 +111,7 @@ impl Keeping {
 
     /// Looks whether something is done.
     pub fn poll(&mut self, link: &Link) {
-        let (message, told) = (&mut self.message, &mut self.told);
+        let (message, told, saved) = (&mut self.message, &mut self.told, &mut self.saved);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
             Stage::Asked(show, copied) => {
                 if let Ok(copied) = copied.try_recv() {
@@ -111,8 +123,14 @@ impl Keeping {
             }
             Stage::Made(file, mark) => {
                 let Ok(outcome) = file.try_recv() else { return true };
-                if *what == What::Scene && outcome.is_ok() {
-                    link.ask(Request::Saved(*mark));
+                if *what == What::Scene {
+                    *saved = match &outcome {
+                        Ok(Said::Written(files)) => Some(files.clone()),
+                        _ => None,
+                    };
+                    if outcome.is_ok() {
+                        link.ask(Request::Saved(*mark));
+                    }
                 }
                 *told += 1;
                 *message = Some(match outcome {

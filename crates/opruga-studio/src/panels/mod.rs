@@ -8,3 +8,4 @@ pub mod parameter;
 pub mod plots;
 pub mod properties;
 pub mod status;
+mod thumbnails;

@@ -61,9 +61,8 @@ impl Link {
 
     /// Asks for something; it is done between two frames. One that takes long is broken off for what cannot wait.
     pub fn ask(&self, request: Request) {
-        // The thread takes this back once it has heard of what comes next.
-        if request.breaks_off() && self.busy().is_some_and(|busy| busy > PATIENCE) {
-            self.break_off.ask(true);
+        if request.breaks_off() {
+            self.break_a_long_frame_off();
         }
         // Where the thread has ended there is nobody to ask: the last picture stays.
         let _ = self.asks.send(Ask::Do(request));
@@ -74,6 +73,19 @@ impl Link {
         let (sender, receiver) = channel();
         let _ = self.asks.send(Ask::Copy(sender));
         receiver
+    }
+
+    /// The same at once: a frame that takes long is broken off for it.
+    pub fn copy_now(&self) -> Receiver<Copied> {
+        self.break_a_long_frame_off();
+        self.copy()
+    }
+
+    fn break_a_long_frame_off(&self) {
+        // The thread takes this back once it has heard of what comes next.
+        if self.busy().is_some_and(|busy| busy > PATIENCE) {
+            self.break_off.ask(true);
+        }
     }
 
     /// For how long the thread has been at what it does now.

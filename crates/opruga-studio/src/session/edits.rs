@@ -29,6 +29,8 @@ pub struct Placed {
 pub enum Edit {
     /// A new body; its table as in the scene file, with a name that others may have.
     Add(InlineTable),
+    /// The same, set down with its middle at a point, or at the nearest place where it is in no other body and no obstacle \[m\].
+    Drop(InlineTable, [f64; 3]),
     /// A copy of a body beside it.
     Duplicate(String),
     /// Moves, turns or scales a body.
@@ -49,7 +51,8 @@ impl Session {
     /// Takes a document that differs at its start.
     fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Said> {
         let held = self.held.is_some() || !self.pins_shown().is_empty();
-        self.take(document, own_commands, 0)?;
+        self.take(document, own_commands, [0; 2])?;
+        self.start.clone_from(&self.document);
         if held {
             self.tell(Severity::Told, Said::PinsLetGo, None);
         }
@@ -199,6 +202,11 @@ impl Session {
     pub(super) fn edit(&mut self, edit: &Edit) -> Result<(), Said> {
         self.branch()?;
         match edit {
+            Edit::Drop(table, at) => {
+                let mut table = table.clone();
+                self.land(&mut table, *at);
+                self.edit(&Edit::Add(table))
+            }
             Edit::Add(table) => {
                 let mut table = table.clone();
                 let like = table.get("name").and_then(Toml::as_str).unwrap_or("body").to_string();
@@ -213,7 +221,8 @@ impl Session {
                 let copy = self.document.free_name(name);
                 table.insert("name", copy.as_str().into());
                 let (size, way) = (self.size_of(name), self.way_of(name));
-                shift(&mut table, [way[0] + 1.15 * size, way[1], way[2]], self.dimension());
+                let by = self.free_way(&table, [way[0] + 1.15 * size, way[1], way[2]]);
+                shift(&mut table, by, self.dimension());
                 self.exchange(Step::Duplicate, None, Some(table))?;
                 self.made(copy);
                 Ok(())
@@ -384,9 +393,9 @@ impl Session {
     }
 
     /// Undoes the first half of what was refused in its second.
-    fn back_to(&mut self, past: Past) -> Result<(), Said> {
+    pub(super) fn back_to(&mut self, past: Past) -> Result<(), Said> {
         let frame = past.frame;
-        self.take(past.document, past.own_commands, frame)?;
+        self.take(past.document, past.own_commands, [frame; 2])?;
         self.pins = past.pins;
         while self.goal.is_some_and(|goal| self.engine.frames() < goal) {
             self.frame().map_err(Said::World)?;
@@ -401,7 +410,7 @@ fn number_of(value: Option<&Toml>) -> Option<f64> {
 }
 
 /// Moves the place of a body in its table.
-fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
+pub(super) fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
     let old: Vec<f64> = table
         .get("position")
         .and_then(Toml::as_array)

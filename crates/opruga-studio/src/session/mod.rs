@@ -8,10 +8,13 @@
 
 mod edits;
 mod ends;
+mod exploded;
+mod landing;
 mod offers;
 mod opening;
 mod patience;
 mod pointer;
+mod read;
 mod recorded;
 mod seen;
 #[cfg(test)]
@@ -150,6 +153,9 @@ pub struct Session {
     newest: Option<(u64, String)>,
     /// Commands that the scene had when it was opened; those behind them were recorded.
     own_commands: usize,
+    /// The scene as it begins, without anything that was recorded: what a reset comes back to. A hand that takes over from a
+    /// recorded one changes the commands of the scene itself.
+    start: Document,
     keyframes: Keyframes,
     /// The curves; the interface reads them.
     samples: Arc<RwLock<Samples>>,
@@ -175,6 +181,8 @@ pub struct Session {
     opened: u64,
     /// How often another state took the place of the one before at once.
     replaced: u64,
+    /// How often a person went back to the start and left what was done.
+    resets: u64,
     /// What was told of the end of the scene.
     ends: ends::Ends,
     /// A mark of the text of the scene as it was opened or saved.
@@ -218,6 +226,7 @@ impl Session {
             ends: ends::Ends::of(engine.warnings()),
             clean: mark(&document.text()),
             own_commands: document.commands(),
+            start: document.clone(),
             document,
             files,
             options,
@@ -243,6 +252,7 @@ impl Session {
             messages: 0,
             opened: 1,
             replaced: 0,
+            resets: 0,
             refused: None,
             patience: Patience::ENDLESS,
             recording: None,
@@ -364,7 +374,8 @@ impl Session {
         let mut pacing = std::mem::take(&mut self.pacing);
         let outcome = pacing.run(elapsed, speed, length, budget, || {
             let start = clock();
-            if self.stops_at_the_end() {
+            // A frame may have stopped time by itself.
+            if !self.playing || self.stops_at_the_end() {
                 return Err(None);
             }
             self.frame().map(|()| clock().saturating_sub(start)).map_err(Some)
@@ -390,9 +401,13 @@ impl Session {
         self.lead_held();
         self.look_at_the_clock();
         self.engine.frame()?;
+        let is_new = self.engine.frames() > self.latest;
         self.latest = self.latest.max(self.engine.frames());
         self.keep();
         self.look_at_the_end();
+        if is_new {
+            self.stop_where_a_body_exploded();
+        }
         Ok(())
     }
 
@@ -422,77 +437,5 @@ impl Session {
         let said = self.titled(said);
         let text = Language::English.said(&said);
         self.message = Some(Message { number: self.messages, severity, said, text, offer, frame_seconds: None });
-    }
-
-    /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
-    pub fn saved(&self) -> String {
-        let mut document = self.let_go_of_all();
-        document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
-        document.text()
-    }
-
-    /// In what the scene on the right differs, where there is one.
-    pub fn differences(&self) -> Option<&[Difference]> {
-        self.differences.as_deref()
-    }
-
-    /// Whether anything was edited or recorded since it was opened or saved.
-    pub fn is_edited(&self) -> bool {
-        self.mark() != self.clean
-    }
-
-    /// A mark of the text of the scene, by which it is told from others.
-    pub fn mark(&self) -> u64 {
-        mark(&self.document.text())
-    }
-
-    /// The text of the scene as it stands.
-    pub fn text(&self) -> String {
-        self.document.text()
-    }
-
-    /// Where the files are that the scene names.
-    pub fn files(&self) -> &Files {
-        &self.files
-    }
-
-    /// The hash of the state.
-    pub fn hash(&self) -> u64 {
-        self.engine.hash()
-    }
-
-    /// Frames since the start.
-    pub fn frames(&self) -> u64 {
-        self.engine.frames()
-    }
-
-    /// The columns and the row of a table for the present state.
-    pub fn row(&mut self) -> Vec<(String, f64)> {
-        self.engine.row()
-    }
-
-    /// The name of the scene.
-    pub fn name(&self) -> &str {
-        &self.document.name
-    }
-
-    /// The last frame of this course of things.
-    pub fn latest(&self) -> u64 {
-        self.latest
-    }
-
-    /// How many messages there have been.
-    pub fn told(&self) -> u64 {
-        self.messages
-    }
-
-    /// Whether it goes to another moment.
-    pub fn is_seeking(&self) -> bool {
-        self.goal.is_some()
-    }
-
-    /// Whether anything moves: time passes, or another moment is gone to.
-    pub fn is_moving(&self) -> bool {
-        self.playing || self.goal.is_some()
     }
 }

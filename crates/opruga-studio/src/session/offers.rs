@@ -102,17 +102,20 @@ impl Session {
         Ok(())
     }
 
+    /// What would help where the motion of a body has failed.
+    pub(super) fn offer_after_a_failure(&mut self, body: &str) -> Option<Offer> {
+        let shown = self.engine.shown(&self.show);
+        let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
+        // Where no step is stable, half of it is not either.
+        without_a_stable_step(&shown, body).map(Offer::Steady).or(more.then_some(Offer::HalveStep))
+    }
+
     pub(super) fn refuse(&mut self, error: &WorldError, request: Option<Request>) {
         let mut frame_seconds = None;
         let offer = match error {
             WorldError::Diverged { body, .. }
             | WorldError::Step { body, .. }
-            | WorldError::NotConverged { body, .. } => {
-                let shown = self.engine.shown(&self.show);
-                let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
-                // Where no step is stable, half of it is not either.
-                without_a_stable_step(&shown, body).map(Offer::Steady).or(more.then_some(Offer::HalveStep))
-            }
+            | WorldError::NotConverged { body, .. } => self.offer_after_a_failure(body),
             // Where a frame cannot have as many, the message says what else helps.
             WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
                 let wanted = with_a_margin(*substeps);

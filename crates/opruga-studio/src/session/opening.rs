@@ -26,6 +26,7 @@ impl Session {
         self.release();
         (next.show, next.speed, next.playing) = (self.show, self.speed, playing);
         (next.opened, next.messages, next.patience) = (self.opened + 1, self.messages, self.patience.anew());
+        next.resets = self.resets;
         let before = std::mem::replace(self, next);
         // One way back and no more: every session holds its states.
         let worked_on = before.document.commands() > before.own_commands || !before.undo.is_empty();
@@ -56,10 +57,10 @@ impl Session {
         // Where it cannot be read, or is of several files, the scene around it tells or shows so.
         let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
-        let Some(body) = shape.body(&file, middle, size) else { return Err(Said::NameOfFile(shape.file.clone())) };
+        let Some(body) = shape.body(&file, size) else { return Err(Said::NameOfFile(shape.file.clone())) };
         let before = self.files.clone();
         self.files = before.clone().with([(file, Arc::clone(bytes))]);
-        let outcome = self.edit(&Edit::Add(body));
+        let outcome = self.edit(&Edit::Drop(body, middle));
         outcome.map_err(|said| {
             self.files = before;
             match said {

@@ -4,6 +4,7 @@ use super::Session;
 use crate::document::Document;
 use crate::engine::Given;
 use crate::said::{Said, Step};
+use crate::shown::Severity;
 use opruga::WorldError;
 
 /// The force of a push for each metre of the way of the pointer from where it was pressed [N/m].
@@ -35,6 +36,8 @@ pub(super) struct Held {
     pointer: [f64; 3],
     /// Whether the pointer has moved since the last push began.
     moved: bool,
+    /// Whether a push has acted since the press.
+    has_pushed: bool,
     /// The frame up to which the path is known.
     led: u64,
 }
@@ -96,13 +99,23 @@ impl Session {
             pressed: point,
             pointer: point,
             moved: false,
+            has_pushed: false,
             led: now + 1,
         };
         match grip {
             Grip::Pull => {
-                let given = self.engine.pull(body, node, point)?;
-                held.command = Some(self.write(given));
+                let past = self.past(Step::Pull);
+                self.take_over(body)?;
+                match self.engine.pull(body, node, point) {
+                    Ok(given) => held.command = Some(self.write(given)),
+                    Err(error) => {
+                        self.back_to(past)?;
+                        return Err(Said::World(error));
+                    }
+                }
+                self.remember(past);
             }
+            // It begins with the way of the pointer.
             Grip::Push => {}
             Grip::Pin => {
                 let past = self.past(Step::Pin);
@@ -112,6 +125,7 @@ impl Session {
                     return Ok(());
                 }
                 // A pinned point goes with the pointer and is pinned where that lets go.
+                self.take_over(body)?;
                 self.unpin(body, node)?;
                 let given = self.engine.pull(body, node, point)?;
                 held.command = Some(self.write(given));
@@ -204,7 +218,7 @@ impl Session {
                 {
                     self.refuse(&error, None);
                 }
-                held.command = self.push_now(&held);
+                self.begin_to_push(&mut held);
                 (held.since, held.moved) = (self.engine.frames(), false);
             }
             (Grip::Push, _) => {}
@@ -217,6 +231,38 @@ impl Session {
             _ => {}
         }
         self.held = Some(held);
+    }
+
+    /// A push takes its new force; the first one after the press can be undone.
+    fn begin_to_push(&mut self, held: &mut Held) {
+        let first = (!held.has_pushed && held.force() != [0.0; 3]).then(|| self.past(Step::Push));
+        if first.is_some()
+            && let Err(said) = self.take_over(held.body)
+        {
+            self.tell(Severity::Refused, said, None);
+        }
+        held.command = self.push_now(held);
+        if let Some(past) = first.filter(|_| held.command.is_some()) {
+            held.has_pushed = true;
+            self.remember(past);
+        }
+    }
+
+    /// A hand that is in the scene itself lets go of a body, now and for good: the person has taken hold of it. A reset gives it back.
+    fn take_over(&mut self, body: usize) -> Result<(), Said> {
+        let Some(name) = self.engine.name(body) else { return Ok(()) };
+        let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];
+        let mut document = self.document.clone();
+        let Some(gone) = document.take_over(self.own_commands, &name, times) else { return Ok(()) };
+        let mut engine = self.build(&document)?;
+        engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
+        (self.document, self.engine) = (document, engine);
+        // What was recorded stands behind the commands of the scene.
+        self.own_commands -= gone;
+        for pin in &mut self.pins {
+            pin.command[1] -= gone;
+        }
+        Ok(())
     }
 
     /// A push in proportion to the way of the pointer; none where that is back where it was pressed.

@@ -25,6 +25,7 @@ impl Session {
         shown.message.clone_from(&self.message);
         shown.opened = self.opened;
         shown.replaced = self.replaced;
+        shown.resets = self.resets;
         shown.recorded = self.document.commands().saturating_sub(self.own_commands);
         shown.recorded_until = self.recorded_until();
         shown.samples = Arc::clone(&self.samples);

@@ -1,5 +1,9 @@
 //! What the hand does, and what is undone.
 
+mod exploding;
+mod hands;
+mod landing;
+
 use super::{Edit, Grip, Request, Session};
 use crate::said::Step;
 use crate::shown::{Offer, Severity};
@@ -282,4 +286,23 @@ fn another_integrator_that_is_offered_after_a_divergence_comes_with_the_substeps
     assert_eq!(shown.integrator.as_ref().map(|values| values.kind()), Some("symplectic_euler"));
     pass(&mut session, 30);
     assert_replays(&session);
+}
+
+#[test]
+fn what_one_scene_differs_in_from_that_beside_it_is_to_be_saved_too() {
+    let mut session = quiet();
+    assert!(!session.is_edited());
+    pass(&mut session, 3);
+    ask(&mut session, Request::Compare(true));
+    assert!(!session.is_edited(), "time has passed, and nothing was done");
+    let softer =
+        crate::differences::Difference::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(900.0));
+    ask(&mut session, Request::Differ(softer));
+    assert!(session.is_edited());
+    let mark = session.mark();
+    ask(&mut session, Request::Saved(mark));
+    assert!(!session.is_edited());
+    ask(&mut session, Request::Grab(Grip::Pull, 0, [0.4, 2.0, 0.0]));
+    pass(&mut session, 1);
+    assert!(session.is_edited());
 }

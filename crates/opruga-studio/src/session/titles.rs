@@ -1,5 +1,6 @@
 //! The names by which a person knows bodies: one that was set down anew has another in the scene.
 
+use crate::engine::Exploded;
 use crate::said::Said;
 use opruga::WorldError;
 
@@ -61,6 +62,7 @@ impl Titles {
         match said {
             Said::World(error) => Said::World(self.in_error(error)),
             Said::Because(text) => Said::Because(self.in_text(&text)),
+            Said::Exploded(exploded) => Said::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
             Said::AtTheEnd(time, list) => Said::AtTheEnd(time, list.iter().map(|text| self.in_text(text)).collect()),
             Said::GoesOn(name) => Said::GoesOn(of(&name)),
             Said::NoBody(name) => Said::NoBody(of(&name)),

@@ -18,7 +18,11 @@ pub(super) struct Past {
     pub(super) label: Step,
     pub(super) document: Document,
     pub(super) own_commands: usize,
+    /// The scene as it began then.
+    pub(super) start: Document,
     pub(super) frame: u64,
+    /// The frame up to which the course of things that is left for this one is the same.
+    pub(super) common: u64,
     pub(super) pins: Vec<Pinned>,
     pub(super) differences: Option<Vec<Difference>>,
     /// The press of the hand that drew a parameter, where one did.
@@ -62,6 +66,7 @@ impl Session {
         {
             self.refuse(&error, None);
         }
+        self.stop_where_a_body_exploded();
     }
 
     /// Goes to the end of the scene, frame by frame, as if it had been there already.
@@ -99,7 +104,9 @@ impl Session {
             label,
             document: self.let_go_of_all(),
             own_commands: self.own_commands,
+            start: self.start.clone(),
             frame: self.engine.frames(),
+            common: self.engine.frames(),
             pins: self.pins.clone(),
             differences: self.differences.clone(),
             press: None,
@@ -140,7 +147,7 @@ impl Session {
         // Where both are still on the way to a moment, that moment.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
-            session.take(session.document.clone(), session.own_commands, latest)?;
+            session.take(session.document.clone(), session.own_commands, [latest; 2])?;
             session.goal = (goal > 0).then_some(goal);
             Ok(())
         })?;
@@ -168,14 +175,19 @@ impl Session {
         outcome
     }
 
-    /// Builds the world of a document and goes to a frame that it shares with the present course of things.
-    pub(super) fn take(&mut self, document: Document, own_commands: usize, frame: u64) -> Result<(), Said> {
+    /// Builds the world of a document and goes to a frame; up to the second one it is the same as the present course of things.
+    pub(super) fn take(
+        &mut self,
+        document: Document,
+        own_commands: usize,
+        [frame, common]: [u64; 2],
+    ) -> Result<(), Said> {
         self.release();
         let mut engine = self.build(&document)?;
-        let shared = frame.min(self.engine.frames().max(self.latest));
+        let shared = frame.min(common).min(self.engine.frames().max(self.latest));
         let state = self.keyframes.before(shared).map(|(_, state)| state.to_vec());
         // Where the start itself was changed there is no common past, and the way goes from the start.
-        let common = frame > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
+        let common = shared > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
         if common {
             let kept = self.engine.frames();
@@ -201,9 +213,12 @@ impl Session {
             self.open_before();
             return Ok(());
         };
-        let present = self.past(past.label.clone());
-        self.with_differences(past.differences, |session| session.take(past.document, past.own_commands, past.frame))?;
-        self.pins = past.pins;
+        // Done again, it leaves the course that there is then where this one is left now.
+        let present = Past { common: past.common, ..self.past(past.label.clone()) };
+        self.with_differences(past.differences, |session| {
+            session.take(past.document, past.own_commands, [past.frame, past.common])
+        })?;
+        (self.pins, self.start) = (past.pins, past.start);
         self.undo.pop();
         // What is redone begins where it was done.
         self.redo.push(present);
@@ -214,11 +229,11 @@ impl Session {
 
     pub(super) fn step_forward(&mut self) -> Result<(), Said> {
         let Some(future) = self.redo.last().cloned() else { return Ok(()) };
-        let present = self.past(future.label.clone());
+        let present = Past { common: future.common, ..self.past(future.label.clone()) };
         self.with_differences(future.differences, |session| {
-            session.take(future.document, future.own_commands, future.frame)
+            session.take(future.document, future.own_commands, [future.frame, future.common])
         })?;
-        self.pins = future.pins;
+        (self.pins, self.start) = (future.pins, future.start);
         self.redo.pop();
         self.undo.push(present);
         let time = self.time_of(future.frame);
@@ -231,16 +246,19 @@ impl Session {
     }
 
     pub(super) fn reset(&mut self) -> Result<(), Said> {
+        self.resets += 1;
         if self.is_as_recorded() {
             self.release();
             self.seek(0);
             return Ok(());
         }
-        let past = self.past(Step::Reset);
-        let mut document = self.document.clone();
-        let recorded = document.commands() > self.own_commands;
-        document.keep_commands(self.own_commands);
-        self.take(document, self.own_commands, 0)?;
+        // What is done after it begins anew.
+        let past = Past { common: 0, ..self.past(Step::Reset) };
+        let start = self.start.clone();
+        let own_commands = start.commands();
+        // A hand may have taken over from a recorded one without writing anything behind it.
+        let recorded = past.document.text() != start.text();
+        self.take(start, own_commands, [0; 2])?;
         if recorded {
             self.remember(past);
         }

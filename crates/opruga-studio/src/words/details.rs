@@ -1,7 +1,7 @@
 //! What models, integrators, obstacles, the world and the readers of files say in English, in Croatian: sentences with gaps
 //! for names and numbers.
 
-use super::{ends, parts, readers, sentences};
+use super::{ends, own, parts, readers, sentences};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -57,7 +57,7 @@ static PARTS: LazyLock<Vec<Known>> = LazyLock::new(|| parts().map(Known::new).co
 
 /// Whole sentences: those of the readers first, since the engine has some that fit much.
 pub(super) fn whole() -> impl Iterator<Item = &'static Pair> {
-    readers::SENTENCES.into_iter().chain([ends::SENTENCES, sentences::SENTENCES]).flatten()
+    readers::SENTENCES.into_iter().chain([own::SENTENCES, ends::SENTENCES, sentences::SENTENCES]).flatten()
 }
 
 /// Parts of sentences.

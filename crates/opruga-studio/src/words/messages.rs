@@ -2,6 +2,7 @@
 
 use super::{Language, Part, details, scene_errors};
 use crate::differences::Difference;
+use crate::engine::Exploded;
 use crate::said::{Said, Step};
 use opruga::WorldError;
 use opruga::core::spec::Value;
@@ -35,6 +36,8 @@ impl Language {
             Step::Scale => self.step_scale().into(),
             Step::Delete => self.step_delete().into(),
             Step::Open(name) => format!("{} {name}", self.step_open()),
+            Step::Pull => self.step_pull().into(),
+            Step::Push => self.step_push().into(),
             Step::Pin => self.step_pin().into(),
             Step::Unpin => self.step_unpin().into(),
             Step::Reset => self.step_reset().into(),
@@ -82,6 +85,19 @@ impl Language {
                 }
             },
             Said::World(error) => self.world_error(error),
+            Said::Exploded(Exploded { body, integrator, unstable: true }) => {
+                let integrator = self.kind(Part::Integrator, integrator);
+                either!(
+                    self,
+                    "`{body}` exploded: {integrator} is unstable at this step",
+                    "Tijelo `{body}` se raspalo: {integrator} je nestabilan uz ovaj korak"
+                )
+            }
+            Said::Exploded(Exploded { body, .. }) => either!(
+                self,
+                "`{body}` exploded: it is more than 100 times as large as the scene was",
+                "Tijelo `{body}` se raspalo: više je od 100 puta veće nego što je bio prizor"
+            ),
             Said::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
             Said::Redone(step, time) => format!("{} {}, t = {time:.2} s", self.redone(), self.done(step)),
             Said::PinsLetGo => self.pins_let_go().into(),

@@ -126,6 +126,9 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
         Modifiers::NONE,
     );
     window.until("a pull of both", |shown| shown.recorded == 1);
+    // The pull, and the last difference.
+    window.click("Undo");
+    window.until("no pull", |shown| shown.recorded == 0);
     window.click("Undo");
     window.click("Reset");
     window.until("the start", |shown| shown.recorded == 0 && shown.frames == 0);

@@ -218,3 +218,77 @@ fn the_keys_are_seen_without_scrolling_on_a_small_laptop() {
         assert!(low < SIZE[1] && low - high > 300.0 && off.abs() < 30.0, "from {high} to {low}");
     }
 }
+
+/// A screen that draws seldom takes in both ends of a tap with one picture.
+#[test]
+fn a_tap_shorter_than_a_picture_sets_a_slider() {
+    let mut window = Window::open("ball", TALL);
+    (0..20).for_each(|_| window.studio().ask(Request::Step));
+    window.until("twenty frames", |shown| shown.frames == 20);
+    let tap = |window: &mut Window, name: &str, along: f32| {
+        let rect = window.harness.get_by_role_and_label(Role::Slider, name).rect();
+        let pos = egui::pos2(rect.left() + along, rect.center().y);
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let press = |pressed| egui::Event::PointerButton { pos, button, pressed, modifiers };
+        // The pointer was elsewhere until then.
+        window.pointer(egui::pos2(500.0, 500.0));
+        window.harness.input_mut().events.extend([egui::Event::PointerMoved(pos), press(true), press(false)]);
+        window.frames(3);
+    };
+    tap(&mut window, "Time", 30.0);
+    window.until("another moment", |shown| shown.frames > 0 && shown.frames < 15);
+    tap(&mut window, "stiffness [N/m]", 100.0);
+    window.until("another stiffness", |shown| shown.bodies[0].models[0].number("stiffness") != Some(1600.0));
+    tap(&mut window, "Substeps", 140.0);
+    window.until("more substeps", |shown| shown.substeps > 32);
+    tap(&mut window, "Speed", 20.0);
+    window.until("more slowly", |shown| shown.speed < 0.5);
+}
+
+#[test]
+fn language_and_theme_are_those_of_the_window_before() {
+    let folder = std::env::temp_dir().join(format!("opruga-preferred-{}", std::process::id()));
+    let store = || opruga_studio::preferences::Store::File(folder.join("studio.toml"));
+    let open = || {
+        let mut window = Window::open("ball", SIZE);
+        let context = window.harness.ctx.clone();
+        window.harness.state_mut().as_mut().expect("a window").prefer(store(), &context);
+        window.frames(3);
+        window
+    };
+    let mut window = open();
+    assert!(window.harness.query_by_label("Play").is_some() && window.harness.ctx.theme() == egui::Theme::Dark);
+    window.click("Hrvatski");
+    window.click("Svijetlo");
+    let mut window = open();
+    assert!(window.harness.query_by_label("Pokreni").is_some() && window.harness.ctx.theme() == egui::Theme::Light);
+    window.click("English");
+    let window = open();
+    assert!(window.harness.query_by_label("Play").is_some() && window.harness.ctx.theme() == egui::Theme::Light);
+    std::fs::remove_dir_all(&folder).expect("it goes");
+}
+
+#[test]
+fn what_is_to_be_dropped_has_a_hint_of_its_own_and_lies_where_the_pointer_is() {
+    let mut window = Window::open("ball", SIZE);
+    window.frames(3);
+    let says = |window: &Window, wanted: &str| {
+        fn texts(shape: &egui::Shape, found: &mut Vec<String>) {
+            match shape {
+                egui::Shape::Text(text) => found.push(text.galley.text().to_string()),
+                egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, found)),
+                _ => {}
+            }
+        }
+        let mut found = Vec::new();
+        window.harness.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut found));
+        found.iter().any(|text| text.contains(wanted))
+    };
+    assert!(says(&window, "drag me") && !says(&window, "Drop a scene"));
+    window.harness.input_mut().hovered_files.push(egui::HoveredFile::default());
+    window.frames(2);
+    assert!(!says(&window, "drag me") && says(&window, "Drop a scene"));
+    window.harness.input_mut().hovered_files.clear();
+    window.frames(2);
+    assert!(says(&window, "drag me"));
+}

@@ -326,3 +326,54 @@ fn a_body_of_space_that_is_held_keeps_its_depth_while_the_wheel_brings_the_eye_n
     let drawn = window.studio().on_screen(after).expect("in sight");
     assert!(drawn.distance(held) < 3.0, "the handle is under the pointer: {drawn:?} {held:?}");
 }
+
+#[test]
+fn a_body_from_the_menu_comes_to_the_pointer_and_into_no_other_one() {
+    let mut window = Window::open("ball", SIZE);
+    for count in 2..6 {
+        window.click("Add");
+        // The name of the body that was added last stands beside the scene.
+        let canvas = window.canvas();
+        let entries: Vec<Pos2> = window.harness.get_all_by_label("jelly").map(|entry| entry.rect().center()).collect();
+        let at = entries.into_iter().find(|at| canvas.contains(*at)).expect("an entry of the menu");
+        window.pointer(at);
+        for pressed in [true, false] {
+            window.button(at, PointerButton::Primary, pressed, Modifiers::NONE);
+        }
+        window.until("one body more", |shown| shown.bodies.len() == count);
+        let boxes: Vec<egui::Rect> = window
+            .shown()
+            .extents
+            .iter()
+            .map(|extent| {
+                let corner = |k: usize| window.studio().on_screen(extent.corners[k]).expect("a place");
+                egui::Rect::from_two_pos(corner(0), corner(1))
+            })
+            .collect();
+        if count == 2 {
+            assert!(boxes[1].contains(at), "{at:?}: {boxes:?}");
+        }
+        for (place, one) in boxes.iter().enumerate() {
+            assert!(boxes[..place].iter().all(|other| !one.intersects(*other)), "{boxes:?}");
+        }
+    }
+}
+
+#[test]
+fn a_reset_shows_the_scene_as_it_was_at_first_wherever_the_view_was_taken() {
+    for scene in ["ball", "balloons"] {
+        let mut window = Window::open(scene, SIZE);
+        window.rest();
+        let first = top_of(&window);
+        window.studio().ask(Request::Step);
+        let canvas = window.canvas();
+        let from = canvas.left_bottom() + Vec2::new(60.0, -60.0);
+        window.drag(&[from, from + Vec2::new(300.0, -200.0)], PointerButton::Middle, Modifiers::NONE);
+        window.rest();
+        assert!(top_of(&window).distance(first) > 100.0, "{scene}");
+        window.click("Reset");
+        window.until("the start", |shown| shown.frames == 0 && shown.resets == 1);
+        window.rest();
+        assert!(top_of(&window).distance(first) < 2.0, "{scene}: {:?} {first:?}", top_of(&window));
+    }
+}

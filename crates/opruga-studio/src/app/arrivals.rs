@@ -1,0 +1,42 @@
+//! Files that were dropped on the window or chosen.
+
+use super::Studio;
+use crate::dropping::Shape;
+use crate::hand::Arrived;
+use crate::session::Request;
+use crate::shown::Shown;
+use egui::Ui;
+use std::time::Duration;
+
+/// How long a shape waits for the pointer \[s\]: while a file is dragged over a window, systems tell that where the pointer is only when
+/// it is let go.
+const PATIENCE: f64 = 0.3;
+
+/// Shapes that wait for the pointer, and since when \[s\].
+pub(super) type Waiting = Vec<(Shape, f64)>;
+
+impl Studio {
+    /// Scenes are opened, shapes become bodies at the pointer.
+    pub(super) fn dropped(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
+        let (now, pointer) = ui.input(|i| (i.time, i.pointer.latest_pos()));
+        for arrived in self.hand.arrived(ui) {
+            match arrived {
+                Arrived::Request(Request::Take(shape, ..)) => self.landing.push((shape, now)),
+                Arrived::Request(request) => asks.push(request),
+                Arrived::Told(severity, said) => self.keeping.tell(severity, said),
+            }
+        }
+        // Not so large that nothing else is seen.
+        let size = opruga::draw::nice_length(0.3 * self.canvas.room(shown));
+        let at = self.canvas.landing(shown, pointer);
+        for (shape, since) in std::mem::take(&mut self.landing) {
+            match pointer.is_some() || now - since > PATIENCE {
+                true => asks.push(Request::Take(shape, at, size)),
+                false => self.landing.push((shape, since)),
+            }
+        }
+        if !self.landing.is_empty() {
+            ui.ctx().request_repaint_after(Duration::from_millis(50));
+        }
+    }
+}

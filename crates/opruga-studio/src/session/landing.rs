@@ -1,0 +1,170 @@
+//! Where a new body is set down: at the pointer, or as near to it as it is in no other body and in no obstacle.
+
+use super::Session;
+use super::edits::shift;
+use crate::pair::read;
+use opruga::blueprint::{AnyBlueprint, BodyBlueprint};
+use opruga::draw::ColliderPicture;
+use toml_edit::InlineTable;
+
+/// The lowest and the highest corner of a box [m].
+type Ends = [[f64; 3]; 2];
+
+/// How far apart tried places are, in sizes of the body, and how many of them to each side, in the plane and in space: up to six sizes
+/// and four sizes away.
+const APART: [f64; 2] = [0.25, 0.5];
+const TRIED: [i32; 2] = [24, 8];
+/// The gap that is left between a body and what is beside it, in sizes of the body.
+const GAP: f64 = 0.02;
+
+/// The box around points.
+fn around(points: impl Iterator<Item = [f64; 3]>) -> Ends {
+    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for point in points {
+        for d in 0..3 {
+            (ends[0][d], ends[1][d]) = (ends[0][d].min(point[d]), ends[1][d].max(point[d]));
+        }
+    }
+    ends
+}
+
+fn moved(ends: Ends, by: [f64; 3]) -> Ends {
+    ends.map(|corner| [0, 1, 2].map(|d| corner[d] + by[d]))
+}
+
+fn grown(ends: Ends, by: f64) -> Ends {
+    [ends[0].map(|x| x - by), ends[1].map(|x| x + by)]
+}
+
+/// Whether two boxes have a point in common; a scene of the plane has no third side.
+fn meet(a: &Ends, b: &Ends, dimension: usize) -> bool {
+    (0..dimension).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
+}
+
+/// Whether a body in this box may be in an obstacle. A container is none for what is in it, and one that is drawn alike whether it is
+/// solid or not is told by `hollow`.
+fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize) -> bool {
+    let meets = |other: &Ends| meet(ends, other, dimension);
+    match obstacle {
+        ColliderPicture::HalfSpace { point, normal } => {
+            let lowest = [0, 1, 2].map(|d| if normal[d] > 0.0 { ends[0][d] } else { ends[1][d] });
+            (0..dimension).map(|d| normal[d] * (lowest[d] - point[d])).sum::<f64>() < 0.0
+        }
+        ColliderPicture::Box { min, max, inside: true } => {
+            (0..dimension).any(|d| ends[0][d] < min[d] || ends[1][d] > max[d])
+        }
+        ColliderPicture::Box { min, max, .. } => meets(&[*min, *max]),
+        _ if hollow => false,
+        ColliderPicture::Ball { center, radius } => {
+            let away = |d: usize| center[d] - center[d].clamp(ends[0][d], ends[1][d]);
+            (0..dimension).map(|d| away(d) * away(d)).sum::<f64>() < radius * radius
+        }
+        ColliderPicture::Capsule { a, b, radius } => meets(&grown(around([*a, *b].into_iter()), *radius)),
+        ColliderPicture::Polygon(points) => meets(&around(points.iter().copied())),
+        ColliderPicture::Polyline(points) => points.windows(2).any(|side| meets(&around(side.iter().copied()))),
+        ColliderPicture::Mesh { positions, triangles } => triangles.iter().any(|corners| {
+            meets(&around(corners.iter().filter_map(|corner| positions.get(*corner as usize).copied())))
+        }),
+    }
+}
+
+/// The way nearest to a wanted one that is free, of those that are tried; the wanted one where none is. Of two that are equally far the
+/// higher one.
+fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
+    if free(wanted) {
+        return wanted;
+    }
+    let space = usize::from(dimension == 3);
+    let (apart, most) = (APART[space] * size, TRIED[space]);
+    let deep = if dimension == 3 { most } else { 0 };
+    let places = (-most..=most).flat_map(|y| (-most..=most).flat_map(move |x| (-deep..=deep).map(move |z| [x, y, z])));
+    let mut places: Vec<[i32; 3]> = places.collect();
+    places.sort_by_key(|[x, y, z]| (x * x + y * y + z * z, -y, -x, -z));
+    let ways = places.into_iter().map(|place| [0, 1, 2].map(|d| wanted[d] + apart * f64::from(place[d])));
+    ways.into_iter().find(|way| free(*way)).unwrap_or(wanted)
+}
+
+impl Session {
+    /// Moves the table of a new body so that its middle is at a point, or as near to that as it is free.
+    pub(super) fn land(&mut self, table: &mut InlineTable, at: [f64; 3]) {
+        let dimension = self.dimension();
+        // What cannot be read is refused where it is added.
+        let Some([low, high]) = self.box_of(table) else { return shift(table, at, dimension) };
+        let by = self.free_way(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
+        // To a hundredth of its size: nobody points more finely.
+        let size = (0..dimension).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+        let unit = if size > 0.0 { 10f64.powi(size.log10().floor() as i32 - 2) } else { 0.01 };
+        let rounded = by.map(|x| {
+            // Times its reciprocal where that is whole, so that 0.01 is written and not 0.010000000000000002.
+            if unit < 1.0 { (x / unit).round() / (1.0 / unit).round() } else { (x / unit).round() * unit }
+        });
+        shift(table, rounded, dimension);
+    }
+
+    /// The way nearest to a wanted one by which a body of this table is moved out of everything that is there.
+    pub(super) fn free_way(&mut self, table: &InlineTable, wanted: [f64; 3]) -> [f64; 3] {
+        let Some(own) = self.box_of(table) else { return wanted };
+        let shown = self.engine.shown(&self.show);
+        let dimension = usize::from(shown.dimension);
+        let size = (0..dimension).map(|d| own[1][d] - own[0][d]).fold(0.0, f64::max);
+        // Nothing is tried for what has no size.
+        if !(size > 0.0 && wanted.iter().all(|x| x.is_finite())) {
+            return wanted;
+        }
+        let hollow = shown.obstacles.iter().any(|obstacle| obstacle.values.flag("inside"));
+        let free = |by: [f64; 3]| {
+            let ends = grown(moved(own, by), GAP * size);
+            let bodies = shown.extents.iter().all(|extent| !meet(&ends, &extent.corners, dimension));
+            bodies && shown.picture.colliders.iter().all(|obstacle| !is_in(&ends, obstacle, hollow, dimension))
+        };
+        nearest(wanted, size, dimension, free)
+    }
+
+    /// The box around a body as its table sets it down; none where that cannot be read.
+    fn box_of(&self, table: &InlineTable) -> Option<Ends> {
+        fn of<const D: usize>(body: &BodyBlueprint<D>) -> Ends {
+            let at = |d: usize, point: &[f64; D]| if d < D { point[d] + body.translation[d] } else { 0.0 };
+            around(body.mesh.positions.iter().map(|point| [0, 1, 2].map(|d| at(d, point))))
+        }
+        match read(&self.document.alone(table), &self.files).ok()?.0 {
+            AnyBlueprint::Plane(scene) => scene.bodies.last().map(of),
+            AnyBlueprint::Space(scene) => scene.bodies.last().map(of),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_in_no_obstacle_and_in_its_container() {
+        let unit: Ends = [[0.0; 3], [1.0, 1.0, 0.0]];
+        let floor = |height: f64| ColliderPicture::HalfSpace { point: [0.0, height, 0.0], normal: [0.0, 1.0, 0.0] };
+        let ball = |x: f64| ColliderPicture::Ball { center: [x, 0.5, 0.0], radius: 0.5 };
+        let room = |inside| ColliderPicture::Box { min: [-1.0; 3], max: [2.0; 3], inside };
+        let line = ColliderPicture::Polyline(vec![[-1.0, 2.0, 0.0], [2.0, 2.0, 0.0], [2.0, -1.0, 0.0]]);
+        for (obstacle, wanted) in [
+            (floor(-0.1), false),
+            (floor(0.1), true),
+            (ball(2.0), false),
+            (ball(1.4), true),
+            (room(false), true),
+            (room(true), false),
+            // The box around the whole line holds it, but none of its sides meets it.
+            (line, false),
+        ] {
+            assert_eq!(is_in(&unit, &obstacle, false, 2), wanted, "{obstacle:?}");
+        }
+        assert!(!is_in(&unit, &ball(1.4), true, 2), "it may be a container");
+    }
+
+    #[test]
+    fn the_nearest_free_place_is_taken_the_higher_one_of_two_and_the_wanted_one_where_there_is_none() {
+        let free = |by: [f64; 3]| by[0].abs() > 0.6 || by[1].abs() > 0.6;
+        assert_eq!(nearest([5.0, 0.0, 0.0], 1.0, 2, free), [5.0, 0.0, 0.0]);
+        assert_eq!(nearest([0.0; 3], 1.0, 2, free), [0.0, 0.75, 0.0]);
+        assert_eq!(nearest([0.4, 0.0, 0.0], 1.0, 2, free), [0.65, 0.0, 0.0]);
+        assert_eq!(nearest([0.4, 0.0, 0.0], 1.0, 3, |_| false), [0.4, 0.0, 0.0]);
+    }
+}

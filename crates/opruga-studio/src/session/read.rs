@@ -1,0 +1,80 @@
+//! What can be read of a session without changing it.
+
+use super::{Session, mark};
+use crate::differences::Difference;
+use opruga::io::Files;
+
+impl Session {
+    /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
+    pub fn saved(&self) -> String {
+        let mut document = self.let_go_of_all();
+        document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
+        document.text()
+    }
+
+    /// In what the scene on the right differs, where there is one.
+    pub fn differences(&self) -> Option<&[Difference]> {
+        self.differences.as_deref()
+    }
+
+    /// Whether anything was edited or recorded since it was opened or saved.
+    pub fn is_edited(&self) -> bool {
+        self.mark() != self.clean
+    }
+
+    /// A mark of the text of the scene and of what the one beside it differs in, by which they are told from others.
+    pub fn mark(&self) -> u64 {
+        let differences = self.differences.iter().flatten().map(|difference| format!("\n{difference:?}"));
+        mark(&std::iter::once(self.document.text()).chain(differences).collect::<String>())
+    }
+
+    /// The text of the scene as it stands.
+    pub fn text(&self) -> String {
+        self.document.text()
+    }
+
+    /// Where the files are that the scene names.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// The hash of the state.
+    pub fn hash(&self) -> u64 {
+        self.engine.hash()
+    }
+
+    /// Frames since the start.
+    pub fn frames(&self) -> u64 {
+        self.engine.frames()
+    }
+
+    /// The columns and the row of a table for the present state.
+    pub fn row(&mut self) -> Vec<(String, f64)> {
+        self.engine.row()
+    }
+
+    /// The name of the scene.
+    pub fn name(&self) -> &str {
+        &self.document.name
+    }
+
+    /// The last frame of this course of things.
+    pub fn latest(&self) -> u64 {
+        self.latest
+    }
+
+    /// How many messages there have been.
+    pub fn told(&self) -> u64 {
+        self.messages
+    }
+
+    /// Whether it goes to another moment.
+    pub fn is_seeking(&self) -> bool {
+        self.goal.is_some()
+    }
+
+    /// Whether anything moves: time passes, or another moment is gone to.
+    pub fn is_moving(&self) -> bool {
+        self.playing || self.goal.is_some()
+    }
+}
