@@ -47,8 +47,13 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
         files: source.files.clone(),
         ..scene::Options::default()
     };
-    let options =
-        Options { threads: call.threads.into(), simd, allow_unstable: header.allow_unstable, ..Options::default() };
+    let options = Options {
+        threads: call.threads.into(),
+        simd,
+        allow_unstable: header.allow_unstable,
+        most_bytes: Some(reading.limits.memory_bytes),
+        ..Options::default()
+    };
     let blueprint = source.read(&reading, &options)?.blueprint;
     let length = header.frame;
     let job = Job { call, source: &source, reading, options, length, frames, told };

@@ -30,7 +30,8 @@ pub(crate) fn check(call: &Check) -> Result<u8, Failure> {
         files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let world = Options { allow_unstable: call.allow_unstable, ..Options::default() };
+    let most_bytes = Some(reading.limits.memory_bytes);
+    let world = Options { allow_unstable: call.allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, .. } = source.read(&reading, &world)?;
     let found = match blueprint {
         AnyBlueprint::Plane(blueprint) => Found::of(&source.build(blueprint, &reading, &world)?),

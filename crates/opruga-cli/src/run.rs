@@ -58,7 +58,8 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
         files: source.files.clone().allow_outside(call.allow_outside),
         ..scene::Options::default()
     };
-    let world = Options { threads: call.threads.into(), simd, allow_unstable, ..Options::default() };
+    let most_bytes = Some(reading.limits.memory_bytes);
+    let world = Options { threads: call.threads.into(), simd, allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, files } = source.read(&reading, &world)?;
     let mut told: Vec<WarningSummary> = notices
         .iter()

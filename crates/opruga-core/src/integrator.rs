@@ -1,6 +1,7 @@
 //! What an integrator is to a world: it moves a system on by one substep, and knows its own stability.
 
 use crate::error::{BuildError, StepError};
+use crate::memory::Counts;
 use crate::potential::{Reading, Views};
 use crate::spec::{Spec, Values};
 use crate::system::System;
@@ -64,6 +65,10 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// Whether it solves with a mass matrix that couples nodes ([`System::inertia`]).
     fn takes_mass_matrix(&self) -> bool {
         false
+    }
+    /// What it needs for one body whose models couple so many pairs of nodes [bytes], beside the state.
+    fn memory(&self, counts: &Counts, _couplings: f64) -> f64 {
+        16.0 * D as f64 * counts.nodes * self.work_columns() as f64
     }
     /// Makes one substep of h [s].
     ///

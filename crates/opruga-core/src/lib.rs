@@ -10,6 +10,7 @@ mod implicit;
 pub mod inertia;
 pub mod integrator;
 mod ledger;
+pub mod memory;
 pub mod pair;
 mod pins;
 pub mod potential;

@@ -1,6 +1,7 @@
 //! What a model is to an integrator: forces, energy and second derivatives, and nothing about how it steps.
 
 use crate::error::{BuildError, StepError};
+use crate::memory::{Counts, Need};
 use crate::spec::{Spec, Values};
 use crate::state::{Layout, View};
 use crate::tile::Tile;
@@ -331,6 +332,10 @@ pub trait Model<const D: usize>: Send + Sync {
     /// Whether its potentials have an energy and second derivatives, whatever the parameters.
     fn views(&self) -> Views {
         Views { energy: true, hessian: true, damping: false }
+    }
+    /// What it needs for one body beside the mesh and the state.
+    fn need(&self, _counts: &Counts) -> Need {
+        Need::default()
     }
     /// Builds it for one body, or for eight alike ones.
     ///

@@ -111,7 +111,7 @@ fn path_of(error: &WorldError) -> String {
             Some(body) if place.starts_with("integrator of ") => format!("{body}.integrator"),
             // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
             Some(body) if ["position", "velocity"].contains(&source.kind.as_str()) => format!("{body}.{}", source.kind),
-            Some(body) if ["stability", "modes"].contains(&source.kind.as_str()) => body,
+            Some(body) if ["stability", "modes", "memory"].contains(&source.kind.as_str()) => body,
             Some(body) if source.code.starts_with("static.") => body,
             Some(body) => format!("{body}.models.{}", source.kind),
             None if place == "collider" => {

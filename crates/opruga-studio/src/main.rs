@@ -133,5 +133,6 @@ fn main() -> ExitCode {
 /// One processor is for the interface.
 fn options() -> Options {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8));
-    Options { threads, ..Options::default() }
+    let most_bytes = Some(opruga::io::scene::Limits::default().memory_bytes);
+    Options { threads, most_bytes, ..Options::default() }
 }

@@ -136,7 +136,8 @@ impl Screen {
 /// The scene of the address; where that is refused, the first scene, and why.
 fn first_session() -> Result<(Session, Option<Said>), Said> {
     let open = |name: &str, text: &str, files| {
-        let options = Options { break_off: session::by_the_clock(), ..Options::default() };
+        let most_bytes = Some(scene::Limits::default().memory_bytes);
+        let options = Options { break_off: session::by_the_clock(), most_bytes, ..Options::default() };
         let mut session = Session::open(name, text, files, options)?;
         session.wait_for_frames(PATIENCE);
         Ok(session)

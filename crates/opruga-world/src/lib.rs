@@ -16,6 +16,7 @@ mod island;
 pub mod ledger;
 mod loads;
 mod looks;
+pub mod memory;
 pub mod modes;
 mod node_states;
 mod other_balances;

@@ -24,6 +24,7 @@ impl<const D: usize> World<D> {
         if self.body(&body.name).is_some() {
             return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
         }
+        crate::memory::check(std::slice::from_ref(&body), &*self.integrator, &self.registry, self.options.most_bytes)?;
         let number = self.blueprint.bodies.len();
         let fresh = BTreeMap::from([(number, crate::build::initial_state(&body))]);
         self.blueprint.bodies.push(body);

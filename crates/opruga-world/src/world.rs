@@ -42,11 +42,20 @@ pub struct Options {
     /// What ends a frame that takes long within a substep, with [`WorldError::BrokenOff`] and at the last good frame: asked for, and
     /// no longer asked for, from outside.
     pub break_off: Arc<BreakOff>,
+    /// What its bodies may take together, by an estimate before they are built [bytes]; none: what the machine gives.
+    pub most_bytes: Option<u64>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { threads: 1, simd: None, allow_unstable: false, batches: true, break_off: Arc::default() }
+        Options {
+            threads: 1,
+            simd: None,
+            allow_unstable: false,
+            batches: true,
+            break_off: Arc::default(),
+            most_bytes: None,
+        }
     }
 }
 
@@ -131,7 +140,9 @@ impl<const D: usize> World<D> {
             let message = format!("is {}; allowed: 1 to {MOST_THREADS}", options.threads);
             return Err(WorldError::Path { path: "threads".into(), message });
         }
-        let integrator = build_integrator(&registry, &blueprint.integrator, || "integrator".into())?.into();
+        let integrator: Arc<dyn Integrator<D>> =
+            build_integrator(&registry, &blueprint.integrator, || "integrator".into())?.into();
+        crate::memory::check(&blueprint.bodies, &*integrator, &registry, options.most_bytes)?;
         let colliders = build_colliders(&blueprint)?;
         let pool = (options.threads > 1)
             .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build())

@@ -39,6 +39,7 @@ mod slack;
 mod tests;
 
 use crate::implicit::approach::{leaves_nodes_inside, lift_out};
+use crate::implicit::memory;
 use crate::implicit::newton::{Balance, Solved, solve};
 use crate::implicit::room::Room;
 use crate::implicit::settings::{Otherwise, Settings, Solver, fields};
@@ -46,6 +47,7 @@ use crate::implicit::standstill;
 use crate::implicit::step::{MOST_HALVINGS, commit, report, same_bits_everywhere};
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator, IntegratorKind};
+use opruga_core::memory::Counts;
 use opruga_core::potential::{Reading, Views};
 use opruga_core::spec::{Allowed, Condition, Default, Field, Spec, Values};
 use opruga_core::system::{Stage, System};
@@ -344,6 +346,9 @@ impl<const D: usize> Integrator<D> for Equilibrium {
             return Err(BuildError::new(SPEC.kind, "static.arc_length_and_obstacles", message));
         }
         Ok(())
+    }
+    fn memory(&self, counts: &Counts, couplings: f64) -> f64 {
+        memory::of_body::<D>(&self.settings, counts, couplings)
     }
     fn readings(&self, system: &System<D>) -> Vec<Reading> {
         vec![("load_factor".into(), system.history.numbers[LOAD])]

@@ -53,6 +53,7 @@ pub(crate) mod impact;
 mod kept;
 mod line_search;
 pub(crate) mod linear;
+pub(crate) mod memory;
 mod mixing;
 pub(crate) mod newton;
 mod real_time;

@@ -4,6 +4,7 @@ use super::contact::{SMALL, dot};
 use super::growth;
 use super::holding;
 use super::impact::Ending;
+use super::memory;
 use super::newton::{self, Balance, Solved};
 use super::real_time;
 use super::room::{Room, write};
@@ -11,6 +12,7 @@ use super::settings::{Otherwise, Settings};
 use super::standstill;
 use opruga_core::error::{BuildError, StepError};
 use opruga_core::integrator::{Amplification, HistorySize, Integrator};
+use opruga_core::memory::Counts;
 use opruga_core::potential::{Account, Views};
 use opruga_core::spec::Values;
 use opruga_core::system::{Pin, Stage, System, Work8};
@@ -105,6 +107,9 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     }
     fn takes_mass_matrix(&self) -> bool {
         true
+    }
+    fn memory(&self, counts: &Counts, couplings: f64) -> f64 {
+        memory::of_body::<D>(&self.settings, counts, couplings)
     }
     fn step(&self, system: &mut System<D>, h: f64) -> Result<(), StepError> {
         let mut room = system.room.take::<Room<D>>();

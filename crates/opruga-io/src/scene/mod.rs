@@ -10,6 +10,7 @@ mod copies;
 mod cost;
 mod dimension;
 mod lifetimes;
+mod machine;
 mod moments;
 mod parameters;
 mod parts;
@@ -65,7 +66,8 @@ pub struct Limits {
 impl Default for Limits {
     /// Those of this machine.
     fn default() -> Limits {
-        Limits::of_addresses(usize::BITS)
+        let limits = Limits::of_addresses(usize::BITS);
+        Limits { memory_bytes: machine::memory_bytes().unwrap_or(limits.memory_bytes), ..limits }
     }
 }
 

@@ -5,7 +5,7 @@ pub(crate) mod cube;
 pub(crate) mod shapes;
 
 use opruga_core::spec::{Allowed, Default, Field, Spec};
-use opruga_io::scene::{Options, read};
+use opruga_io::scene::{Limits, Options, read};
 use opruga_io::{Catalogue, Notice, SceneError};
 use opruga_world::blueprint::{AnyBlueprint, Blueprint};
 
@@ -63,7 +63,9 @@ pub(crate) fn catalogue() -> Catalogue {
 }
 
 pub(crate) fn read_text(text: &str) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {
-    read(text.as_bytes(), "scene.toml", &catalogue(), &Options::default())
+    // Limits that are the same on every machine.
+    let options = Options { limits: Limits::of_addresses(64), ..Options::default() };
+    read(text.as_bytes(), "scene.toml", &catalogue(), &options)
 }
 
 pub(crate) fn read_with(text: &str, options: &Options) -> Result<(AnyBlueprint, Vec<Notice>), Vec<SceneError>> {

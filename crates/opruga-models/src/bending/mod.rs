@@ -28,6 +28,7 @@ pub use spec::SPEC;
 use angle::{cross, dot, in_space, minus};
 use hinge::Hinge;
 use opruga_core::error::BuildError;
+use opruga_core::memory::{Counts, Need};
 use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::{ONE_OF, Spec, Values};
 use opruga_core::state::View;
@@ -53,6 +54,9 @@ pub struct Bending {
 impl<const D: usize> Model<D> for BendingModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        Need { bytes: 60.0 * counts.hinges, couplings: counts.hinges }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let refuse = |code, message: String| BuildError::new(SPEC.kind, code, message);

@@ -59,6 +59,7 @@ pub use spec::SPEC;
 use builder::Builder;
 use elements::{Hexahedron, QuadraticTetrahedron, QuadraticTriangle, Quadrilateral, Tetrahedron, Triangle};
 use opruga_core::error::BuildError;
+use opruga_core::memory::{Counts, Need};
 use opruga_core::potential::{Ingredients, Model, Potential};
 use opruga_core::spec::Spec;
 use solid::Built;
@@ -74,6 +75,9 @@ fn refuse(code: &'static str, message: impl Into<String>) -> BuildError {
 impl Model<2> for FemModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        Need { bytes: counts.cell_bytes, couplings: counts.cell_pairs }
     }
     fn build(&self, ingredients: &Ingredients<2>) -> Result<Box<dyn Potential<2>>, BuildError> {
         let builder = Builder::new(ingredients)?;
@@ -94,6 +98,9 @@ impl Model<2> for FemModel {
 impl Model<3> for FemModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        Need { bytes: counts.cell_bytes, couplings: counts.cell_pairs }
     }
     fn build(&self, ingredients: &Ingredients<3>) -> Result<Box<dyn Potential<3>>, BuildError> {
         let builder = Builder::new(ingredients)?;

@@ -15,6 +15,7 @@ use law::SpringLaw;
 pub use spec::SPEC;
 
 use opruga_core::error::BuildError;
+use opruga_core::memory::{Counts, Need};
 use opruga_core::pair::PairTable;
 use opruga_core::potential::{Definiteness, Ingredients, Model, Potential, Sink, Views};
 use opruga_core::spec::Spec;
@@ -41,6 +42,9 @@ pub struct Springs {
 impl<const D: usize> Model<D> for MassSpring {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        Need { bytes: 110.0 * counts.edges, couplings: counts.edges }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let refuse = |code, message: String| Err(BuildError::new("mass_spring", code, message));

@@ -22,6 +22,7 @@ use gas::Gas;
 pub use spec::SPEC;
 
 use opruga_core::error::{BuildError, StepError};
+use opruga_core::memory::{Counts, Need};
 use opruga_core::pair::PairTable;
 use opruga_core::potential::{Account, Count, Definiteness, Ingredients, Model, Potential, Reading, Sink, Views};
 use opruga_core::spec::{Spec, Values};
@@ -71,6 +72,9 @@ fn lost(gas: &Gas, memory: &[f64], body: usize) -> f64 {
 impl<const D: usize> Model<D> for PressureModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn need(&self, counts: &Counts) -> Need {
+        Need { bytes: 100.0 * counts.facets, couplings: counts.facets }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let mesh = ingredients.mesh;

@@ -326,6 +326,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "{} oblika titranja tijela s ovoliko slobodnih koordinata: {} traži oko {} bajtova; dopušteno: najviše {} bajtova; \
          savjet: manje oblika",
     ),
+    (
+        "the bodies of the scene take about {} bytes, `{}` {} of them; allowed: {}; hint: a coarser mesh, an explicit integrator, or \
+         `linear_solver = \"matrix_free\"`",
+        "tijela prizora traže oko {} bajtova, `{}` od toga {}; dopušteno: {}; savjet: grublja mreža, eksplicitni integrator ili \
+         `linear_solver = \"matrix_free\"`",
+    ),
     ("body `{}` has no model `{}`; it has {}", "tijelo `{}` nema model `{}`; ima {}"),
     (
         "body `{}` follows the integrator of the scene: integrator.{}",

@@ -143,7 +143,9 @@ impl Sweep {
         clock: &dyn Fn() -> f64,
         stop: &AtomicBool,
     ) -> Option<Row> {
-        let options = Options { threads: 1, simd, allow_unstable: self.allow_unstable, ..Options::default() };
+        let most_bytes = Some(scene::Limits::default().memory_bytes);
+        let options =
+            Options { threads: 1, simd, allow_unstable: self.allow_unstable, most_bytes, ..Options::default() };
         let run = Run { sweep: self, options, clock, stop };
         let outcome = match self.read(point) {
             Ok(AnyBlueprint::Plane(blueprint)) => run.measure(&blueprint),

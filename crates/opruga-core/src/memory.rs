@@ -1,0 +1,77 @@
+//! How much memory a body will take, estimated from the counts of its mesh before anything is built.
+//!
+//! The figures of bytes are those of measured runs (docs/performance.md, "Memory"): a test compares estimates with what runs take.
+
+use opruga_mesh::Mesh;
+
+/// What a part of a body needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Need {
+    /// Memory [bytes].
+    pub bytes: f64,
+    /// How many pairs of nodes it couples: blocks above the diagonal of a matrix.
+    pub couplings: f64,
+}
+
+/// How many there are of what takes memory. Sides that cells share are counted by their mean number in large meshes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Nodes.
+    pub nodes: f64,
+    /// Edges of the mesh: those of cells, or of surfaces and wires where there are no cells.
+    pub edges: f64,
+    /// Edges of surfaces across which two triangles bend.
+    pub hinges: f64,
+    /// Sides of the boundary.
+    pub facets: f64,
+    /// Cells, as the bytes that finite elements keep of them.
+    pub cell_bytes: f64,
+    /// Pairs of nodes that have a cell in common.
+    pub cell_pairs: f64,
+    /// Whether the body fills space: factors of its matrix then have many more blocks than those of a surface.
+    pub is_bulk: bool,
+}
+
+impl Counts {
+    /// Those of a mesh.
+    pub fn of<const D: usize>(mesh: &Mesh<D>) -> Counts {
+        let (cells, facets) = (&mesh.cells, mesh.facets.len() as f64);
+        // Per cell: edges, pairs of nodes, bytes.
+        let rows = [
+            (cells.triangles.len(), 1.5, 1.5, 370.0),
+            (cells.quadrilaterals.len(), 2.0, 4.0, 440.0),
+            (cells.tetrahedra.len(), 1.2, 1.2, 466.0),
+            (cells.hexahedra.len(), 3.0, 13.0, 1700.0),
+            (cells.quadratic_triangles.len(), 3.0, 10.5, 970.0),
+            (cells.quadratic_tetrahedra.len(), 2.4, 20.0, 1143.0),
+        ];
+        let sum = |of: fn(&(usize, f64, f64, f64)) -> f64| rows.iter().map(|row| row.0 as f64 * of(row)).sum::<f64>();
+        let triangles = mesh.sheets.len() as f64 + if D == 3 { facets } else { 0.0 };
+        let around = if !cells.is_empty() {
+            0.0
+        } else if D == 3 {
+            1.5 * facets
+        } else {
+            facets
+        };
+        Counts {
+            nodes: mesh.nodes() as f64,
+            edges: sum(|row| row.1) + around + mesh.wires.len() as f64 + 1.5 * mesh.sheets.len() as f64,
+            hinges: 1.5 * triangles + if D == 2 { facets } else { 0.0 } + mesh.wires.len() as f64,
+            facets,
+            cell_bytes: sum(|row| row.3),
+            cell_pairs: sum(|row| row.2),
+            is_bulk: D == 3 && !cells.is_empty(),
+        }
+    }
+
+    /// What the mesh takes, however many bodies are made of it [bytes].
+    pub fn mesh_bytes<const D: usize>(&self) -> f64 {
+        self.nodes * (20.0 + 30.0 * D as f64) + 40.0 * self.facets
+    }
+
+    /// What the description of one body and the state of its nodes take [bytes].
+    pub fn state_bytes<const D: usize>(&self) -> f64 {
+        1000.0 + self.nodes * (40.0 + 30.0 * D as f64)
+    }
+}

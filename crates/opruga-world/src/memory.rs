@@ -1,0 +1,99 @@
+//! Whether the bodies of a world fit into the memory that they may take, before anything large is built.
+
+use crate::blueprint::{Blueprint, BodyBlueprint};
+use crate::build::build_integrator;
+use crate::error::WorldError;
+use crate::registry::Registry;
+use opruga_core::error::BuildError;
+use opruga_core::integrator::Integrator;
+use opruga_core::memory::Counts;
+use opruga_mesh::Mesh;
+use std::sync::Arc;
+
+/// About how much memory bodies take: meshes, states, models, and what integrators work in.
+struct Estimate<'a, const D: usize> {
+    registry: &'a Registry<D>,
+    /// The integrator of the scene.
+    integrator: &'a dyn Integrator<D>,
+    /// The mesh of the body before: copies stand one after the other and share theirs.
+    mesh: *const Mesh<D>,
+    all: f64,
+    largest: f64,
+    /// The body that takes most.
+    name: &'a str,
+}
+
+impl<'a, const D: usize> Estimate<'a, D> {
+    fn add(&mut self, body: &'a BodyBlueprint<D>) -> Result<(), WorldError> {
+        let counts = Counts::of(&body.mesh);
+        let needs = body.models.iter().filter_map(|values| self.registry.model(values.kind()));
+        let needs = needs.map(|model| model.need(&counts));
+        let (bytes, couplings) = needs.fold((0.0, 0.0), |sum, need| (sum.0 + need.bytes, sum.1 + need.couplings));
+        let own = body.integrator.as_ref();
+        let own =
+            own.map(|values| build_integrator(self.registry, values, || format!("integrator of body `{}`", body.name)));
+        let working = own.transpose()?.as_deref().unwrap_or(self.integrator).memory(&counts, couplings);
+        let mesh = Arc::as_ptr(&body.mesh);
+        let mesh_bytes = if mesh == self.mesh { 0.0 } else { counts.mesh_bytes::<D>() };
+        self.mesh = mesh;
+        let bytes = mesh_bytes + counts.state_bytes::<D>() + bytes + working;
+        self.all += bytes;
+        if bytes > self.largest {
+            (self.largest, self.name) = (bytes, &body.name);
+        }
+        Ok(())
+    }
+}
+
+/// About how much memory the bodies of a world take [bytes]: meshes, states, models, and what integrators work in, at their most.
+///
+/// # Errors
+/// [`WorldError`] where there is no such integrator.
+pub fn estimate<const D: usize>(blueprint: &Blueprint<D>, registry: &Registry<D>) -> Result<f64, WorldError> {
+    let integrator = build_integrator(registry, &blueprint.integrator, || "integrator".into())?;
+    Ok(estimate_of(&blueprint.bodies, &*integrator, registry)?.all)
+}
+
+fn estimate_of<'a, const D: usize>(
+    bodies: &'a [BodyBlueprint<D>],
+    integrator: &'a dyn Integrator<D>,
+    registry: &'a Registry<D>,
+) -> Result<Estimate<'a, D>, WorldError> {
+    let mut estimate = Estimate { registry, integrator, mesh: std::ptr::null(), all: 0.0, largest: 0.0, name: "" };
+    for body in bodies {
+        estimate.add(body)?;
+    }
+    Ok(estimate)
+}
+
+/// Refuses bodies that take more memory than they may, or more than the machine gives.
+///
+/// # Errors
+/// `limit.memory`, with the body that takes most; [`WorldError`] where there is no such integrator.
+pub(crate) fn check<const D: usize>(
+    bodies: &[BodyBlueprint<D>],
+    integrator: &dyn Integrator<D>,
+    registry: &Registry<D>,
+    most: Option<u64>,
+) -> Result<(), WorldError> {
+    let Estimate { all, largest, name, .. } = estimate_of(bodies, integrator, registry)?;
+    let allowed = match most {
+        Some(most) if all > most as f64 => format!("at most {most} bytes"),
+        _ if is_given(all) => return Ok(()),
+        _ => "what the machine gives to this program".to_string(),
+    };
+    let message = format!(
+        "the bodies of the scene take about {all:.0} bytes, `{name}` {largest:.0} of them; allowed: {allowed}; hint: a coarser mesh, an \
+         explicit integrator, or `linear_solver = \"matrix_free\"`"
+    );
+    let source = BuildError::new("memory", "limit.memory", message);
+    Err(WorldError::Build { place: format!("body `{name}`"), source })
+}
+
+/// Asks for memory in one piece and gives it back: where a limit of the system is below that, building would end the program.
+fn is_given(bytes: f64) -> bool {
+    /// Less than this is not asked for: it is there, or nothing works.
+    const LITTLE: f64 = 16_777_216.0;
+    let mut probe: Vec<u8> = Vec::new();
+    bytes < LITTLE || probe.try_reserve_exact(bytes.min(isize::MAX as f64) as usize).is_ok()
+}
