@@ -1,6 +1,7 @@
 //! What is wrong, where, and what would be right: for people and, as JSON, for programs.
 
 use core::fmt;
+pub(crate) use opruga_world::validity::unprintable;
 
 /// An error in a scene, with its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,10 +181,4 @@ pub fn visible(text: &str) -> String {
         if unprintable(c) { out.extend(c.escape_unicode()) } else { out.push(c) }
     }
     out
-}
-
-/// Whether a character could change how the rest of a line is shown.
-pub(crate) fn unprintable(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}')
 }

@@ -7,7 +7,7 @@ use crate::source::Source;
 use opruga_core::error::what_was_left;
 use opruga_math::words::number;
 use opruga_world::blueprint::{Action, Blueprint, CommandBlueprint};
-use opruga_world::schema::MOST_SUBSTEPS;
+use opruga_world::schema::{self, MOST_SUBSTEPS};
 use opruga_world::{Warning, WorldError};
 
 impl From<&WorldError> for SceneError {
@@ -100,6 +100,12 @@ fn named_value(message: &str) -> Option<(&str, &str)> {
     (value.starts_with('"') || value.parse::<f64>().is_ok()).then_some((field, value))
 }
 
+/// Whether an error about a body is about one of its own fields, and not about a model.
+fn is_field_of_body(kind: &str) -> bool {
+    let plain = schema::BODY.spec.fields.iter().map(|field| field.name);
+    plain.chain(schema::BODY.children.iter().map(|child| child.name)).any(|name| name == kind && name != "models")
+}
+
 /// The path of the part of the scene that an error is about.
 fn path_of(error: &WorldError) -> String {
     let body = |place: &str| {
@@ -110,7 +116,7 @@ fn path_of(error: &WorldError) -> String {
         WorldError::Build { place, source } => match body(place) {
             Some(body) if place.starts_with("integrator of ") => format!("{body}.integrator"),
             // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
-            Some(body) if ["position", "velocity"].contains(&source.kind.as_str()) => format!("{body}.{}", source.kind),
+            Some(body) if is_field_of_body(&source.kind) => format!("{body}.{}", source.kind),
             Some(body) if ["stability", "modes", "memory"].contains(&source.kind.as_str()) => body,
             Some(body) if source.code.starts_with("static.") => body,
             Some(body) => format!("{body}.models.{}", source.kind),

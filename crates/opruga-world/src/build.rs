@@ -7,6 +7,7 @@ use crate::island::Island;
 use crate::loads::{FollowerPressure, NodeForces};
 use crate::plausible;
 use crate::registry::Registry;
+use crate::slots::{Origin, Slots};
 use opruga_collide::Colliders;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
@@ -107,7 +108,7 @@ pub(crate) fn initial_state<const D: usize>(body: &BodyBlueprint<D>) -> BodyStat
 }
 
 /// Which bodies may lie side by side: the same rest shape and integrator, and models that differ in numbers only.
-fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
+pub(crate) fn alike<const D: usize>(a: &BodyBlueprint<D>, b: &BodyBlueprint<D>) -> bool {
     Arc::ptr_eq(&a.mesh, &b.mesh)
         && a.integrator == b.integrator
         && a.thickness == b.thickness
@@ -131,27 +132,40 @@ fn alike_values(a: &Values, b: &Values) -> bool {
 /// A body keeps its seat among its kind when others are taken away: so only the group that loses or wins a body changes.
 pub(crate) fn group<const D: usize>(
     bodies: &[BodyBlueprint<D>],
-    alive: &[bool],
+    slots: &Slots,
     batches: impl Fn(&BodyBlueprint<D>) -> bool,
 ) -> Vec<Vec<usize>> {
-    let mut kinds: Vec<Vec<usize>> = Vec::new();
+    let mut kinds: Vec<(usize, Vec<usize>)> = Vec::new();
+    let mut kind_of: Vec<Option<usize>> = vec![None; bodies.len()];
     let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (number, body) in bodies.iter().enumerate() {
+    for (number, body) in bodies.iter().enumerate().filter(|(number, _)| slots.origin[*number].is_taken()) {
         let candidates = by_mesh.entry(Arc::as_ptr(&body.mesh) as usize).or_default();
-        match candidates.iter().copied().find(|k| alike(&bodies[kinds[*k][0]], body)) {
-            Some(kind) => kinds[kind].push(number),
+        let kind = match candidates.iter().copied().find(|k| alike(&bodies[kinds[*k].0], body)) {
+            Some(kind) => kind,
             None => {
                 candidates.push(kinds.len());
-                kinds.push(vec![number]);
+                kinds.push((number, Vec::new()));
+                kinds.len() - 1
             }
+        };
+        kinds[kind].1.push(number);
+        kind_of[number] = Some(kind);
+    }
+    // Empty seats beside bodies of a kind.
+    for (number, origin) in slots.origin.iter().enumerate() {
+        if let Origin::Free(Some(like)) = origin
+            && let Some(kind) = kind_of.get(*like).copied().flatten()
+        {
+            let members = &mut kinds[kind].1;
+            members.insert(members.partition_point(|other| *other < number), number);
         }
     }
     let mut groups = Vec::new();
-    for members in kinds {
-        let small = bodies[members[0]].mesh.positions.len() <= LARGEST_IN_BATCH;
+    for (first, members) in kinds {
+        let small = bodies[first].mesh.positions.len() <= LARGEST_IN_BATCH;
         for seats in members.chunks(WIDTH) {
-            let there: Vec<usize> = seats.iter().copied().filter(|b| alive[*b]).collect();
-            if small && there.len() >= SMALLEST_BATCH && batches(&bodies[members[0]]) {
+            let there: Vec<usize> = seats.iter().copied().filter(|b| slots.alive[*b]).collect();
+            if small && there.len() >= SMALLEST_BATCH && batches(&bodies[first]) {
                 groups.push(there);
             } else {
                 groups.extend(there.into_iter().map(|b| vec![b]));

@@ -1,7 +1,6 @@
 //! Numbers, texts and values as bytes: what snapshots and written inputs are made of.
 
 use crate::carried::BodyHistory;
-use crate::changes::{Source, Told};
 use crate::error::WorldError;
 use opruga_core::spec::Value;
 use opruga_core::state::Columns;
@@ -20,6 +19,10 @@ impl Writer<'_> {
     pub(crate) fn text(&mut self, text: &str) {
         self.count(text.len() as u64);
         self.0.extend(text.as_bytes());
+    }
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.count(bytes.len() as u64);
+        self.0.extend(bytes);
     }
     pub(crate) fn numbers(&mut self, numbers: &[f64]) {
         self.count(numbers.len() as u64);
@@ -80,6 +83,17 @@ impl Writer<'_> {
 
 pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
 
+impl<'a> Reader<'a> {
+    pub(crate) fn bytes(&mut self) -> Result<&'a [u8], WorldError> {
+        let n = self.count()?;
+        let promised = || WorldError::Snapshot(format!("it promises {n} bytes, more than it holds"));
+        let n = usize::try_from(n).map_err(|_| promised())?;
+        let (head, tail) = self.0.split_at_checked(n).ok_or_else(promised)?;
+        self.0 = tail;
+        Ok(head)
+    }
+}
+
 impl Reader<'_> {
     pub(crate) fn eight(&mut self) -> Result<[u8; 8], WorldError> {
         let (head, tail) =
@@ -129,15 +143,6 @@ impl Reader<'_> {
                 Value::Rows((0..n).map(|_| self.numbers()).collect::<Result<_, _>>()?)
             }
             _ => return Err(WorldError::Snapshot("a value is of an unknown kind".into())),
-        })
-    }
-    pub(crate) fn change(&mut self) -> Result<Told, WorldError> {
-        Ok(match self.count()? {
-            0 => Told::Set(self.text()?, self.value()?),
-            1 => Told::Added(Source::Command(self.count()? as usize)),
-            2 => Told::Added(Source::Program(self.count()? as usize)),
-            3 => Told::Became(self.count()? as usize),
-            _ => return Err(WorldError::Snapshot("a change is of an unknown kind".into())),
         })
     }
     pub(crate) fn history<const D: usize>(&mut self) -> Result<BodyHistory<D>, WorldError> {

@@ -1,45 +1,36 @@
-//! What changes in a scene while it runs: parameters that are set, bodies that are added. It is written down, so that a
-//! snapshot of a changed scene can be restored in a world of the scene as it was, and an earlier one in a changed world.
+//! What changes in a scene while it runs: parameters that are set. What they were at the start is kept, so that a snapshot of a
+//! changed scene, which says what differs from that, can be restored in a world of the scene as it was, and an earlier one in a
+//! changed world. That takes as much memory as the scene has parameters, however often they are set.
 
-use crate::blueprint::{Action, BodyBlueprint, Surroundings, Time};
+use crate::blueprint::{Surroundings, Time};
 use crate::build::build_colliders;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
 use crate::schema::MOST_SUBSTEPS;
+use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::spec::{Allowed, Value, Values, nearest};
 use std::collections::BTreeMap;
 
-/// One change, and what it takes to undo it.
-#[derive(Clone, Debug)]
-pub(crate) enum Change<const D: usize> {
-    /// A parameter was set.
-    Set { path: String, value: Value, before: Before<D> },
-    /// A body was added behind the others.
-    Added(Source),
-    /// A body was given other models or another integrator by the command of this number.
-    Became { command: usize, before: Before<D> },
+/// What of the scene has changed since the start, as it was then. What it has become stands in the blueprint.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AtStart<const D: usize> {
+    pub(crate) integrator: Option<Values>,
+    pub(crate) surroundings: Option<Surroundings<D>>,
+    pub(crate) time: Option<Time>,
+    pub(crate) colliders: BTreeMap<usize, Values>,
+    /// Models and integrators of bodies of the scene; a body that a command of it adds begins as the command says.
+    pub(crate) bodies: BTreeMap<usize, (Vec<Values>, Option<Values>)>,
 }
 
-impl<const D: usize> Change<D> {
-    /// The change as a snapshot tells it.
-    pub(crate) fn told(&self) -> Told {
-        match self {
-            Change::Set { path, value, .. } => Told::Set(path.clone(), value.clone()),
-            Change::Added(source) => Told::Added(*source),
-            Change::Became { command, .. } => Told::Became(*command),
-        }
-    }
-}
-
-/// Where an added body came from.
+/// Where an added body comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// A command, by its number.
     Command(usize),
-    /// A call of [`World::add_body`], by its number.
-    Program(usize),
+    /// A call of [`World::add_body`].
+    Program,
 }
 
 /// The part of the scene that a parameter belongs to, as it was.
@@ -72,11 +63,7 @@ impl<const D: usize> World<D> {
             self.follow(&touched)?;
             return Err(error);
         }
-        match self.changes.last_mut() {
-            // A slider sets one parameter many times: what it was at first is enough.
-            Some(Change::Set { path: last, value: kept, .. }) if last == path => *kept = value,
-            _ => self.changes.push(Change::Set { path: path.to_string(), value, before }),
-        }
+        self.keep_start(before);
         Ok(())
     }
 
@@ -277,65 +264,51 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Goes from the present changes of the scene to others, in the blueprint alone.
-    pub(crate) fn replay(&mut self, changes: Vec<Told>) -> Result<(), WorldError> {
-        while let Some(change) = self.changes.pop() {
-            match change {
-                Change::Set { before, .. } | Change::Became { before, .. } => self.undo(before),
-                Change::Added(_) => {
-                    self.blueprint.bodies.pop();
+    /// Keeps what a part of the scene was at the start, where it has changed for the first time.
+    pub(crate) fn keep_start(&mut self, before: Before<D>) {
+        let AtStart { integrator, surroundings, time, colliders, bodies } = &mut self.at_start;
+        match before {
+            Before::Integrator(values) => _ = integrator.get_or_insert(values),
+            Before::Surroundings(was) => _ = surroundings.get_or_insert(was),
+            Before::Time(was) => _ = time.get_or_insert(was),
+            Before::Collider(number, values) => _ = colliders.entry(number).or_insert(values),
+            Before::Models(changed) => {
+                for (body, models) in changed {
+                    let own = &self.blueprint.bodies[body].integrator;
+                    bodies.entry(body).or_insert_with(|| (models, own.clone()));
                 }
             }
-        }
-        self.alive = vec![true; self.blueprint.bodies.len()];
-        for change in changes {
-            match change {
-                Told::Set(path, value) => {
-                    let (before, _) = self.change(&path, value.clone())?;
-                    self.changes.push(Change::Set { path, value, before });
-                }
-                Told::Became(command) => {
-                    let Some(Action::Change { body, models, integrator }) =
-                        self.running.get(command).map(|running| running.command.action.clone())
-                    else {
-                        return Err(WorldError::Snapshot(
-                            "it holds a change of a body that no command here makes".into(),
-                        ));
-                    };
-                    if body >= self.blueprint.bodies.len() {
-                        return Err(WorldError::Snapshot("it changes a body that is not there".into()));
-                    }
-                    let before = self.exchange(body, models, integrator);
-                    self.changes.push(Change::Became { command, before });
-                }
-                Told::Added(source) => {
-                    let body = self.body_from(source).ok_or_else(|| {
-                        WorldError::Snapshot("it holds a body that a program added and that is not known here".into())
-                    })?;
-                    self.blueprint.bodies.push(body);
-                    self.alive.push(true);
-                    self.changes.push(Change::Added(source));
+            Before::OwnIntegrators(changed) => {
+                for (body, own) in changed {
+                    let models = &self.blueprint.bodies[body].models;
+                    bodies.entry(body).or_insert_with(|| (models.clone(), own));
                 }
             }
+            Before::Body { number, models, integrator } => {
+                bodies.entry(number).or_insert((models, integrator));
+            }
         }
-        Ok(())
+        // Bodies of the program are kept as they are.
+        bodies.retain(|body, _| self.slots.origin.get(*body) != Some(&Origin::Program));
     }
 
-    fn body_from(&self, source: Source) -> Option<BodyBlueprint<D>> {
-        match source {
-            Source::Command(number) => match &self.running.get(number)?.command.action {
-                Action::Add(body) => Some((**body).clone()),
-                _ => None,
-            },
-            Source::Program(number) => self.added.get(number).cloned(),
+    /// Takes the scene back to what it was at the start, in the blueprint alone.
+    pub(crate) fn undo_all(&mut self) {
+        let AtStart { integrator, surroundings, time, colliders, bodies } = std::mem::take(&mut self.at_start);
+        let scene = &mut self.blueprint;
+        scene.integrator = integrator.unwrap_or_else(|| scene.integrator.clone());
+        scene.surroundings = surroundings.unwrap_or(scene.surroundings);
+        scene.time = time.unwrap_or(scene.time);
+        for (number, values) in colliders {
+            scene.colliders[number].values = values;
         }
+        scene.bodies.truncate(self.slots.initial);
+        for (number, (models, own)) in bodies {
+            if let Some(body) = scene.bodies.get_mut(number) {
+                (body.models, body.integrator) = (models, own);
+            }
+        }
+        self.slots.truncate(self.slots.initial);
+        self.slots.alive.fill(true);
     }
-}
-
-/// A change as a snapshot tells it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Told {
-    Set(String, Value),
-    Added(Source),
-    Became(usize),
 }

@@ -6,6 +6,7 @@ use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::loads::{NodeForces, Pull};
 use crate::selection::longest_side;
+use crate::slots::Origin;
 use crate::world::World;
 use opruga_core::state::View;
 use opruga_core::system::{Pin, System};
@@ -38,6 +39,10 @@ pub(crate) struct Running<const D: usize> {
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
     /// Whether it was given by [`World::act`], and stands among those of the scene.
     pub(crate) acted: bool,
+    /// Whether it was given by [`World::command`]: it stands behind those of the scene, and nothing is kept of it once it is over.
+    pub(crate) given: bool,
+    /// The generation of the body that it adds, if it belongs to the scene.
+    pub(crate) generation: u64,
 }
 
 impl<const D: usize> Running<D> {
@@ -47,11 +52,17 @@ impl<const D: usize> Running<D> {
             Action::Drag { path, .. } => path.clone(),
             _ => Vec::new(),
         };
-        Running { command, progress: Progress::Waiting, path: Arc::new(RwLock::new(path)), acted: false }
+        let path = Arc::new(RwLock::new(path));
+        Running { command, progress: Progress::Waiting, path, acted: false, given: false, generation: 0 }
+    }
+    /// A command of the program.
+    pub(crate) fn given(command: CommandBlueprint<D>, progress: Progress<D>) -> Running<D> {
+        Running { given: true, progress, ..Running::waiting(command) }
     }
     /// The same command before its time has come.
     pub(crate) fn anew(&self) -> Running<D> {
-        Running { acted: self.acted, ..Running::waiting(self.command.clone()) }
+        let Running { acted, given, generation, .. } = *self;
+        Running { acted, given, generation, ..Running::waiting(self.command.clone()) }
     }
 }
 
@@ -99,12 +110,13 @@ impl<const D: usize> World<D> {
 
     pub(crate) fn command_here(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
-            && !self.alive.get(body).copied().unwrap_or(false)
+            && !self.slots.is_there(body)
         {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
         }
+        crate::validity::given(&command)?;
         self.write_down(|| Input::Command(command.clone()));
-        self.running.push(Running::waiting(command));
+        self.running.push(Running::given(command, Progress::Waiting));
         Ok(())
     }
 
@@ -114,14 +126,18 @@ impl<const D: usize> World<D> {
             let message = format!("the command begins at {at} s, and the world is at {now} s");
             return Err(WorldError::Path { path: "at".into(), message });
         }
+        crate::validity::given(&command)?;
         self.run_commands()?;
         self.write_down(|| Input::Act);
         // Where a reader of the scene puts it: in the order of time, behind those that begin with it.
-        let number = self.running.iter().rposition(|r| r.command.at <= at).map_or(0, |last| last + 1);
-        self.running.insert(number, Running { acted: true, ..Running::waiting(command) });
+        let number = self.running.iter().rposition(|r| !r.given && r.command.at <= at).map_or(0, |last| last + 1);
+        let generation = self.slots.next_of_act();
+        self.running.insert(number, Running { acted: true, generation, ..Running::waiting(command) });
+        self.renumber(number, 1);
         let outcome = self.begin(number).and_then(|body| self.rebuild(&body.into_iter().collect()));
         if let Err(error) = outcome {
             self.running.remove(number);
+            self.renumber(number, -1);
             return Err(error);
         }
         Ok(number)
@@ -191,7 +207,24 @@ impl<const D: usize> World<D> {
             }
         }
         self.rebuild(&touched)?;
+        self.forget_commands();
         failed
+    }
+
+    /// Forgets commands of the program that are over.
+    pub(crate) fn forget_commands(&mut self) {
+        self.running.retain(|running| !running.given || running.progress != Progress::Done);
+    }
+
+    /// Bodies that commands of the scene have added know those by their numbers, which move where one is put between.
+    fn renumber(&mut self, from: usize, by: isize) {
+        for origin in &mut self.slots.origin {
+            if let Origin::Command(number) = origin
+                && *number >= from
+            {
+                *number = number.saturating_add_signed(by);
+            }
+        }
     }
 
     /// Begins a command; the body on which it acts from now on.
@@ -230,7 +263,7 @@ impl<const D: usize> World<D> {
             }
             Action::Change { body, models, integrator } => {
                 self.running[number].progress = Progress::Done;
-                self.become_other(number, *body, models.clone(), integrator.clone())?;
+                self.become_other(*body, models.clone(), integrator.clone())?;
                 return Ok(None);
             }
             Action::Add(body) => {
@@ -326,8 +359,8 @@ impl<const D: usize> World<D> {
                 _ => {}
             }
         }
-        for (body, law) in &self.user_forces {
-            if let Some(lane) = bodies.iter().position(|b| b == body) {
+        for (handle, law) in self.user_forces.iter().filter(|(handle, _)| self.slots.is_of(*handle)) {
+            if let Some(lane) = bodies.iter().position(|b| *b == handle.index) {
                 let system = &mut self.islands[island].system;
                 let layout = system.layout;
                 system.add(Box::new(crate::loads::UserForce { law: Arc::clone(law), layout, body: lane }));

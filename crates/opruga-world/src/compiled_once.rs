@@ -118,8 +118,11 @@ macro_rules! doers {
 impl<const D: usize> World<D> {
     /// Builds a world from a blueprint with the models and integrators of this library.
     ///
+    /// A blueprint that a program has made keeps to what a scene file could say: see [`crate::validity`]. Commands are an exception:
+    /// whether their body is there is seen when they begin.
+    ///
     /// # Errors
-    /// [`WorldError`] where a model or obstacle refuses, or the step is unstable.
+    /// [`WorldError`] where the blueprint holds what no scene could say, a model or obstacle refuses, or the step is unstable.
     pub fn new(blueprint: Blueprint<D>, options: Options) -> Result<World<D>, WorldError> {
         World::with_registry(blueprint, options, Arc::new(Registry::default()))
     }
@@ -134,9 +137,11 @@ impl<const D: usize> World<D> {
         registry: Arc<Registry<D>>,
     ) -> Result<World<D>, WorldError> {
         fn plane(b: Blueprint<2>, o: Options, r: Arc<Registry<2>>) -> Result<World<2>, WorldError> {
+            crate::validity::blueprint(&b)?;
             World::build(b, o, r)
         }
         fn space(b: Blueprint<3>, o: Options, r: Arc<Registry<3>>) -> Result<World<3>, WorldError> {
+            crate::validity::blueprint(&b)?;
             World::build(b, o, r)
         }
         if D == 2 {
@@ -255,10 +260,10 @@ impl<const D: usize> World<D> {
         /// [`WorldError`] says what is wrong; the world stays as it was.
         pub fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError> = set_here;
 
-        /// Gives a command; it begins at its time, at the beginning of a frame.
+        /// Gives a command; it begins at its time, at the beginning of a frame. Once it is over nothing is kept of it.
         ///
         /// # Errors
-        /// [`WorldError::Path`] if it names a body that is not there.
+        /// [`WorldError`] if it names a body that is not there, or holds what no command of a scene could.
         pub fn command(&mut self, command @ CommandBlueprint<D>) -> Result<(), WorldError> = command_here;
 
         /// Gives a command that begins now, as if the scene had held it from the start; returns its number.
@@ -296,10 +301,11 @@ impl<const D: usize> World<D> {
         /// Those of the call that it stands for; the world stays as it was.
         pub fn repeat(&mut self, input & Input<D>) -> Result<(), WorldError> = repeat_here;
 
-        /// Adds a body; returns its number.
+        /// Adds a body; returns its number. Once it was removed nothing is kept of it, and its number may be given to another body
+        /// that the program adds: [`World::handle`] tells one from the other.
         ///
         /// # Errors
-        /// [`WorldError`] if its name is taken or a model refuses; the world stays as it was.
+        /// [`WorldError`] if its name is taken, it is none that a scene could hold, or a model refuses; the world stays as it was.
         pub fn add_body(&mut self, body @ BodyBlueprint<D>) -> Result<usize, WorldError> = add_body_here;
 
         /// Takes a body away.
@@ -316,7 +322,8 @@ impl<const D: usize> World<D> {
         /// The pressure [Pa] of the gas that each node of a body bounds, chamber by chamber; empty where there is no gas.
         pub fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)> = node_pressures_here;
 
-        /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there.
+        /// The values of a probe now: names of columns and numbers, which are NaN while its body is not there. Empty where there is no
+        /// probe of that number.
         pub fn probe(&mut self, number: usize) -> Vec<(String, f64)> = probe_here;
 
         /// The forces of the models of one account on the nodes of a body [N]; none: of all models, gravity included.
@@ -331,18 +338,16 @@ impl<const D: usize> World<D> {
         /// Empty where the body is not there, there are no obstacles, or a model refuses the state.
         pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> = contact_forces_here;
 
-        /// The sum of the forces that pins exert on nodes [N].
+        /// The sum of the forces that pins exert on nodes [N]; NaN where there is no such body, or one of the nodes is not there.
         pub fn reaction(&mut self, body: usize, nodes: &[u32]) -> [f64; D] = reaction_here;
 
-        /// Goes to the state of a snapshot of a world with the same blueprint. Commands that a program has given since then are
-        /// forgotten.
+        /// Goes to the state of a snapshot of a world with the same blueprint. Bodies that a program had added and commands that it had
+        /// given come back with it; those of since then are forgotten, and handles of them are stale. Laws of force of the
+        /// program are no part of a snapshot: a body that comes back lacks its law, and a warning (`restore.no_force`) says so.
         ///
         /// # Errors
         /// [`WorldError::Snapshot`] if the bytes belong to another scene or are damaged; the world stays as it was.
         pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> = restore_here;
-
-        /// [`World::restore_with`].
-        pub(crate) fn restore_given(&mut self, bytes: &[u8], given @ Vec<CommandBlueprint<D>>) -> Result<(), WorldError> = restore_given_here;
 
         /// Goes to the state of a snapshot of a world whose commands up to then were the same: those that had not begun may
         /// be others, and more or fewer.

@@ -126,8 +126,7 @@ impl<const D: usize> World<D> {
     pub(crate) fn frame_hash_here(&self) -> u64 {
         let hash = |system: &System<D>| system.simd.run(OfBodies(system));
         let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();
-        let there = (0..self.alive.len()).filter(|body| self.alive[*body]);
-        there.fold(0, |hash, body| {
+        self.bodies().fold(0, |hash, body| {
             let (island, lane) = self.place[body];
             join(hash, of_islands[island][lane])
         })

@@ -163,7 +163,7 @@ fn unknown() -> WorldError {
 }
 
 /// False for what cannot be written.
-fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> bool {
+pub(crate) fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> bool {
     match action {
         Action::Drag { body, node, facet, stiffness, path, largest_force } => {
             out.count(0);
@@ -206,7 +206,7 @@ fn write_action<const D: usize>(out: &mut Writer<'_>, action: &Action<D>) -> boo
     true
 }
 
-fn read_action<const D: usize>(reader: &mut Reader<'_>) -> Result<Action<D>, WorldError> {
+pub(crate) fn read_action<const D: usize>(reader: &mut Reader<'_>) -> Result<Action<D>, WorldError> {
     Ok(match reader.count()? {
         0 => {
             let body = reader.count()? as usize;
@@ -239,7 +239,7 @@ fn read_action<const D: usize>(reader: &mut Reader<'_>) -> Result<Action<D>, Wor
     })
 }
 
-fn write_selector<const D: usize>(out: &mut Writer<'_>, select: &Selector<D>) {
+pub(crate) fn write_selector<const D: usize>(out: &mut Writer<'_>, select: &Selector<D>) {
     let sets = |out: &mut Writer<'_>, kind: u64, sets: &[Selector<D>]| {
         out.count(kind);
         out.count(sets.len() as u64);
@@ -282,7 +282,7 @@ fn write_selector<const D: usize>(out: &mut Writer<'_>, select: &Selector<D>) {
 /// How deep sets may be nested.
 const DEEPEST: u32 = 128;
 
-fn read_selector<const D: usize>(reader: &mut Reader<'_>, depth: u32) -> Result<Selector<D>, WorldError> {
+pub(crate) fn read_selector<const D: usize>(reader: &mut Reader<'_>, depth: u32) -> Result<Selector<D>, WorldError> {
     if depth > DEEPEST {
         return Err(unknown());
     }

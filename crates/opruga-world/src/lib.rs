@@ -1,6 +1,8 @@
 //! Worlds of Opruga: bodies, obstacles, time, commands and what can be read of them.
 
 pub mod blueprint;
+mod body_bytes;
+mod body_view;
 mod build;
 mod bytes;
 mod carried;
@@ -27,13 +29,17 @@ mod problems;
 mod readings;
 mod rebuild;
 pub mod registry;
+mod scene_delta;
 pub mod schema;
 pub mod selection;
 pub mod shapes;
+mod slots;
 mod snapshot;
 mod stability;
+pub mod validity;
 mod world;
 
+pub use body_view::BodyView;
 pub use error::WorldError;
 pub use inputs::Input;
 pub use ledger::{Energy, Momentum};
@@ -46,4 +52,5 @@ pub mod law {
     pub use opruga_models::fem::{AtPoint, SPEC, in_plane, in_space, own_fields};
 }
 pub use registry::Registry;
-pub use world::{BodyHandle, Options, Warning, World};
+pub use slots::BodyHandle;
+pub use world::{Options, Warning, World};

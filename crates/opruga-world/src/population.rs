@@ -1,50 +1,101 @@
 //! Bodies come and go.
 
 use crate::blueprint::{Action, BodyBlueprint};
-use crate::changes::{Before, Change, Source};
+use crate::changes::{Before, Source};
 use crate::commands::Progress;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::rebuild::Touched;
+use crate::slots::Origin;
 use crate::world::{Warning, World};
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
 
+/// So many bodies whose commands ended with them are named in warnings; the commands of all others are counted together.
+const MOST_NAMED: usize = 16;
+
 impl<const D: usize> World<D> {
     pub(crate) fn add_body_here(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
-        let kept = body.clone();
-        let number = self.include(body, Source::Program(self.added.len()))?;
-        self.write_down(|| Input::Add { name: kept.name.clone() });
-        self.added.push(kept);
+        let name = body.name.clone();
+        let number = self.include(body, Source::Program)?;
+        self.write_down(|| Input::Add { name });
         Ok(number)
+    }
+
+    /// The place that an added body takes.
+    fn place_for(&self, body: &BodyBlueprint<D>, source: Source) -> usize {
+        let origins = || self.slots.origin.iter().enumerate().skip(self.slots.initial);
+        let end = self.slots.len();
+        match source {
+            // Commands of the scene name the bodies that others of them add by the numbers behind those at the start.
+            Source::Command(_) => {
+                origins().find(|(_, origin)| **origin == Origin::Reserved).map_or(end, |(place, _)| place)
+            }
+            Source::Program => {
+                let free = |(place, origin): (usize, &Origin)| match origin {
+                    Origin::Free(like) => Some((place, *like)),
+                    _ => None,
+                };
+                // Rather beside bodies like it, where a batch keeps a seat.
+                let beside = |(_, like): &(usize, Option<usize>)| {
+                    like.is_some_and(|other| crate::build::alike(&self.blueprint.bodies[other], body))
+                };
+                let found = origins().filter_map(free).find(beside).or_else(|| origins().find_map(free));
+                found.map_or(end, |(place, _)| place)
+            }
+        }
     }
 
     pub(crate) fn include(&mut self, body: BodyBlueprint<D>, source: Source) -> Result<usize, WorldError> {
         if self.body(&body.name).is_some() {
             return Err(WorldError::Path { path: body.name, message: "the name is taken".into() });
         }
+        crate::validity::body(&body)?;
         crate::memory::check(std::slice::from_ref(&body), &*self.integrator, &self.registry, self.options.most_bytes)?;
-        let number = self.blueprint.bodies.len();
+        if source == Source::Program {
+            // Places of bodies that the scene is yet to add stay theirs.
+            let coming = self.blueprint.commands.iter().filter(|c| matches!(c.action, Action::Add(_))).count();
+            if coming > 0 {
+                self.reserve(self.slots.initial + coming - 1, Origin::Reserved);
+            }
+        }
+        let number = self.place_for(&body, source);
         let fresh = BTreeMap::from([(number, crate::build::initial_state(&body))]);
-        self.blueprint.bodies.push(body);
-        self.alive.push(true);
-        self.generation.push(0);
+        let kept = self.slots.clone();
+        let (origin, generation) = match source {
+            Source::Command(command) => match self.running.get(command) {
+                Some(running) if !running.given => (Origin::Command(command), running.generation),
+                _ => (Origin::Program, self.slots.next_of_program()),
+            },
+            Source::Program => (Origin::Program, self.slots.next_of_program()),
+        };
+        self.slots.put(number, origin, generation);
+        let before = if number == self.blueprint.bodies.len() {
+            self.blueprint.bodies.push(body);
+            None
+        } else {
+            Some(std::mem::replace(&mut self.blueprint.bodies[number], body))
+        };
         let outcome = self.regroup(&Touched::Bodies(Vec::new()), &fresh).and_then(|()| self.check_stability());
         if let Err(error) = outcome {
-            self.blueprint.bodies.pop();
-            self.alive.pop();
-            self.generation.pop();
+            let next = self.slots.next;
+            self.slots = kept;
+            self.slots.next = next;
+            match before {
+                Some(nobody) => self.blueprint.bodies[number] = nobody,
+                None => _ = self.blueprint.bodies.pop(),
+            }
             self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new())?;
             self.check_stability()?;
             return Err(error);
         }
-        self.changes.push(Change::Added(source));
         Ok(number)
     }
 
     pub(crate) fn remove_body_here(&mut self, name: &str) -> Result<(), WorldError> {
         self.remove_now(name)?;
+        self.forget_commands();
         self.write_down(|| Input::Remove { name: name.to_string() });
         Ok(())
     }
@@ -61,7 +112,6 @@ impl<const D: usize> World<D> {
     /// the first of its kind, and a kind that the body did not have begins as at the start of a scene.
     pub(crate) fn become_other(
         &mut self,
-        command: usize,
         body: usize,
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
@@ -83,7 +133,7 @@ impl<const D: usize> World<D> {
             self.check_stability()?;
             return Err(error);
         }
-        self.changes.push(Change::Became { command, before });
+        self.keep_start(before);
         Ok(())
     }
 
@@ -102,26 +152,40 @@ impl<const D: usize> World<D> {
     }
 
     fn take_away(&mut self, bodies: &[usize]) -> Result<(), WorldError> {
-        let kept = (self.alive.clone(), self.generation.clone(), self.running.clone(), self.warnings.clone());
+        let kept = (self.slots.clone(), self.running.clone(), self.warnings.clone());
         for &body in bodies {
-            self.alive[body] = false;
-            self.generation[body] += 1;
+            self.slots.alive[body] = false;
             let mut dropped = 0;
             for running in self.running.iter_mut().filter(|r| r.command.action.body() == Some(body)) {
                 dropped += u64::from(running.progress != Progress::Done);
                 running.progress = Progress::Done;
             }
             if dropped > 0 {
-                let name = &self.blueprint.bodies[body].name;
-                let message = format!("commands on body `{name}` ended when it was taken away");
-                self.warnings.push(Warning { code: "command.no_body".into(), message, count: dropped });
+                self.warn_of_ended_commands(body, dropped);
             }
         }
         let outcome = self.regroup(&Touched::Bodies(Vec::new()), &BTreeMap::new());
-        if outcome.is_err() {
-            (self.alive, self.generation, self.running, self.warnings) = kept;
+        match &outcome {
+            Ok(()) => self.free_places(),
+            Err(_) => (self.slots, self.running, self.warnings) = kept,
         }
         outcome
+    }
+
+    fn warn_of_ended_commands(&mut self, body: usize, dropped: u64) {
+        const CODE: &str = "command.no_body";
+        let told = self.warnings.iter().filter(|w| w.code == CODE).count();
+        let message = match told {
+            ..MOST_NAMED => {
+                let name = &self.blueprint.bodies[body].name;
+                format!("commands on body `{name}` ended when it was taken away")
+            }
+            _ => "commands on other bodies ended when these were taken away".into(),
+        };
+        match self.warnings.iter_mut().find(|w| w.code == CODE && w.message == message) {
+            Some(warning) => warning.count += dropped,
+            None => self.warnings.push(Warning { code: CODE.into(), message, count: dropped }),
+        }
     }
 
     /// Takes bodies away that lie wholly beyond `world.largest_distance`.
@@ -145,6 +209,7 @@ impl<const D: usize> World<D> {
             return Ok(());
         }
         self.take_away(&gone)?;
+        self.forget_commands();
         self.flows.lost_bodies += gone.len() as u64;
         Ok(())
     }

@@ -48,6 +48,10 @@ impl<const D: usize> World<D> {
             }
             let loads = blueprint.loads.iter().filter(|l| l.body == number);
             let loads = loads.map(|l| LoadBlueprint { body: 0, ..l.clone() }).collect();
+            // A pin that selects what is not there holds nothing. Who reads a scene has said so at its line.
+            let mut body = body.clone();
+            body.pins = body.pins.iter().filter(|pin| pin.select.fault(&body).is_none()).cloned().collect();
+            let body = &body;
             // With the obstacles, which may hold it.
             let Some(first) = refused(part(vec![body.clone()], obstacles.clone(), loads)) else { continue };
             if !all_obstacles && first.code().starts_with("static.") {

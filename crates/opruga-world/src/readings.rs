@@ -4,12 +4,13 @@ use crate::blueprint::Recorded;
 use crate::build::rest_volume;
 use crate::island::Island;
 use crate::ledger::{Energy, Momentum};
-use crate::world::{BodyHandle, Warning, World, lock};
+use crate::slots::BodyHandle;
+use crate::world::{Warning, World, lock};
 use opruga_core::contacts::{Contacts, Moved};
 use opruga_core::potential::{Account, CellState, Count, Reading};
 use opruga_core::stability::Stability;
 use opruga_core::state::Columns;
-use opruga_core::system::{SolverWork, Stage};
+use opruga_core::system::{SolverWork, Stage, System};
 use opruga_integrators::accelerations;
 use opruga_math::WIDTH;
 use opruga_math::words::number;
@@ -59,42 +60,42 @@ impl<const D: usize> World<D> {
     }
     /// Numbers of the bodies that are there.
     pub fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.alive.len()).filter(|b| self.alive[*b])
+        (0..self.slots.len()).filter(|body| self.slots.alive[*body])
     }
     /// The number of a body by its name.
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies().find(|b| self.blueprint.bodies[*b].name == name)
     }
-    /// A handle of a body that tells when the body is gone.
+    /// A handle of a body, which tells when the body is gone: its number may be given to another one that the program adds.
     pub fn handle(&self, body: usize) -> Option<BodyHandle> {
-        let alive = self.alive.get(body).copied().unwrap_or(false);
-        alive.then(|| BodyHandle { index: body, generation: self.generation[body] })
+        self.slots.handle(body)
     }
-    /// The body of a handle, or none if it was removed.
-    pub fn resolve(&self, handle: BodyHandle) -> Option<usize> {
-        (self.handle(handle.index) == Some(handle)).then_some(handle.index)
+    /// The island of a body that is there, and its lane in it.
+    fn island_of_body(&self, body: usize) -> Option<(&Island<D>, usize)> {
+        let (island, lane) = *self.place.get(body).filter(|_| self.slots.is_there(body))?;
+        Some((self.islands.get(island)?, lane))
     }
-    /// The number of nodes of a body.
+    /// The system of a body that is there, and the index of one of its nodes in the columns.
+    fn index_of(&self, body: usize, node: u32) -> Option<(&System<D>, usize)> {
+        let (island, lane) = self.island_of_body(body)?;
+        let system = &island.system;
+        ((node as usize) < system.nodes).then(|| (system, system.layout.place(node as usize, lane)))
+    }
+    /// The number of nodes of a body; 0 where there is no such body.
     pub fn node_count(&self, body: usize) -> usize {
-        self.blueprint.bodies[body].mesh.positions.len()
+        self.island_of_body(body).map_or(0, |(island, _)| island.system.nodes)
     }
-    /// The position of a node [m].
+    /// The position of a node [m]; NaN where there is no such body or node. [`World::view`] says which.
     pub fn position(&self, body: usize, node: u32) -> [f64; D] {
-        let (island, lane) = self.place[body];
-        let system = &self.islands[island].system;
-        system.state.x.at(system.layout.place(node as usize, lane))
+        self.index_of(body, node).map_or([f64::NAN; D], |(system, index)| system.state.x.at(index))
     }
-    /// The velocity of a node [m/s].
+    /// The velocity of a node [m/s]; NaN where there is no such body or node.
     pub fn velocity(&self, body: usize, node: u32) -> [f64; D] {
-        let (island, lane) = self.place[body];
-        let system = &self.islands[island].system;
-        system.state.v.at(system.layout.place(node as usize, lane))
+        self.index_of(body, node).map_or([f64::NAN; D], |(system, index)| system.state.v.at(index))
     }
-    /// The mass of a node [kg].
+    /// The mass of a node [kg]; NaN where there is no such body or node.
     pub fn node_mass(&self, body: usize, node: u32) -> f64 {
-        let (island, lane) = self.place[body];
-        let system = &self.islands[island].system;
-        system.mass.at(system.layout.place(node as usize, lane))
+        self.index_of(body, node).map_or(f64::NAN, |(system, index)| system.mass.at(index))
     }
     pub(crate) fn readings_here(&mut self, body: usize) -> Vec<Reading> {
         if self.handle(body).is_none() {
@@ -124,12 +125,12 @@ impl<const D: usize> World<D> {
         out.sort_by_key(|state| state.cell);
         out
     }
-    /// The enclosed volume of a body at rest [m³] (area times thickness in 2D).
+    /// The enclosed volume of a body at rest [m³] (area times thickness in 2D); NaN where there is no such body.
     pub fn rest_volume(&self, body: usize) -> f64 {
-        rest_volume(&self.blueprint.bodies[body])
+        if self.slots.is_there(body) { rest_volume(&self.blueprint.bodies[body]) } else { f64::NAN }
     }
     pub(crate) fn probe_here(&mut self, number: usize) -> Vec<(String, f64)> {
-        let probe = self.blueprint.probes[number].clone();
+        let Some(probe) = self.blueprint.probes.get(number).cloned() else { return Vec::new() };
         let there = self.handle(probe.body).is_some();
         let nodes = if there { self.selected(probe.body, &probe.select) } else { Vec::new() };
         let mut out = Vec::new();
@@ -240,6 +241,10 @@ impl<const D: usize> World<D> {
         (0..system.nodes).map(|node| force(layout.place(node, lane))).collect()
     }
     pub(crate) fn reaction_here(&mut self, body: usize, nodes: &[u32]) -> [f64; D] {
+        let count = self.node_count(body);
+        if !self.slots.is_there(body) || nodes.iter().any(|node| *node as usize >= count) {
+            return [f64::NAN; D];
+        }
         let (island, lane) = self.place[body];
         let still = self.islands[island].integrator.is_static();
         let frame = self.blueprint.time.frame;
@@ -369,6 +374,11 @@ impl<const D: usize> World<D> {
             solver.disturbed,
         );
         count("step.odd_rest", &self.odd_rest(), solver.odd_rests);
+        count(
+            "restore.no_force",
+            "a snapshot holds no laws of force of the program, and a body had one: give it again (`World::add_force`)",
+            self.missing_laws(),
+        );
         let (unloaded, left) = self.load_left();
         count("statics.load_left", &left, unloaded);
         let mut counts: Vec<Count> = Vec::new();
@@ -386,6 +396,16 @@ impl<const D: usize> World<D> {
             count(code, message, n);
         }
         out
+    }
+    /// How many laws of force of the program act on a body.
+    pub(crate) fn laws_on(&self, body: usize) -> u64 {
+        let own = |(handle, _): &&(BodyHandle, _)| handle.index == body && self.slots.is_of(*handle);
+        self.user_forces.iter().filter(own).count() as u64
+    }
+    /// How many laws of force of the program acted on bodies when the snapshot was taken that was restored last, and do not now.
+    fn missing_laws(&self) -> u64 {
+        let there = self.laws_saved.iter().filter(|(body, _)| self.slots.is_there(**body));
+        there.map(|(body, saved)| saved.saturating_sub(self.laws_on(*body))).sum()
     }
     /// At the end: how many bodies stand in balance under a part of their load only, and which of them under the least.
     fn load_left(&self) -> (u64, String) {
@@ -419,7 +439,7 @@ impl<const D: usize> World<D> {
             return String::new();
         }
         let mut worst: Option<(f64, String)> = None;
-        for body in (0..self.alive.len()).filter(|body| self.alive[*body]) {
+        for body in self.bodies() {
             for cell in self.cell_states_here(body) {
                 let odd = (cell.smallest_volume_ratio - 1.0).abs();
                 if worst.as_ref().is_none_or(|(most, _)| odd > *most) {
@@ -446,10 +466,7 @@ impl<const D: usize> World<D> {
             }
         };
         for velocities in [false, true] {
-            for body in 0..self.alive.len() {
-                if !self.alive[body] {
-                    continue;
-                }
+            for body in self.bodies() {
                 for node in 0..self.node_count(body) as u32 {
                     let value = if velocities { self.velocity(body, node) } else { self.position(body, node) };
                     value.into_iter().for_each(&mut feed);

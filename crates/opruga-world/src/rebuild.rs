@@ -57,7 +57,7 @@ impl<const D: usize> World<D> {
     ///
     /// On failure the old islands stay.
     pub(crate) fn rebuild(&mut self, bodies: &BTreeSet<usize>) -> Result<(), WorldError> {
-        let there = bodies.iter().filter(|b| self.alive[**b]);
+        let there = bodies.iter().filter(|b| self.slots.is_there(**b));
         let numbers: BTreeSet<usize> = there.map(|b| self.place[*b].0).collect();
         if numbers.is_empty() {
             return Ok(());
@@ -87,7 +87,7 @@ impl<const D: usize> World<D> {
         let before = self.stock_energy();
         let integrator: Arc<_> =
             build_integrator(&self.registry, &self.blueprint.integrator, || "integrator".into())?.into();
-        let groups = group(&self.blueprint.bodies, &self.alive, |body| self.batches(body));
+        let groups = group(&self.blueprint.bodies, &self.slots, |body| self.batches(body));
         // For every group its old island, or one that is new.
         let mut found: Vec<Result<usize, Box<Island<D>>>> = Vec::with_capacity(groups.len());
         for members in &groups {

@@ -1,13 +1,13 @@
 //! The whole state of a world in bytes, and back.
 
-use crate::blueprint::CommandBlueprint;
+use crate::blueprint::Action;
 use crate::bytes::{Reader, Writer};
 use crate::carried::BodyState;
-use crate::changes::{Change, Source, Told};
 use crate::commands::{Progress, Running};
 use crate::error::WorldError;
 use crate::ledger::Flows;
 use crate::rebuild::Touched;
+use crate::slots::{ACTED, Origin};
 use crate::world::World;
 use opruga_core::system::SolverWork;
 use opruga_math::WIDTH;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-const VERSION: u64 = 7;
+const VERSION: u64 = 8;
 
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, what models remember, how far commands have come, the ledger.
@@ -32,30 +32,12 @@ impl<const D: usize> World<D> {
         out.count(VERSION);
         out.count(D as u64);
         out.count(self.frames);
-        out.count(self.changes.len() as u64);
-        for change in &self.changes {
-            match change {
-                Change::Set { path, value, .. } => {
-                    out.count(0);
-                    out.text(path);
-                    out.value(value);
-                }
-                Change::Added(Source::Command(number)) => {
-                    out.count(1);
-                    out.count(*number as u64);
-                }
-                Change::Added(Source::Program(number)) => {
-                    out.count(2);
-                    out.count(*number as u64);
-                }
-                Change::Became { command, .. } => {
-                    out.count(3);
-                    out.count(*command as u64);
-                }
-            }
-        }
-        out.count(self.alive.len() as u64);
-        for (body, alive) in self.alive.iter().enumerate() {
+        let mut delta = Vec::new();
+        self.write_delta(&mut Writer(&mut delta));
+        out.bytes(&delta);
+        out.count(self.slots.next);
+        out.count(self.slots.len() as u64);
+        for (body, alive) in self.slots.alive.iter().enumerate() {
             out.count(u64::from(*alive));
             if !alive {
                 continue;
@@ -75,24 +57,22 @@ impl<const D: usize> World<D> {
             out.count(system.history.columns.len() as u64);
             system.history.columns.iter().for_each(|columns| out.columns(columns, system, lane));
             out.numbers(&system.history.numbers);
+            out.count(self.laws_on(body));
         }
-        out.count(self.running.len() as u64);
-        for running in &self.running {
+        let of_scene = self.running.iter().filter(|running| !running.given);
+        out.count(of_scene.clone().count() as u64);
+        for running in of_scene {
             match &running.progress {
-                Progress::Waiting => out.count(0),
                 // It ended before it began, with its body: that follows from what is there.
                 Progress::Done if running.command.at > self.time() => out.count(0),
-                Progress::Done => out.count(1),
-                Progress::Acting { held, anchors } => {
-                    out.count(2);
-                    out.count(held.len() as u64);
-                    for (node, share) in held {
-                        out.count(u64::from(*node));
-                        out.number(*share);
-                    }
-                    out.vectors(anchors);
-                }
+                progress => write_progress(&mut out, progress),
             }
+        }
+        let given = self.running.iter().filter(|running| running.given && running.progress != Progress::Done);
+        out.count(given.clone().count() as u64);
+        for running in given {
+            out.command(&running.command);
+            write_progress(&mut out, &running.progress);
         }
         let f = &self.flows;
         for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.changed, f.largest] {
@@ -113,53 +93,35 @@ impl<const D: usize> World<D> {
     }
 
     pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let commands = self.running.iter().map(Running::anew).collect();
-        self.restored(bytes, commands, false)
-    }
-
-    /// Goes to the state of a snapshot of a world with the same blueprint to which a program had given these commands, or
-    /// the first of them.
-    ///
-    /// # Errors
-    /// As [`World::restore`].
-    pub fn restore_with(&mut self, bytes: &[u8], given: &[CommandBlueprint<D>]) -> Result<(), WorldError> {
-        self.restore_given(bytes, given.to_vec())
-    }
-
-    pub(crate) fn restore_given_here(
-        &mut self,
-        bytes: &[u8],
-        given: Vec<CommandBlueprint<D>>,
-    ) -> Result<(), WorldError> {
-        let commands = self.blueprint.commands.iter().cloned().chain(given).map(Running::waiting).collect();
-        self.restored(bytes, commands, false)
+        self.restored(bytes, false)
     }
 
     pub(crate) fn rewind_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
-        let commands = self.running.iter().map(Running::anew).collect();
-        self.restored(bytes, commands, true)
+        self.restored(bytes, true)
     }
 
-    fn restored(&mut self, bytes: &[u8], commands: Vec<Running<D>>, other_future: bool) -> Result<(), WorldError> {
+    fn restored(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
+        // Those that the program had given are in the snapshot.
+        let commands: Vec<Running<D>> = self.running.iter().filter(|r| !r.given).map(Running::anew).collect();
         if self.go_to_alike(bytes, &commands, other_future)? {
             return Ok(());
         }
-        let kept = (self.blueprint.clone(), self.changes.clone(), self.colliders.clone(), self.running.clone());
-        let bodies = (self.alive.clone(), self.generation.clone(), self.frames, self.flows);
+        let kept = (self.blueprint.clone(), self.at_start.clone(), self.colliders.clone(), self.running.clone());
+        let bodies = (self.slots.clone(), self.frames, self.flows);
         let islands =
             (std::mem::take(&mut self.islands), std::mem::take(&mut self.place), Arc::clone(&self.integrator));
         let outcome = self.go_to(bytes, &commands, other_future);
         if outcome.is_err() {
-            (self.blueprint, self.changes, self.colliders, self.running) = kept;
-            (self.alive, self.generation, self.frames, self.flows) = bodies;
+            (self.blueprint, self.at_start, self.colliders, self.running) = kept;
+            (self.slots, self.frames, self.flows) = bodies;
             (self.islands, self.place, self.integrator) = islands;
             self.refresh_ledger();
         }
         outcome
     }
 
-    /// What a snapshot says before its bodies: frames, and what had changed in the scene.
-    fn read_head(reader: &mut Reader<'_>) -> Result<(u64, Vec<Told>), WorldError> {
+    /// What a snapshot says before its bodies: frames, and how the scene differs from that at the start.
+    fn read_head<'b>(reader: &mut Reader<'b>) -> Result<(u64, &'b [u8]), WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
         if reader.count()? != VERSION {
             return refuse(&format!("its version is not {VERSION}"));
@@ -167,9 +129,7 @@ impl<const D: usize> World<D> {
         if reader.count()? != D as u64 {
             return refuse("it has another dimension");
         }
-        let frames = reader.count()?;
-        let changes = reader.length()?;
-        Ok((frames, (0..changes).map(|_| reader.change()).collect::<Result<_, _>>()?))
+        Ok((reader.count()?, reader.bytes()?))
     }
 
     /// What a snapshot says of the bodies of the blueprint, the commands, and the ledger; those are known, and
@@ -181,14 +141,22 @@ impl<const D: usize> World<D> {
         other_future: bool,
     ) -> Result<Rest<D>, WorldError> {
         let refuse = |message: &str| Err(WorldError::Snapshot(message.into()));
+        let mut rest = Rest { next: reader.count()?, ..Rest::default() };
         if reader.count()? != self.blueprint.bodies.len() as u64 {
             return refuse("it has another number of bodies");
         }
-        let mut rest = Rest::default();
         for (number, body) in self.blueprint.bodies.iter().enumerate() {
             rest.alive.push(reader.count()? == 1);
+            let origin = self.slots.origin[number];
+            if rest.alive[number] && !origin.is_taken() || !rest.alive[number] && origin == Origin::Program {
+                return refuse("a body is where it cannot be");
+            }
             if !rest.alive[number] {
                 continue;
+            }
+            let generation = self.slots.generation[number];
+            if origin == Origin::Program && generation >= rest.next || rest.next >= ACTED {
+                return refuse("a body has the generation of one to come");
             }
             let x = reader.vectors::<D>()?;
             let v = reader.vectors::<D>()?;
@@ -208,28 +176,17 @@ impl<const D: usize> World<D> {
                 return refuse(&format!("body `{}` has another shape", body.name));
             }
             rest.states.insert(number, BodyState { x, v, memory, history });
+            let laws = reader.count()?;
+            if laws > 0 {
+                rest.laws.insert(number, laws);
+            }
         }
         let count = reader.length()?;
-        // Commands of a program may have come later, where they stand behind those of the scene and not among them.
-        let acted = commands.iter().any(|known| known.acted);
-        let least = if acted { commands.len() } else { self.blueprint.commands.len() };
-        if !other_future && !(least..=commands.len()).contains(&count) {
+        if !other_future && count != commands.len() {
             return refuse("it has another number of commands");
         }
         for _ in 0..count {
-            rest.progress.push(match reader.count()? {
-                0 => Progress::Waiting,
-                1 => Progress::Done,
-                2 => {
-                    let n = reader.length()?;
-                    let held =
-                        (0..n)
-                            .map(|_| Ok((reader.count()? as u32, reader.number()?)))
-                            .collect::<Result<Vec<_>, WorldError>>()?;
-                    Progress::Acting { held, anchors: reader.vectors::<D>()? }
-                }
-                _ => return refuse("a command is in an unknown state"),
-            });
+            rest.progress.push(read_progress(reader)?);
         }
         if other_future {
             // Commands stand in the order of time: those that have begun come first.
@@ -237,6 +194,21 @@ impl<const D: usize> World<D> {
                 return refuse("it has another number of commands");
             }
             rest.progress.resize(commands.len(), Progress::Waiting);
+        }
+        for _ in 0..reader.length()? {
+            let command = reader.command(&self.registry)?;
+            rest.given.push(Running::given(command, read_progress(reader)?));
+        }
+        let of_scene = commands.iter().map(|known| &known.command).zip(&rest.progress);
+        let of_program = rest.given.iter().map(|given| (&given.command, &given.progress));
+        for (command, progress) in of_scene.chain(of_program) {
+            let Progress::Acting { held, anchors } = progress else { continue };
+            let state = command.action.body().and_then(|body| rest.states.get(&body));
+            let nodes = state.map_or(0, |state| state.x.len());
+            let pinned = if let Action::Pin { .. } = command.action { held.len() } else { 0 };
+            if held.iter().any(|(node, _)| *node as usize >= nodes) || anchors.len() != pinned {
+                return refuse("a command holds what is not there");
+            }
         }
         let mut numbers = [0.0; 9];
         for x in &mut numbers {
@@ -292,21 +264,25 @@ impl<const D: usize> World<D> {
         Ok(rest)
     }
 
-    /// Commands with how far they had come, as far as that is known.
-    fn commands_then(commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
+    /// Commands with how far they had come, as far as that is known; behind those of the scene those of the program.
+    fn commands_then(&self, commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(known, progress): (&Running<D>, &Progress<D>)| {
-            let gone = known.command.action.body().is_some_and(|body| rest.alive.get(body) == Some(&false));
+            // Not one whose body is still to come.
+            let is_gone = |body: usize| rest.alive.get(body) == Some(&false) && self.slots.origin[body].is_taken();
+            let gone = known.command.action.body().is_some_and(is_gone);
             let progress = if gone && *progress == Progress::Waiting { Progress::Done } else { progress.clone() };
             Running { progress, ..known.anew() }
         };
-        commands.iter().zip(&rest.progress).map(running).collect()
+        commands.iter().zip(&rest.progress).map(running).chain(rest.given.iter().cloned()).collect()
     }
 
     /// Goes to a snapshot that differs in motion alone: the islands stay as they are. False where more differs.
     fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, changes) = Self::read_head(&mut reader)?;
-        if changes != self.changes.iter().map(Change::told).collect::<Vec<_>>() {
+        let (frames, delta) = Self::read_head(&mut reader)?;
+        let mut here = Vec::new();
+        self.write_delta(&mut Writer(&mut here));
+        if delta != here {
             return Ok(false);
         }
         let rest = self.read_rest(&mut reader, commands, other_future)?;
@@ -317,14 +293,16 @@ impl<const D: usize> World<D> {
             let alike = models.all(|(kept, member)| kept.len() == member.memory.iter().skip(lane).step_by(WIDTH).len());
             alike && state.history.fits(system)
         };
-        if rest.alive != self.alive || self.islands.is_empty() || !rest.states.keys().all(fits) {
+        if rest.alive != self.slots.alive || self.islands.is_empty() || !rest.states.keys().all(fits) {
             return Ok(false);
         }
-        let running = Self::commands_then(commands, &rest);
+        let running = self.commands_then(commands, &rest);
         let alike = |(a, b): (&Running<D>, &Running<D>)| a.command == b.command && a.progress == b.progress;
         if running.len() != self.running.len() || !running.iter().zip(&self.running).all(alike) {
             return Ok(false);
         }
+        self.slots.next = self.slots.next.max(rest.next);
+        self.laws_saved = rest.laws;
         self.frames = frames;
         self.looks.fresh = false;
         let time = self.time();
@@ -363,21 +341,29 @@ impl<const D: usize> World<D> {
 
     fn go_to(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<(), WorldError> {
         let mut reader = Reader(bytes);
-        let (frames, changes) = Self::read_head(&mut reader)?;
-        let changed = !changes.is_empty() || !self.changes.is_empty();
-        // Bodies that commands add are found by the numbers of those.
-        self.running = commands.iter().map(Running::anew).collect();
-        self.replay(changes)?;
+        let (frames, delta) = Self::read_head(&mut reader)?;
+        let mut here = Vec::new();
+        self.write_delta(&mut Writer(&mut here));
+        let changed = delta != here;
+        let mut delta = Reader(delta);
+        self.take_delta(&mut delta, commands)?;
+        if !delta.0.is_empty() {
+            return Err(WorldError::Snapshot("what it says of the scene goes on after its end".into()));
+        }
         let rest = self.read_rest(&mut reader, commands, other_future)?;
-        self.running = Self::commands_then(commands, &rest);
-        self.alive = rest.alive;
-        self.generation.resize(self.alive.len(), 0);
+        self.running = self.commands_then(commands, &rest);
+        self.slots.alive = rest.alive;
+        self.slots.next = self.slots.next.max(rest.next);
         self.frames = frames;
         self.looks.fresh = false;
         self.regroup(&Touched::All, &rest.states)?;
         if changed {
             self.check_stability()?;
         }
+        // Bodies of the scene come again where a command adds them, and keep the laws that they had.
+        let slots = &self.slots;
+        self.user_forces.retain(|(handle, _)| handle.is_of_scene() || slots.is_of(*handle));
+        self.laws_saved = rest.laws;
         self.limited_pulls.store(rest.flows.limited_pulls, Ordering::Relaxed);
         self.flows = rest.flows;
         self.refresh_ledger();
@@ -393,5 +379,42 @@ struct Rest<const D: usize> {
     alive: Vec<bool>,
     states: BTreeMap<usize, BodyState<D>>,
     progress: Vec<Progress<D>>,
+    /// Commands of the program that were not over.
+    given: Vec<Running<D>>,
+    /// The generation of the next body of the program.
+    next: u64,
+    /// How many laws of force of the program bodies had.
+    laws: BTreeMap<usize, u64>,
     flows: Flows,
+}
+
+fn write_progress<const D: usize>(out: &mut Writer<'_>, progress: &Progress<D>) {
+    match progress {
+        Progress::Waiting => out.count(0),
+        Progress::Done => out.count(1),
+        Progress::Acting { held, anchors } => {
+            out.count(2);
+            out.count(held.len() as u64);
+            for (node, share) in held {
+                out.count(u64::from(*node));
+                out.number(*share);
+            }
+            out.vectors(anchors);
+        }
+    }
+}
+
+fn read_progress<const D: usize>(reader: &mut Reader<'_>) -> Result<Progress<D>, WorldError> {
+    Ok(match reader.count()? {
+        0 => Progress::Waiting,
+        1 => Progress::Done,
+        2 => {
+            let n = reader.length()?;
+            let held = (0..n)
+                .map(|_| Ok((reader.count()? as u32, reader.number()?)))
+                .collect::<Result<Vec<_>, WorldError>>()?;
+            Progress::Acting { held, anchors: reader.vectors::<D>()? }
+        }
+        _ => return Err(WorldError::Snapshot("a command is in an unknown state".into())),
+    })
 }

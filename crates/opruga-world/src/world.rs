@@ -1,8 +1,8 @@
 //! The world: bodies, obstacles, time.
 
-use crate::blueprint::{Blueprint, BodyBlueprint, CommandBlueprint};
+use crate::blueprint::{Blueprint, CommandBlueprint};
 use crate::build::{build_colliders, build_integrator, initial_state};
-use crate::changes::Change;
+use crate::changes::AtStart;
 use crate::commands::Running;
 use crate::error::WorldError;
 use crate::inputs::Input;
@@ -12,6 +12,7 @@ use crate::loads::ForceLaw;
 use crate::looks::Looks;
 use crate::rebuild::Touched;
 use crate::registry::Registry;
+use crate::slots::{BodyHandle, Slots};
 use opruga_collide::Colliders;
 use opruga_core::break_off::BreakOff;
 use opruga_core::error::StepError;
@@ -21,7 +22,7 @@ use opruga_core::system::Workspace;
 use opruga_core::threads::together;
 use opruga_math::Simd;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -70,15 +71,6 @@ pub struct Warning {
     pub count: u64,
 }
 
-/// A body by number and generation: a handle of a body that was removed is told from one that took its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BodyHandle {
-    /// The place in the list of bodies.
-    pub index: usize,
-    /// How often that place was given up before.
-    pub generation: u32,
-}
-
 /// Bodies, obstacles and time in `D` dimensions.
 pub struct World<const D: usize> {
     pub(crate) blueprint: Blueprint<D>,
@@ -93,12 +85,15 @@ pub struct World<const D: usize> {
     pub(crate) islands_built: u64,
     /// Island and lane of every body.
     pub(crate) place: Vec<(usize, usize)>,
-    pub(crate) alive: Vec<bool>,
-    pub(crate) generation: Vec<u32>,
+    /// Who is where in the list of bodies.
+    pub(crate) slots: Slots,
+    /// Commands of the scene and those that act as if it had held them; behind them those of the program that are not over.
     pub(crate) running: Vec<Running<D>>,
     /// The first command that could not begin in the last frame.
     pub(crate) refused: Option<Box<CommandBlueprint<D>>>,
-    pub(crate) user_forces: Vec<(usize, Arc<ForceLaw<D>>)>,
+    pub(crate) user_forces: Vec<(BodyHandle, Arc<ForceLaw<D>>)>,
+    /// How many laws of force bodies had in the snapshot that was restored last, which cannot hold the laws themselves.
+    pub(crate) laws_saved: BTreeMap<usize, u64>,
     pub(crate) limited_pulls: Arc<AtomicU64>,
     pub(crate) flows: Flows,
     pub(crate) energy: Energy,
@@ -108,10 +103,8 @@ pub struct World<const D: usize> {
     pub(crate) looks: Looks,
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
-    /// What has changed in the blueprint since the start.
-    pub(crate) changes: Vec<Change<D>>,
-    /// Bodies that the program has added, whatever became of them.
-    pub(crate) added: Vec<BodyBlueprint<D>>,
+    /// The parts of the blueprint that have changed since the start, as they were.
+    pub(crate) at_start: AtStart<D>,
     /// What the program has done since it was last asked for; none: it is not written down.
     pub(crate) inputs: Option<Vec<Input<D>>>,
     /// One for each thread.
@@ -163,9 +156,9 @@ impl<const D: usize> World<D> {
             islands: Vec::new(),
             islands_built: 0,
             place: Vec::new(),
-            alive: vec![true; bodies],
-            generation: vec![0; bodies],
+            slots: Slots::of_scene(bodies),
             user_forces: Vec::new(),
+            laws_saved: BTreeMap::new(),
             limited_pulls: Arc::new(AtomicU64::new(0)),
             flows: Flows::default(),
             energy: Energy::default(),
@@ -174,8 +167,7 @@ impl<const D: usize> World<D> {
             looks: Looks::default(),
             stability: Vec::new(),
             warnings: Vec::new(),
-            changes: Vec::new(),
-            added: Vec::new(),
+            at_start: AtStart::default(),
             inputs: None,
             workspaces,
             pool,
@@ -308,7 +300,7 @@ impl<const D: usize> World<D> {
         velocity: [f64; D],
     ) -> Result<(), WorldError> {
         let refuse = |message: String| Err(WorldError::Path { path: format!("body {body}, node {node}"), message });
-        if self.handle(body).is_none() || node as usize >= self.node_count(body) {
+        if node as usize >= self.node_count(body) {
             return refuse("there is no such node".into());
         }
         if let Some(x) = position.iter().chain(&velocity).find(|x| !x.is_finite()) {
@@ -330,10 +322,10 @@ impl<const D: usize> World<D> {
         Ok(())
     }
     pub(crate) fn add_force_here(&mut self, body: usize, law: Arc<ForceLaw<D>>) -> Result<(), WorldError> {
-        if self.handle(body).is_none() {
+        let Some(handle) = self.handle(body) else {
             return Err(WorldError::Path { path: format!("body {body}"), message: "there is no such body".into() });
-        }
-        self.user_forces.push((body, law));
+        };
+        self.user_forces.push((handle, law));
         let outcome = self.rebuild(&BTreeSet::from([body]));
         match outcome {
             Ok(()) => self.write_down(|| Input::Force { body }),

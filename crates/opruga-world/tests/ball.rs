@@ -213,7 +213,7 @@ fn bodies_come_and_go_and_old_handles_are_told() {
     let mut world = run(rings(4, 36, "symplectic_euler"), Options::default(), 5);
     let handle = world.handle(2).expect("a body");
     world.remove_body("ball[2]").expect("it is there");
-    assert_eq!(world.resolve(handle), None);
+    assert_eq!(world.resolve(handle).expect_err("it is gone").code(), "stale_handle");
     assert_eq!(world.bodies().count(), 3);
     let mut body = rings(1, 36, "symplectic_euler").bodies[0].clone();
     assert!(world.add_body(body.clone()).is_err(), "the name is taken");

@@ -37,7 +37,7 @@ pub use opruga_mesh as mesh;
 pub use opruga_world as world;
 pub use opruga_world::shapes;
 pub use opruga_world::{
-    BodyHandle, BreakOff, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint,
+    BodyHandle, BodyView, BreakOff, Energy, Input, Momentum, Options, Registry, Warning, World, WorldError, blueprint,
 };
 
 /// What scenes can name: the models, integrators and colliders of this library.

@@ -41,7 +41,7 @@ use crate::{World, WorldError};
 use opruga_core::spec::Values;
 use opruga_io::recording::{Header, Recording, RecordingError, RecordingFile};
 use opruga_io::safe_write::WriteError;
-use opruga_world::blueprint::{BodyBlueprint, CommandBlueprint};
+use opruga_world::blueprint::BodyBlueprint;
 use opruga_world::{Input, Registry};
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
@@ -278,16 +278,7 @@ impl<R: Read + Seek, const D: usize> Playback<R, D> {
 
     /// Brings a world to a frame whose state is kept.
     fn restore(&mut self, world: &mut World<D>, frame: u64) -> Result<(), TapeError> {
-        let given: Vec<CommandBlueprint<D>> = self
-            .inputs
-            .iter()
-            .take_while(|(before, _)| *before <= frame)
-            .filter_map(|(_, input)| match input {
-                Input::Command(command) => Some(command.clone()),
-                _ => None,
-            })
-            .collect();
-        Ok(world.restore_with(self.recording.read(frame)?, &given)?)
+        Ok(world.restore(self.recording.read(frame)?)?)
     }
 
     /// Computes a frame from the one before, in which the world is.

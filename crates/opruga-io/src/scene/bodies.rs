@@ -7,11 +7,12 @@ use super::shape::{self, ShapePlace};
 use super::velocities::{self, Velocities};
 use super::{pins, place_of, selectors};
 use crate::document::{Data, Node, Place};
-use crate::problem::{SceneError, unprintable, visible};
+use crate::problem::{SceneError, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::Values;
 use opruga_mesh::{Cut, Measure, Mesh, MeshError};
 use opruga_world::blueprint::{BodyBlueprint, Mass, PinBlueprint, Selector};
+use opruga_world::validity::{self, LONGEST};
 use opruga_world::{schema, shapes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -224,21 +225,9 @@ fn draft<'n, const D: usize>(
 
 /// Names stand in paths and in the heads of tables: they keep clear of what separates those.
 pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
-    let bad = name.chars().find(|c| unprintable(*c) || ".,[]\"'=".contains(*c));
-    let why = if name.is_empty() {
-        "the name is empty".to_string()
-    } else if let Some(c) = bad {
-        format!("the name contains `{}`", visible(&c.to_string()))
-    } else if name.chars().all(|c| c.is_ascii_digit()) {
-        "the name is a number, which would be the place of a body".to_string()
-    } else {
-        return;
-    };
+    let Some(why) = validity::name_fault(name) else { return };
     let error = SceneError::new("scene.name", why).path(path).value(visible(name));
-    reader.report(
-        node.place,
-        error.allowed("1 to 256 bytes without control characters and . , [ ] = quotes; not only digits"),
-    );
+    reader.report(node.place, error.allowed(validity::NAMES));
 }
 
 /// The densities of the cells of a mesh by their name in its file.
@@ -378,9 +367,6 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
         Err(refusal) => refuse(reader, SceneError::new("scene.shape", refusal.to_string())),
     }
 }
-
-/// The largest coordinate of a shape [m]: powers of lengths up to the fourth are numbers then.
-const LONGEST: f64 = 1e70;
 
 /// The smallest scale: powers of lengths up to the fourth are not zero then.
 const SHORTEST: f64 = 1e-70;

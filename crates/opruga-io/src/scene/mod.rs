@@ -32,11 +32,10 @@ use crate::source::Source;
 pub(crate) use cost::Cost;
 use moments::Frames;
 use opruga_core::spec::Values;
-use opruga_math::words::number;
 use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, ColliderBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
-use opruga_world::schema;
+use opruga_world::{schema, validity};
 pub(crate) use reader::MOST_ERRORS;
 use reader::{Reader, join};
 pub use shape::of_fields as shape_of_fields;
@@ -342,31 +341,15 @@ fn time(reader: &mut Reader<'_>, root: &Node) -> Time {
     let seconds = values.number("seconds").unwrap_or(0.0);
     let frame = values.number("frame").unwrap_or(1.0);
     let substeps = values.integer("substeps").unwrap_or(1);
-    let h = frame / substeps as f64;
-    if reader.count() == before && seconds > 0.0 {
-        let at = node.get("frame").unwrap_or(node);
-        if seconds + h == seconds {
-            reader.report(
-                at.place,
-                SceneError::new(
-                    "scene.range",
-                    format!("a step of {} s is lost in {} s: time would stand still", number(h), number(seconds)),
-                )
-                .path("time.frame")
-                .value(format!("{frame:e}"))
-                .allowed("a step that changes the time"),
-            );
-        } else if seconds / frame > 1e12 {
-            reader.report(
-                at.place,
-                SceneError::new("scene.range", format!("{} s are {} frames", number(seconds), number(seconds / frame)))
-                    .path("time.frame")
-                    .value(format!("{frame:e}"))
-                    .allowed("at most 1e12 frames"),
-            );
-        }
+    let time = Time { seconds, frame, substeps: u32::try_from(substeps).unwrap_or(1) };
+    if reader.count() == before
+        && let Some(fault) = validity::time_fault(&time)
+    {
+        let at = node.get(fault.field).unwrap_or(node);
+        let error = SceneError::new(fault.code, fault.message).path(join("time", fault.field)).value(fault.value);
+        reader.report(at.place, error.allowed(fault.allowed));
     }
-    Time { seconds, frame, substeps: u32::try_from(substeps).unwrap_or(1) }
+    time
 }
 
 fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroundings<D> {

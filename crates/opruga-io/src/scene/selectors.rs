@@ -8,6 +8,7 @@ use opruga_core::spec::{Allowed, nearest};
 use opruga_world::blueprint::{BodyBlueprint, Selector};
 use opruga_world::schema::{SELECTORS, Section};
 use opruga_world::selection;
+use opruga_world::validity::SelectorFault;
 
 /// A set of nodes of a table: `select = { … }`; all nodes where the table has none.
 pub(crate) fn of<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Selector<D>> {
@@ -139,23 +140,17 @@ pub(crate) fn check<const D: usize>(
     selector: &Selector<D>,
     body: &BodyBlueprint<D>,
 ) -> bool {
+    let Some(fault) = selector.fault(body) else { return true };
     let count = body.mesh.positions.len();
-    let mut beyond = None;
-    let mut unknown = None;
-    visit(selector, &mut |s| match s {
-        Selector::Nodes(nodes) => beyond = beyond.or(nodes.iter().copied().find(|n| *n as usize >= count)),
-        Selector::Group(name) if !body.mesh.groups.contains_key(name) => unknown = Some(name.clone()),
-        _ => {}
-    });
     let name = visible(&body.name);
-    if let Some(node) = beyond {
+    if let SelectorFault::NoNode(node) = fault {
         let error = SceneError::new("scene.range", format!("body `{name}` has no node {node}"))
             .path(path)
             .value(node.to_string());
         reader.report(place, error.allowed(format!("nodes from 0 to {}", count.saturating_sub(1))));
         return false;
     }
-    if let Some(group) = unknown {
+    if let SelectorFault::NoGroup(group) = fault {
         let groups: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
         let mut error =
             SceneError::new("scene.unknown_name", format!("the mesh of `{name}` has no group `{}`", visible(&group)))
@@ -166,30 +161,16 @@ pub(crate) fn check<const D: usize>(
         reader.report(place, error.nearest(nearest(&group, groups.iter().copied())));
         return false;
     }
-    if selector.resolve(&body.mesh, &body.translation).is_empty() {
-        let (low, high) = selection::extent(&body.mesh);
-        let corner = |x: [f64; D]| {
-            let x: [f64; D] = core::array::from_fn(|a| x[a] + body.translation[a]);
-            format!("{x:?}")
-        };
-        let error =
-            SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
-        reader.report(
-            place,
-            error.hint(format!("at the start the body lies between {} and {}", corner(low), corner(high))),
-        );
-        return false;
-    }
-    true
-}
-
-fn visit<const D: usize>(selector: &Selector<D>, each: &mut impl FnMut(&Selector<D>)) {
-    each(selector);
-    match selector {
-        Selector::And(sets) | Selector::Or(sets) => sets.iter().for_each(|s| visit(s, each)),
-        Selector::Not(set) => visit(set, each),
-        _ => {}
-    }
+    let (low, high) = selection::extent(&body.mesh);
+    let corner = |x: [f64; D]| {
+        let x: [f64; D] = core::array::from_fn(|a| x[a] + body.translation[a]);
+        format!("{x:?}")
+    };
+    let error =
+        SceneError::new("scene.selects_nothing", format!("the selector selects no node of `{name}`")).path(path);
+    let hint = format!("at the start the body lies between {} and {}", corner(low), corner(high));
+    reader.report(place, error.hint(hint));
+    false
 }
 
 /// Reads and checks the selector of a table that names a body.

@@ -399,6 +399,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          prigušenje {} 1/s); dopušteno: h <= {}; savjet: {~}",
     ),
     ("commands on body `{}` ended when it was taken away", "naredbe tijelu `{}` završile su kad je uklonjeno"),
+    (
+        "commands on other bodies ended when these were taken away",
+        "naredbe drugim tijelima završile su kad su ta uklonjena",
+    ),
+    (
+        "a snapshot holds no laws of force of the program, and a body had one: give it again (`World::add_force`)",
+        "snimka stanja ne sadrži zakone sile koje je dao program, a tijelo je imalo jedan: zadaj ga opet (`World::add_force`)",
+    ),
     ("forces were shortened to `world.largest_force`", "sile su skraćene na `world.largest_force`"),
     ("velocities were shortened to `world.largest_velocity`", "brzine su skraćene na `world.largest_velocity`"),
     (

@@ -41,6 +41,8 @@ pub struct Scenery {
 
 #[derive(Clone, Debug)]
 struct Fixed {
+    /// Which of the bodies in its place it is; none where it is still to come.
+    generation: Option<u64>,
     nodes: usize,
     facets: Facets,
     cells: Vec<[u32; 3]>,
@@ -97,7 +99,7 @@ impl Scenery {
         let many = present.len() > 64;
         // A body alone is told by the title, and copies have no names that say anything.
         let named = (2..=8).contains(&present.len()) && present.iter().all(|b| !b.name.contains('['));
-        let fixed = |blueprint: &BodyBlueprint<D>| {
+        let fixed = |(place, blueprint): (usize, &BodyBlueprint<D>)| {
             let mesh = &blueprint.mesh;
             let edges = mesh.edges(EdgeSet::All);
             let length = |e: &[u32; 2]| {
@@ -138,6 +140,7 @@ impl Scenery {
                 RestPicture::default()
             };
             Fixed {
+                generation: world.handle(place).map(|handle| handle.generation),
                 extent: (0..D).map(side).fold(0.0, f64::max),
                 rest,
                 node_spacing: edges_length / edges.len().max(1) as f64,
@@ -158,7 +161,7 @@ impl Scenery {
         Scenery {
             dimension: D as u8,
             title: world.blueprint().title.clone(),
-            bodies: present.iter().chain(world.coming_bodies()).map(fixed).collect(),
+            bodies: present.iter().chain(world.coming_bodies()).enumerate().map(fixed).collect(),
             y_down: y_down(world),
             length_unit: world.blueprint().length_unit.clone(),
             credit: world.blueprint().credit.clone(),
@@ -200,7 +203,15 @@ impl Scenery {
     /// As [`Scenery::capture`], with another quantity for the colours.
     pub fn capture_quantity<const D: usize>(&self, world: &mut World<D>, arrows: bool, quantity: Quantity) -> Moment {
         let (mut coordinates, mut scalars) = (Vec::new(), Vec::new());
-        let bodies: Vec<usize> = world.bodies().filter(|b| *b < self.bodies.len()).collect();
+        // A body that has taken the place of one of these since is unknown here.
+        let known = |body: &usize| {
+            let fixed = self.bodies.get(*body);
+            fixed.is_some_and(|fixed| match (fixed.generation, world.handle(*body)) {
+                (Some(generation), Some(handle)) => generation == handle.generation,
+                _ => fixed.nodes == world.node_count(*body),
+            })
+        };
+        let bodies: Vec<usize> = world.bodies().filter(known).collect();
         for &body in &bodies {
             let fixed = &self.bodies[body];
             let positions: Vec<[f64; 3]> = (0..fixed.nodes as u32).map(|n| three(world.position(body, n))).collect();

@@ -78,8 +78,12 @@ mod tests {
         // What writes meshes is asked by the command line alone.
         let meshes = std::fs::read_dir(io.join("meshes")).expect("the readers of meshes").flatten();
         let meshes = meshes.map(|entry| entry.path()).filter(|path| !path.ends_with("write.rs"));
-        let files: Vec<String> =
-            files.into_iter().chain(meshes).map(|path| std::fs::read_to_string(path).expect("a source")).collect();
+        let files: Vec<String> = files
+            .into_iter()
+            .chain(meshes)
+            .chain([crates.join("opruga-world/src/validity.rs")])
+            .map(|path| std::fs::read_to_string(path).expect("a source"))
+            .collect();
         let said: Vec<String> = folders
             .iter()
             .flat_map(|folder| sources(folder))

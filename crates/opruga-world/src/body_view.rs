@@ -1,0 +1,83 @@
+//! One body as a handle names it: readings that say what is wrong instead of showing another body.
+
+use crate::blueprint::BodyBlueprint;
+use crate::error::WorldError;
+use crate::slots::BodyHandle;
+use crate::world::World;
+use opruga_core::error::BuildError;
+
+/// A body that is there, for reading; [`World::view`] makes it of a handle.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyView<'w, const D: usize> {
+    world: &'w World<D>,
+    number: usize,
+}
+
+impl<const D: usize> World<D> {
+    /// The body of a handle.
+    ///
+    /// # Errors
+    /// `stale_handle` if the body was removed, if the world was taken back to before it came, or if the handle is one of another world.
+    pub fn view(&self, handle: BodyHandle) -> Result<BodyView<'_, D>, WorldError> {
+        Ok(BodyView { world: self, number: self.resolve(handle)? })
+    }
+
+    /// The number of the body of a handle, which it keeps as long as it is there.
+    ///
+    /// # Errors
+    /// As [`World::view`].
+    pub fn resolve(&self, handle: BodyHandle) -> Result<usize, WorldError> {
+        if self.slots.is_of(handle) {
+            return Ok(handle.index);
+        }
+        let message = "the body of this handle is not in this world any more, or never was; hint: `World::body` finds a body by its \
+                       name, `World::handle` gives a handle of it";
+        let source = BuildError::new("handle", "stale_handle", message);
+        Err(WorldError::Build { place: format!("body {}", handle.index), source })
+    }
+}
+
+impl<'w, const D: usize> BodyView<'w, D> {
+    /// The number of the body, for the methods of [`World`].
+    pub fn number(&self) -> usize {
+        self.number
+    }
+    /// What it was made of, with all changes since.
+    pub fn blueprint(&self) -> &'w BodyBlueprint<D> {
+        &self.world.blueprint.bodies[self.number]
+    }
+    /// The number of its nodes.
+    pub fn node_count(&self) -> usize {
+        self.world.node_count(self.number)
+    }
+    /// The position of a node [m].
+    ///
+    /// # Errors
+    /// [`WorldError::Path`] if there is no such node.
+    pub fn position(&self, node: u32) -> Result<[f64; D], WorldError> {
+        self.known(node).map(|()| self.world.position(self.number, node))
+    }
+    /// The velocity of a node [m/s].
+    ///
+    /// # Errors
+    /// As [`BodyView::position`].
+    pub fn velocity(&self, node: u32) -> Result<[f64; D], WorldError> {
+        self.known(node).map(|()| self.world.velocity(self.number, node))
+    }
+    /// The mass of a node [kg].
+    ///
+    /// # Errors
+    /// As [`BodyView::position`].
+    pub fn node_mass(&self, node: u32) -> Result<f64, WorldError> {
+        self.known(node).map(|()| self.world.node_mass(self.number, node))
+    }
+
+    fn known(&self, node: u32) -> Result<(), WorldError> {
+        let count = self.node_count();
+        if (node as usize) < count {
+            return Ok(());
+        }
+        let path = format!("body `{}`, node {node}", self.blueprint().name);
+        Err(WorldError::Path { path, message: format!("there is no such node; allowed: 0 to {}", count - 1) })
+    }
+}

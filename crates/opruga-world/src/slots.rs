@@ -1,0 +1,202 @@
+//! The list of bodies: who is in which place of it, and handles that tell a body from another one in its place.
+
+use crate::blueprint::{BodyBlueprint, Mass};
+use crate::world::World;
+use opruga_mesh::Mesh;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A body of one world by number and generation.
+///
+/// No two bodies that a program or a user adds to a world have the same generation, also where one takes the place of another, and
+/// where a restored snapshot has taken the world back to before one of them came. So a handle means its body or none, never
+/// another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyHandle {
+    /// The place in the list of bodies.
+    pub index: usize,
+    /// Which of the bodies that have been there it is; bodies of the scene have 0, for their places are given to no others.
+    pub generation: u64,
+    /// The world.
+    world: u64,
+}
+
+impl BodyHandle {
+    /// Whether its body belongs to the scene: at the start, or added by a command of it.
+    pub(crate) fn is_of_scene(self) -> bool {
+        self.generation == 0 || self.generation >= ACTED
+    }
+}
+
+/// Where the body in a place came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The scene: there at the start.
+    Scene,
+    /// The command of this number, which belongs to the scene.
+    Command(usize),
+    /// A call of the program. Once the body is gone nothing is kept of it, and its place is free for another one.
+    Program,
+    /// Nobody: the place is free. Where a body lay in a batch, it is kept a seat beside bodies like this one.
+    Free(Option<usize>),
+    /// Nobody yet: the place of a body that a command of the scene will add, which names it by its number.
+    Reserved,
+}
+
+impl Origin {
+    /// Whether there is a body, or was one of the scene.
+    pub(crate) fn is_taken(self) -> bool {
+        !matches!(self, Origin::Free(_) | Origin::Reserved)
+    }
+}
+
+/// Places in the list of bodies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Slots {
+    pub(crate) alive: Vec<bool>,
+    pub(crate) generation: Vec<u64>,
+    pub(crate) origin: Vec<Origin>,
+    /// How many bodies the scene has at the start.
+    pub(crate) initial: usize,
+    /// The generation of the next body that the program adds: it never goes back.
+    pub(crate) next: u64,
+    /// How many commands were given by [`World::act`]: their bodies have generations of their own.
+    pub(crate) acted: u64,
+    /// Tells worlds apart in handles. No result depends on it.
+    world: u64,
+}
+
+/// Where the generations of bodies begin that commands of [`World::act`] add: apart from those that snapshots tell.
+pub(crate) const ACTED: u64 = 1 << 63;
+
+impl Slots {
+    /// Those of a scene with so many bodies.
+    pub(crate) fn of_scene(bodies: usize) -> Slots {
+        static WORLDS: AtomicU64 = AtomicU64::new(0);
+        Slots {
+            alive: vec![true; bodies],
+            generation: vec![0; bodies],
+            origin: vec![Origin::Scene; bodies],
+            initial: bodies,
+            next: 1,
+            acted: 0,
+            world: WORLDS.fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.alive.len()
+    }
+
+    /// Whether there is a body in a place.
+    pub(crate) fn is_there(&self, body: usize) -> bool {
+        self.alive.get(body).copied().unwrap_or(false)
+    }
+
+    pub(crate) fn handle(&self, body: usize) -> Option<BodyHandle> {
+        self.is_there(body).then(|| self.named(body))
+    }
+
+    /// The handle of a body that was in a place last, whether it is there or not.
+    pub(crate) fn named(&self, body: usize) -> BodyHandle {
+        BodyHandle { index: body, generation: self.generation[body], world: self.world }
+    }
+
+    pub(crate) fn is_of(&self, handle: BodyHandle) -> bool {
+        self.handle(handle.index) == Some(handle)
+    }
+
+    /// The generation of a body that the program adds now.
+    pub(crate) fn next_of_program(&mut self) -> u64 {
+        self.next += 1;
+        self.next - 1
+    }
+
+    /// The generation of a body that a command adds which is given now by [`World::act`].
+    pub(crate) fn next_of_act(&mut self) -> u64 {
+        self.acted += 1;
+        ACTED | self.acted
+    }
+
+    /// Puts a body into a place, the next one or one that is free.
+    pub(crate) fn put(&mut self, place: usize, origin: Origin, generation: u64) {
+        if place == self.len() {
+            self.alive.push(true);
+            self.generation.push(generation);
+            self.origin.push(origin);
+        } else {
+            (self.alive[place], self.generation[place], self.origin[place]) = (true, generation, origin);
+        }
+    }
+
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.alive.truncate(count);
+        self.generation.truncate(count);
+        self.origin.truncate(count);
+    }
+}
+
+impl<const D: usize> BodyBlueprint<D> {
+    /// What stands in a place without a body: no name, no nodes.
+    pub(crate) fn nobody() -> BodyBlueprint<D> {
+        BodyBlueprint {
+            name: String::new(),
+            mesh: Arc::new(Mesh::default()),
+            translation: [0.0; D],
+            velocity: [0.0; D],
+            angular_velocity: Vec::new(),
+            velocity_gradient: [[0.0; D]; D],
+            mass: Mass::Node(1.0),
+            thickness: 1.0,
+            integrator: None,
+            models: Vec::new(),
+            pins: Vec::new(),
+        }
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// Makes sure that there is a place, without a body so far.
+    pub(crate) fn reserve(&mut self, place: usize, origin: Origin) {
+        while self.slots.len() <= place {
+            self.blueprint.bodies.push(BodyBlueprint::nobody());
+            self.slots.put(self.slots.len(), origin, 0);
+            if let Some(last) = self.slots.alive.last_mut() {
+                *last = false;
+            }
+        }
+    }
+
+    /// Forgets the bodies of the program that are gone, and gives their places free; those at the end of the list are given up.
+    pub(crate) fn free_places(&mut self) {
+        for place in self.slots.initial..self.slots.len() {
+            if self.slots.alive[place] || self.slots.origin[place] != Origin::Program {
+                continue;
+            }
+            let gone = &self.blueprint.bodies[place];
+            let like = |other: &usize| {
+                *other != place
+                    && self.slots.origin[*other].is_taken()
+                    && (self.slots.alive[*other] || self.slots.origin[*other] != Origin::Program)
+                    && crate::build::alike(gone, &self.blueprint.bodies[*other])
+            };
+            let beside = (0..self.slots.len()).find(like);
+            for origin in &mut self.slots.origin {
+                if *origin == Origin::Free(Some(place)) {
+                    *origin = Origin::Free(beside);
+                }
+            }
+            self.slots.origin[place] = Origin::Free(beside);
+            self.blueprint.bodies[place] = BodyBlueprint::nobody();
+            self.at_start.bodies.remove(&place);
+            self.user_forces.retain(|(handle, _)| handle.index != place);
+            self.laws_saved.remove(&place);
+        }
+        while matches!(self.slots.origin.last(), Some(Origin::Free(_))) {
+            let count = self.slots.len() - 1;
+            self.slots.truncate(count);
+            self.blueprint.bodies.truncate(count);
+            self.place.truncate(count);
+        }
+    }
+}
