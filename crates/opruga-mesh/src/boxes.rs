@@ -86,6 +86,25 @@ impl Tree {
         tree
     }
 
+    /// The boxes, by number ascending, in which a point lies.
+    pub(crate) fn around(&self, point: &[f64; 3]) -> Vec<u32> {
+        let holds = |bounds: &Bounds| (0..3).all(|d| bounds[0][d] <= point[d] && point[d] <= bounds[1][d]);
+        let (mut waiting, mut found) = (vec![1usize], Vec::new());
+        while let Some(node) = waiting.pop() {
+            if !holds(&self.boxes[node]) {
+                continue;
+            }
+            if node < self.leaves {
+                waiting.extend([2 * node, 2 * node + 1]);
+            } else {
+                let own = self.facets_of(node - self.leaves).iter();
+                found.extend(own.filter(|number| holds(&self.facet_boxes[**number as usize])));
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
     /// The triangles of a leaf.
     pub(crate) fn facets_of(&self, leaf: usize) -> &[u32] {
         let end = self.order.len();

@@ -1,5 +1,6 @@
 //! Closed chambers: which facets enclose one volume.
 
+use crate::boxes::Tree;
 use crate::buckets::{nodes_of, sorted_by_node};
 use crate::geometry::{cross, dot, lift, norm, signed_volume, subtract};
 use crate::{Mesh, MeshError};
@@ -230,11 +231,13 @@ impl<const D: usize> Mesh<D> {
         let skins: Vec<Vec<[u32; D]>> = outer.iter().map(|component| self.gather(&component.facets)).collect();
         let mut chambers: Vec<Vec<u32>> = outer.iter().map(|component| component.facets.clone()).collect();
 
-        // Each hole goes to the tightest skin around it.
+        // Each hole goes to the tightest skin around it; only one whose box it lies in can be that.
+        let tree = (!holes.is_empty()).then(|| Tree::of(skins.iter().map(|skin| self.box_of(skin))));
         for hole in holes {
             let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
             let mut home: Option<usize> = None;
-            for candidate in 0..outer.len() {
+            let near = tree.as_ref().map_or(Vec::new(), |tree| tree.around(&lift(&point)));
+            for candidate in near.into_iter().map(|number| number as usize) {
                 let tighter = home.is_none_or(|best| outer[candidate].signed_volume < outer[best].signed_volume);
                 if tighter && winding_number(&skins[candidate], &self.positions, &point) > 0.5 {
                     home = Some(candidate);
@@ -277,6 +280,19 @@ impl<const D: usize> Mesh<D> {
             reversed += usize::from(facet != old);
         }
         Ok(reversed)
+    }
+
+    /// The lowest and the highest corner of the box around facets, the highest twice.
+    pub(crate) fn box_of(&self, facets: &[[u32; D]]) -> [[f64; 3]; 3] {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for node in facets.iter().flatten() {
+            let point = lift(&self.positions[*node as usize]);
+            for d in 0..3 {
+                low[d] = if point[d] < low[d] { point[d] } else { low[d] };
+                high[d] = if point[d] > high[d] { point[d] } else { high[d] };
+            }
+        }
+        [low, high, high]
     }
 
     /// The facets with the given indices.

@@ -84,6 +84,14 @@ pub enum MeshError {
         /// Number of nodes allowed.
         most: u64,
     },
+    /// Edges lie over one another's boxes so often that it cannot be told in time whether they meet.
+    #[error("{edges} edges run past one another so closely that more than {most} pairs would have to be compared")]
+    NotCompared {
+        /// How many edges there are.
+        edges: u64,
+        /// How many comparisons are allowed.
+        most: u64,
+    },
     /// Two consecutive points of an outline or chain coincide.
     #[error("points {first} and {second} follow each other at the same place")]
     RepeatedPoint {

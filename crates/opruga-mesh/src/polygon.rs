@@ -25,7 +25,7 @@ impl Mesh<2> {
     pub fn polygon(points: &[[f64; 2]]) -> Result<Polygon, MeshError> {
         let points = without_repeated_end(points);
         check_points(points, 3, true)?;
-        if let Some([(_, first), (_, second)]) = first_meeting(&[points]) {
+        if let Some([(_, first), (_, second)]) = first_meeting(&[points])? {
             let n = points.len();
             let ends = |edge: usize| [edge as u32, ((edge + 1) % n) as u32];
             return Err(MeshError::SelfIntersection { first: ends(first), second: ends(second) });

@@ -1,5 +1,6 @@
 //! Triangles of space as they come from files: welding, orientation, closing, bodies.
 
+use crate::boxes::Tree;
 use crate::buckets::{nodes_of, sorted_by_node};
 use crate::chambers::Survey;
 use crate::geometry::{lift, norm, subtract, triangle_area};
@@ -170,19 +171,19 @@ impl Mesh<3> {
         let components = self.components_of(&survey);
         // How many others are around a component: their winding numbers about a node of it, whichever way they face.
         let boxes: Vec<([f64; 3], [f64; 3])> = components.iter().map(|c| self.bounds_of(&c.facets)).collect();
+        let tree = Tree::of(boxes.iter().map(|(low, high)| [*low, *high, *high]));
         let (mut inside_out, mut flat) = (0, None);
         for (number, component) in components.iter().enumerate() {
             let node = self.facets[component.facets[0] as usize][0];
             let point = self.positions[node as usize];
-            let around = |other: &usize| {
-                let (low, high) = boxes[*other];
-                *other != number && (0..3).all(|d| low[d] <= point[d] && point[d] <= high[d]) && {
-                    let facets = self.gather(&components[*other].facets);
+            let around = |other: &u32| {
+                *other as usize != number && {
+                    let facets = self.gather(&components[*other as usize].facets);
                     let winding = crate::chambers::winding_number(&facets, &self.positions, &point);
                     winding.abs() > 0.5
                 }
             };
-            let cavity = (0..components.len()).filter(around).count() % 2 == 1;
+            let cavity = tree.around(&point).iter().filter(|other| around(other)).count() % 2 == 1;
             if (component.signed_volume < 0.0) != cavity {
                 inside_out += 1;
                 component.facets.iter().for_each(|facet| self.facets[*facet as usize].swap(0, 1));
@@ -233,18 +234,24 @@ impl Mesh<3> {
         let mut sides: Vec<[u32; 2]> =
             self.facets.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]).collect();
         sides.sort_unstable();
-        let mut free: Vec<[u32; 2]> =
+        let free: Vec<[u32; 2]> =
             sides.iter().copied().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err()).collect();
         let twice: Vec<u32> = free.windows(2).filter(|pair| pair[0][0] == pair[1][0]).map(|pair| pair[0][0]).collect();
         if !twice.is_empty() {
             return Err(MeshError::NonManifoldNodes { nodes: twice });
         }
-        let mut closed = 0;
-        while let Some(&[first, _]) = free.first() {
+        let (mut closed, mut taken) = (0, vec![false; free.len()]);
+        for start in 0..free.len() {
+            if taken[start] {
+                continue;
+            }
             let mut ring = Vec::new();
-            let mut at = first;
+            let mut at = free[start][0];
             while let Ok(place) = free.binary_search_by_key(&at, |edge| edge[0]) {
-                let [from, to] = free.remove(place);
+                if core::mem::replace(&mut taken[place], true) {
+                    break;
+                }
+                let [from, to] = free[place];
                 ring.push(from);
                 at = to;
             }

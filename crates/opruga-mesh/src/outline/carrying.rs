@@ -6,6 +6,9 @@ use crate::skin::{Area, Skin};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
+/// Each cell covers so many places of the grid on average at most: compact ones cover four. It keeps the grid about as large as the body.
+const MOST_PLACES: f64 = 16.0;
+
 /// An area that is to be painted on a body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Painted {
@@ -103,6 +106,11 @@ impl<'m> Grid<'m> {
         let side = if widest > least { widest } else { least };
         let counts = core::array::from_fn(|a| ((high[a] - low[a]) / side).floor() as i64);
         let mut grid = Grid { cells, positions, low, side, counts, places: BTreeMap::new() };
+        // Long slanting cells cover many places: fewer and wider ones then, down to one.
+        while grid.covered(&boxes) > MOST_PLACES * cells.len() as f64 && grid.counts != [0; 2] {
+            grid.side *= 2.0;
+            grid.counts = core::array::from_fn(|a| ((high[a] - low[a]) / grid.side).floor() as i64);
+        }
         for (number, (from, to)) in boxes.iter().enumerate() {
             let (from, to) = (grid.place(*from), grid.place(*to));
             for i in from.0..=to.0 {
@@ -112,6 +120,15 @@ impl<'m> Grid<'m> {
             }
         }
         Some(grid)
+    }
+
+    /// How many places boxes cover, each counted as often.
+    fn covered(&self, boxes: &[([f64; 2], [f64; 2])]) -> f64 {
+        let of = |(from, to): &([f64; 2], [f64; 2])| {
+            let (from, to) = (self.place(*from), self.place(*to));
+            (to.0 - from.0 + 1) as f64 * (to.1 - from.1 + 1) as f64
+        };
+        boxes.iter().map(of).sum()
     }
 
     fn place(&self, p: [f64; 2]) -> (i64, i64) {
@@ -128,8 +145,13 @@ impl<'m> Grid<'m> {
         let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };
         let mut best = (f64::NEG_INFINITY, ([0; 4], [1.0, 0.0, 0.0, 0.0]));
         for reach in 0..=widest + 1 {
-            let around = (i - reach..=i + reach).flat_map(|i| (j - reach..=j + reach).map(move |j| (i, j)));
-            for cell in around.filter_map(|place| self.places.get(&place)).flatten() {
+            // The places at this distance: nearer ones have been looked at.
+            let columns = (i - reach..=i + reach).filter(|column| (0..=self.counts[0]).contains(column));
+            let ring = columns.flat_map(|column| {
+                let step = if (column - i).abs() == reach { 1 } else { 2 * reach };
+                (j - reach..=j + reach).step_by(step.max(1) as usize).map(move |row| (column, row))
+            });
+            for cell in ring.filter_map(|place| self.places.get(&place)).flatten() {
                 let weighed = self.weigh(&self.cells[*cell as usize], point);
                 if weighed.0 > best.0 {
                     best = weighed;

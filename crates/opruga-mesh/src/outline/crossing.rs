@@ -1,5 +1,8 @@
 //! Where closed curves cross or touch, themselves or one another.
 
+use super::segments::{Segments, bounds_of};
+use crate::MeshError;
+
 /// Twice the signed area of the triangle a b c [m²]; positive where c lies left of a → b.
 fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -24,46 +27,85 @@ fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
 /// An edge of a ring: (number of the ring, number of the edge); edge i runs from point i to the next.
 pub(crate) type EdgeOfRing = (usize, usize);
 
+/// The most boxes that are compared: about a second of work, and so many more for each edge. Curves as people draw them take about a hundred for
+/// each; without a limit, a hundred thousand long edges that fan out from one place, whose boxes all overlap, would take minutes.
+const MOST_COMPARED: [u64; 2] = [1 << 27, 500];
+
+/// Boxes are wider by this part of the extent than their edges: turning them has rounded their ends, and [`segments_meet`] rounds too.
+const MARGIN: f64 = 64.0 * f64::EPSILON;
+
 /// The lowest pair of edges of closed rings that meet beyond a shared end.
 ///
-/// A sweep along the longer side of the bounding box: only edges that overlap there are compared.
-pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Option<[EdgeOfRing; 2]> {
+/// Only edges whose boxes overlap are compared. Boxes lie along the direction of most long edges, so that those of a slanting comb are thin too.
+///
+/// # Errors
+/// [`MeshError::NotCompared`] where too many boxes overlap.
+pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Result<Option<[EdgeOfRing; 2]>, MeshError> {
+    let edges = rings.iter().map(|points| points.len() as u64).sum();
+    let most = MOST_COMPARED[0] + MOST_COMPARED[1] * edges;
+    let mut compared = 0;
+    search(rings, most, &mut compared).map_err(|()| MeshError::NotCompared { edges, most })
+}
+
+/// The same; counts the boxes that are compared, and gives up where there are too many.
+fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option<[EdgeOfRing; 2]>, ()> {
+    let edges: Vec<EdgeOfRing> =
+        rings.iter().enumerate().flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge))).collect();
     let ends = |(ring, edge): EdgeOfRing| (rings[ring][edge], rings[ring][(edge + 1) % rings[ring].len()]);
-    let first = rings.iter().find_map(|ring| ring.first())?;
+    let Some(origin) = rings.iter().find_map(|ring| ring.first().copied()) else { return Ok(None) };
     let extent = |axis: usize| {
-        let (mut low, mut high) = (first[axis], first[axis]);
+        let mut range = [origin[axis]; 2];
         for point in rings.iter().flat_map(|ring| ring.iter()) {
-            low = span(low, point[axis])[0];
-            high = span(high, point[axis])[1];
+            range = [span(range[0], point[axis])[0], span(range[1], point[axis])[1]];
         }
-        high - low
+        range[1] - range[0]
     };
-    let axis = usize::from(extent(1) > extent(0));
+    let (width, height) = (extent(0), extent(1));
+    let size = if width > height { width } else { height };
 
-    // Edges by where they begin along the sweep.
-    let all = rings.iter().enumerate().flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge)));
-    let mut order: Vec<(f64, f64, EdgeOfRing)> = all
-        .map(|edge| {
-            let (a, b) = ends(edge);
-            let [low, high] = span(a[axis], b[axis]);
-            (low, high, edge)
-        })
-        .collect();
-    order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.2.cmp(&q.2)));
-
-    let mut active: Vec<(f64, EdgeOfRing)> = Vec::new();
-    let mut found: Option<[EdgeOfRing; 2]> = None;
-    for (low, high, edge) in order {
-        active.retain(|other| other.0 >= low);
-        for &(_, other) in &active {
-            let pair = if edge < other { [edge, other] } else { [other, edge] };
-            if found.is_none_or(|best| pair < best) && edges_conflict(rings, pair) {
-                found = Some(pair);
-            }
+    // The mean direction of edges and of what stands square to them, long ones counting more: four times an angle is the same for both.
+    let (mut along, mut across) = (0.0, 0.0);
+    for edge in &edges {
+        let (a, b) = ends(*edge);
+        let (x, y) = ((b[0] - a[0]) / size, (b[1] - a[1]) / size);
+        let square = x * x + y * y;
+        if square > 0.0 {
+            let (re, im) = (x * x - y * y, 2.0 * x * y);
+            along += (re * re - im * im) / square;
+            across += 2.0 * re * im / square;
         }
-        active.push((high, edge));
     }
-    found
+    let angle = 0.25 * libm::atan2(across, along);
+    let (cos, sin) = (libm::cos(angle), libm::sin(angle));
+    let turned = |p: [f64; 2]| {
+        let (x, y) = (p[0] - origin[0], p[1] - origin[1]);
+        [cos * x + sin * y, cos * y - sin * x]
+    };
+    let margin = MARGIN * size;
+    let boxes = edges.iter().map(|edge| {
+        let (a, b) = ends(*edge);
+        let [low, high] = bounds_of(turned(a), turned(b));
+        [low.map(|x| x - margin), high.map(|x| x + margin)]
+    });
+    let tree = Segments::of(boxes.collect());
+
+    // Edge by edge from the first on: the first that meets a later one is part of the lowest pair.
+    for number in 0..edges.len() as u32 {
+        let mut lowest: Option<u32> = None;
+        *compared += tree.beside(number, |other| {
+            let better = other > number && lowest.is_none_or(|best| other < best);
+            if better && edges_conflict(rings, [edges[number as usize], edges[other as usize]]) {
+                lowest = Some(other);
+            }
+        });
+        if let Some(other) = lowest {
+            return Ok(Some([edges[number as usize], edges[other as usize]]));
+        }
+        if *compared > most {
+            return Err(());
+        }
+    }
+    Ok(None)
 }
 
 /// Whether two edges, the lower first, meet in more than the end that neighbours of one ring share.
@@ -81,5 +123,75 @@ fn edges_conflict(rings: &[&[[f64; 2]]], [first, second]: [EdgeOfRing; 2]) -> bo
         folds_back(c, d, b)
     } else {
         segments_meet(a, b, c, d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{EdgeOfRing, edges_conflict, first_meeting, search};
+    use proptest::prelude::*;
+
+    fn by_all_pairs(rings: &[&[[f64; 2]]]) -> Option<[EdgeOfRing; 2]> {
+        let edges: Vec<EdgeOfRing> = rings
+            .iter()
+            .enumerate()
+            .flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge)))
+            .collect();
+        let pairs = edges.iter().enumerate().flat_map(|(k, p)| edges[k + 1..].iter().map(|q| [*p, *q]));
+        pairs.into_iter().find(|pair| edges_conflict(rings, *pair))
+    }
+
+    proptest! {
+        /// On a coarse grid, points and edges often touch.
+        #[test]
+        fn the_lowest_pair_that_meets_is_that_of_all_pairs(
+            rings in proptest::collection::vec(proptest::collection::vec([0..9u8, 0..9u8], 3..12), 1..4),
+            angle in 0..12u8,
+        ) {
+            let (sin, cos) = (libm::sin(0.3 * f64::from(angle)), libm::cos(0.3 * f64::from(angle)));
+            let turn = |[x, y]: [u8; 2]| [cos * f64::from(x) - sin * f64::from(y), sin * f64::from(x) + cos * f64::from(y)];
+            let rings: Vec<Vec<[f64; 2]>> =
+                rings.into_iter().map(|ring| ring.into_iter().map(turn).collect()).collect();
+            let rings: Vec<&[[f64; 2]]> = rings.iter().map(Vec::as_slice).collect();
+            prop_assert_eq!(first_meeting(&rings), Ok(by_all_pairs(&rings)));
+        }
+    }
+
+    /// A comb of long teeth, turned by an angle.
+    fn comb(teeth: u32, angle: f64) -> Vec<[f64; 2]> {
+        let width = 1.0 / f64::from(2 * teeth);
+        let mut points = vec![[1.0, 1.0], [0.0, 1.0]];
+        for tooth in 0..teeth {
+            let x = f64::from(2 * tooth) * width;
+            points.extend([[x, 0.0], [x + width, 0.0], [x + width, 0.99], [x + 2.0 * width, 0.99]]);
+        }
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        points.into_iter().map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]).collect()
+    }
+
+    #[test]
+    fn edges_of_combs_are_compared_with_few_others_however_many_and_however_they_lie() {
+        for angle in [0.0, 0.2, 0.7, 1.2] {
+            for teeth in [1_000, 8_000] {
+                let points = comb(teeth, angle);
+                let mut compared = 0;
+                assert_eq!(search(&[&points], u64::MAX, &mut compared), Ok(None), "{teeth} teeth");
+                let each = compared / points.len() as u64;
+                assert!(each < 300, "each of {} edges at {angle} is compared with {each} boxes", points.len());
+            }
+        }
+    }
+
+    #[test]
+    fn too_many_edges_side_by_side_are_refused_and_not_compared_for_ever() {
+        // Thin spikes that fan out: every box overlaps those of a whole quarter.
+        let spikes = 4_000;
+        let place = |k: u32, r: f64| {
+            let angle = core::f64::consts::PI * f64::from(k) / f64::from(spikes);
+            [r * libm::cos(angle), r * libm::sin(angle)]
+        };
+        let points: Vec<[f64; 2]> = (0..spikes).flat_map(|k| [place(2 * k, 1.0), place(2 * k + 1, 1e-3)]).collect();
+        assert_eq!(first_meeting(&[&points]), Ok(None));
+        assert_eq!(search(&[&points], 1_000_000, &mut 0), Err(()));
     }
 }

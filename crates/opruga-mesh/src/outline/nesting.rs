@@ -1,6 +1,11 @@
 //! Which rings are holes.
 
+use super::inside::around;
 use super::{OutlineError, Ring, first_meeting};
+use crate::MeshError;
+
+/// Two parts, and where they meet.
+type Meeting = ([u32; 2], [f64; 2]);
 
 /// Turns rings by the even-odd rule: those inside an even number of others run counter-clockwise, holes clockwise. Returns how many were turned.
 ///
@@ -9,26 +14,45 @@ use super::{OutlineError, Ring, first_meeting};
 /// themselves or one another.
 pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
     check(rings)?;
-    if let Some((parts, place)) = meeting(rings) {
+    if let Some((parts, place)) = meeting(rings)? {
         return Err(OutlineError::Meeting { parts, place });
     }
-    let boxes: Vec<_> = rings.iter().map(|ring| super::bounds(core::slice::from_ref(ring))).collect();
     let mut turned = 0;
+    let around = around(rings);
+    let mut depths: Vec<Option<bool>> = vec![None; rings.len()];
     for number in 0..rings.len() {
-        // Rings do not touch, so any point tells for the whole ring.
-        let point = rings[number].points[0];
-        let around = |other: &usize| {
-            *other != number
-                && boxes[*other].is_some_and(|(low, high)| (0..2).all(|a| low[a] <= point[a] && point[a] <= high[a]))
-                && encloses(&rings[*other], point)
-        };
-        let hole = (0..rings.len()).filter(around).count() % 2 == 1;
-        if (rings[number].area() < 0.0) != hole {
-            rings[number].points.reverse();
+        let hole = is_hole(number, &around, &mut depths);
+        let ring = &mut rings[number];
+        if (ring.area() < 0.0) != hole {
+            ring.points.reverse();
             turned += 1;
         }
     }
     Ok(turned)
+}
+
+/// Whether a ring lies inside an odd number of others; what is known of each is kept.
+fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) -> bool {
+    // Outwards to a ring of which it is known, and back: rings may lie in one another by the thousand.
+    let (mut way, mut at) = (Vec::new(), number);
+    let mut hole = loop {
+        match (known[at], around[at]) {
+            (Some(hole), _) => break hole,
+            (None, None) => {
+                known[at] = Some(false);
+                break false;
+            }
+            (None, Some(outer)) => {
+                way.push(at);
+                at = outer;
+            }
+        }
+    };
+    for ring in way.into_iter().rev() {
+        hole = !hole;
+        known[ring] = Some(hole);
+    }
+    hole
 }
 
 /// Refuses rings without extent.
@@ -45,7 +69,7 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
             // The halves of a figure of eight enclose as much as they take away: what is wrong is that they cross.
             if area == 0.0
                 && !is_on_a_line(ring)
-                && let Some((parts, place)) = meeting(core::slice::from_ref(ring))
+                && let Some((parts, place)) = meeting(core::slice::from_ref(ring))?
             {
                 return Err(OutlineError::Meeting { parts, place });
             }
@@ -65,12 +89,15 @@ fn is_on_a_line(ring: &Ring) -> bool {
 }
 
 /// The parts of the first two edges that meet, and about where.
-pub(super) fn meeting(rings: &[Ring]) -> Option<([u32; 2], [f64; 2])> {
+///
+/// # Errors
+/// [`MeshError::NotCompared`] where that cannot be told.
+pub(super) fn meeting(rings: &[Ring]) -> Result<Option<Meeting>, MeshError> {
     let all: Vec<&[[f64; 2]]> = rings.iter().map(|ring| ring.points.as_slice()).collect();
-    let [p, q] = first_meeting(&all)?;
+    let Some([p, q]) = first_meeting(&all)? else { return Ok(None) };
     let ends = |(ring, edge): (usize, usize)| (all[ring][edge], all[ring][(edge + 1) % all[ring].len()]);
     let ((a, b), (c, d)) = (ends(p), ends(q));
-    Some(([rings[p.0].part, rings[q.0].part], crossing_place(a, b, c, d)))
+    Ok(Some(([rings[p.0].part, rings[q.0].part], crossing_place(a, b, c, d))))
 }
 
 /// Where two edges cross: a common end, or where their lines do; for parallel ones an end of one that lies on the other.
@@ -87,16 +114,4 @@ fn crossing_place(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> [f64; 2
     }
     let t = ((c[0] - a[0]) * v[1] - (c[1] - a[1]) * v[0]) / across;
     [a[0] + t * u[0], a[1] + t * u[1]]
-}
-
-/// Whether a point lies inside a ring: an odd number of edges cross the ray to its right.
-pub(super) fn encloses(ring: &Ring, point: [f64; 2]) -> bool {
-    let mut inside = false;
-    for (a, b) in ring.edges() {
-        if (a[1] > point[1]) != (b[1] > point[1]) {
-            let x = a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            inside ^= x > point[0];
-        }
-    }
-    inside
 }

@@ -21,7 +21,7 @@ pub enum Overlap {
 /// there: every one keeps a corner of its own, set back by 2⁻³² of that size.
 pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
     let made = covered(rings, how, false);
-    if nesting::meeting(&made).is_none() {
+    if matches!(nesting::meeting(&made), Ok(None)) {
         return made;
     }
     // Points in which rings touch lie on straight edges too: none of them may be left out.
@@ -34,7 +34,7 @@ pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
 pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     let all: Vec<&Ring> = rings.iter().collect();
     let made = numbered(contours(&all, FillRule::NonZero, false));
-    if nesting::meeting(&made).is_none() {
+    if matches!(nesting::meeting(&made), Ok(None)) {
         made
     } else {
         touching::apart(&numbered(contours(&all, FillRule::NonZero, true)))
@@ -48,15 +48,11 @@ fn covered(rings: &[Ring], how: Overlap, all_points: bool) -> Vec<Ring> {
         Overlap::EvenOdd => contours(&everything, FillRule::EvenOdd, all_points),
         Overlap::Union => {
             // First every part by itself, then all of them together: outer rings and holes then wind opposite ways.
-            let mut parts: Vec<u32> = rings.iter().map(|ring| ring.part).collect();
-            parts.sort_unstable();
-            parts.dedup();
-            let clean: Vec<Ring> = parts
-                .into_iter()
-                .flat_map(|part| {
-                    let own: Vec<&Ring> = rings.iter().filter(|ring| ring.part == part).collect();
-                    contours(&own, FillRule::EvenOdd, all_points)
-                })
+            let mut by_part = everything;
+            by_part.sort_by_key(|ring| ring.part);
+            let clean: Vec<Ring> = by_part
+                .chunk_by(|a, b| a.part == b.part)
+                .flat_map(|own| contours(own, FillRule::EvenOdd, all_points))
                 .map(|points| Ring { points, part: 0 })
                 .collect();
             contours(&clean.iter().collect::<Vec<_>>(), FillRule::NonZero, all_points)

@@ -1,6 +1,7 @@
 //! Closed curves in equal edges that keep their corners.
 
 use super::{OutlineError, Ring, distance};
+use std::collections::BTreeSet;
 
 /// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by no more than 40°, a
 /// regular octagon by 45°; a circle, cut into the twelve edges or more in which turns are looked for, by 30° at most.
@@ -26,7 +27,7 @@ pub fn resampled(rings: &[Ring], spacing: f64) -> Result<Vec<Ring>, OutlineError
             return Err(OutlineError::NoArea { part: ring.part, points: ring.points.len(), place });
         }
     }
-    match super::nesting::meeting(&coarse) {
+    match super::nesting::meeting(&coarse)? {
         Some((parts, place)) => Err(OutlineError::TooCoarse { spacing, parts, place }),
         None => Ok(coarse),
     }
@@ -112,19 +113,23 @@ impl<'a> Curve<'a> {
         }
         // The sharpest first; what lies within its reach belongs to it.
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut corners: Vec<f64> = fixed.iter().map(|point| self.from_start[*point]).collect();
+        // Lengths are not negative: their bits are in the order of the numbers.
+        let mut corners: BTreeSet<u64> = fixed.iter().map(|point| self.from_start[*point].to_bits()).collect();
         for (_, length) in candidates {
-            let place = corners.partition_point(|c| *c < length);
-            let n = corners.len();
-            let apart = |other: f64| {
-                let gap = (other - length).abs();
-                gap > reach && self.total - gap > reach
+            let apart = |other: Option<&u64>| {
+                other.is_none_or(|other| {
+                    let gap = (f64::from_bits(*other) - length).abs();
+                    gap > reach && self.total - gap > reach
+                })
             };
-            let free = n == 0 || (apart(corners[(place + n - 1) % n]) && apart(corners[place % n]));
-            if free {
-                corners.insert(place, length);
+            // The neighbours before and behind, around the end of the ring.
+            let key = length.to_bits();
+            let before = corners.range(..key).next_back().or(corners.last());
+            let behind = corners.range(key..).next().or(corners.first());
+            if apart(before) && apart(behind) {
+                corners.insert(key);
             }
         }
-        corners
+        corners.into_iter().map(f64::from_bits).collect()
     }
 }

@@ -107,20 +107,23 @@ fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
 
 /// Adds a square wherever two touch in a corner alone: a body there would hang together by a point.
 fn close_corners(kept: &mut BTreeSet<Square>) {
-    loop {
-        let mut missing = Vec::new();
-        for &(i, j) in kept.iter() {
+    // What was added last can touch others anew.
+    let mut added: Vec<Square> = kept.iter().copied().collect();
+    while !added.is_empty() {
+        let mut missing = BTreeSet::new();
+        for (i, j) in added {
             for side in [-1, 1] {
-                // The square diagonally above, and the two beside both.
-                let beside = [(i + side, j), (i, j + 1)];
-                if kept.contains(&(i + side, j + 1)) && !beside.iter().any(|square| kept.contains(square)) {
-                    missing.push(beside[0]);
+                // The square as the lower one of two that touch, and as the upper one.
+                for (i, j) in [(i, j), (i - side, j - 1)] {
+                    let beside = [(i + side, j), (i, j + 1)];
+                    let both = kept.contains(&(i, j)) && kept.contains(&(i + side, j + 1));
+                    if both && !beside.iter().any(|square| kept.contains(square)) {
+                        missing.insert(beside[0]);
+                    }
                 }
             }
         }
-        if missing.is_empty() {
-            return;
-        }
-        kept.extend(missing);
+        kept.extend(&missing);
+        added = missing.into_iter().collect();
     }
 }

@@ -17,17 +17,17 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     let mut next = corners.next.clone();
     let mut moved = corners.points.clone();
     for here in corners.at_places().into_values().filter(|here| here.len() > 1) {
+        // By their direction; of equal ones the first comes last, where it is looked for.
+        let mut leaving: Vec<(f64, usize)> =
+            here.iter().map(|corner| (corners.direction(*corner, corners.next[*corner]), *corner)).collect();
+        leaving.sort_by(|p, q| p.0.total_cmp(&q.0).then(q.1.cmp(&p.1)));
         for &corner in &here {
             let from = corners.direction(corner, corners.previous[corner]);
             // The sector to the left of the edge that comes in ends at the first edge that goes out, clockwise.
-            let sector = |other: usize| clockwise(from, corners.direction(other, corners.next[other]));
-            let mut best = (f64::INFINITY, corner);
-            for &other in &here {
-                let angle = sector(other);
-                best = if angle < best.0 { (angle, other) } else { best };
-            }
-            next[corner] = corners.next[best.1];
-            let middle = from - 0.5 * best.0;
+            let below = leaving.partition_point(|(to, _)| *to < from);
+            let (to, other) = leaving[if below > 0 { below } else { leaving.len() } - 1];
+            next[corner] = corners.next[other];
+            let middle = from - 0.5 * clockwise(from, to);
             let [x, y] = corners.points[corner];
             moved[corner] = [x + step * libm::cos(middle), y + step * libm::sin(middle)];
         }
