@@ -5,6 +5,7 @@
 
 pub mod base64;
 mod brackets;
+mod budget;
 pub mod catalogue;
 pub mod checkpoint;
 mod document;
@@ -16,6 +17,7 @@ pub mod problem;
 pub mod recording;
 pub mod reference;
 pub mod refusals;
+mod rounding;
 pub mod safe_write;
 pub mod scene;
 pub mod schema;

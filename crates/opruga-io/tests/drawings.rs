@@ -168,7 +168,7 @@ fn deep_drawings_are_refused_and_large_ones_read() {
         many += &format!("<g id=\"u{k}\">{uses}</g>");
     }
     let many = drawing(&format!("{many}</defs><use href=\"#u9\"/>"));
-    assert_eq!(svg(&many).expect_err("many")[0].code, "shape.too_large");
+    assert_eq!(svg(&many).expect_err("many")[0].code, "limit.outlines");
     // 10⁵ points.
     let n = 100_000;
     let points: String = (0..n)

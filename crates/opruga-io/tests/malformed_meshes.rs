@@ -218,3 +218,18 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
         body(name, &text).unwrap_or_else(|e| panic!("{e}"));
     }
 }
+
+/// The lowest and the highest number at the head of nodes and elements are those that are there; numbers between may be left out.
+#[test]
+fn promised_numbers_of_gmsh_are_those_that_are_there() {
+    let error = body("a.msh", include_str!("data/faults/largest-tag.msh")).expect_err("100 is not there");
+    assert_eq!((error.code, error.line, error.value.as_deref()), ("msh.size", Some(9), Some("1, 100")));
+    assert_eq!(error.allowed.as_deref(), Some("1, 14"));
+    let sparse = MSH.replace("1 5 1 5\n", "1 5 1 1000000000\n").replace("3\n4\n5\n", "3\n7\n1000000000\n");
+    let sparse = sparse.replace("1 1 2 3 4\n2 2 3 4 5\n", "1 1 2 3 7\n2 2 3 7 1000000000\n");
+    assert!((body("a.msh", &sparse).expect("sparse").0.measure().expect("a volume").value() - 0.5).abs() < 1e-12);
+    for (good, bad, line) in [("1 5 1 5\n", "1 5 0 5\n", 9), ("1 2 1 2\n", "1 2 1 3\n", 23)] {
+        let error = body("a.msh", &MSH.replace(good, bad)).expect_err("other numbers");
+        assert_eq!((error.code, error.line), ("msh.size", Some(line)), "{error}");
+    }
+}

@@ -33,18 +33,25 @@ struct Sample {
     bytes: Vec<u8>,
 }
 
-/// The corpus that fuzzing begins from, in the order of its names, and larger files.
-static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(|| {
+/// What of the corpus is read, or the small files that ask for too much: their names begin with `refused`.
+fn corpus(refused: bool) -> Vec<Sample> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/shape_files");
     let entries = std::fs::read_dir(&folder).expect("a corpus");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
-    let corpus = paths.iter().map(|path| {
+    paths.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("refused-")) == refused);
+    let sample = |path: &PathBuf| {
         let input = std::fs::read(path).expect("a sample");
         let (which, bytes) = input.split_first().expect("a sample that says what it is");
         let (dimension, name, shape) = SHAPES[usize::from(*which)];
         Sample { dimension, name, shape, bytes: bytes.to_vec() }
-    });
+    };
+    paths.iter().map(sample).collect()
+}
+
+/// The corpus that fuzzing begins from, in the order of its names, and larger files.
+static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(|| {
+    let corpus = corpus(false).into_iter();
     let larger = LARGER.iter().map(|(dimension, name, shape, bytes)| Sample {
         dimension: *dimension,
         name,
@@ -134,6 +141,15 @@ fn the_samples_reach_every_reader() {
 fn the_samples_are_read() {
     for sample in SAMPLES.iter() {
         assert!(survives(sample, &sample.bytes), "{}, {}", sample.name, sample.shape);
+    }
+}
+
+#[test]
+fn small_files_that_ask_for_much_are_refused() {
+    let refused = corpus(true);
+    assert!(refused.len() > 5);
+    for sample in refused {
+        assert!(!survives(&sample, &sample.bytes), "{}, {}", sample.name, sample.shape);
     }
 }
 

@@ -313,7 +313,7 @@ fn bad_gltf_files_are_refused_with_their_place() {
     for (from, to, code) in [
         ("\"2.0\"", "\"1.0\"", "gltf.version"),
         ("\"scene\":0", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]", "gltf.unsupported"),
-        ("\"children\":[1]", "\"children\":[0]", "gltf.depth"),
+        ("\"children\":[1]", "\"children\":[0]", "gltf.tree"),
         ("\"children\":[1]", "\"children\":[7]", "gltf.index"),
         ("\"mesh\":0", "\"mesh\":3", "gltf.index"),
         ("\"POSITION\":0", "\"NORMAL\":0", "gltf.syntax"),

@@ -3,6 +3,7 @@
 use super::found::{Found, Item, Kind};
 use super::scanner::Scanner;
 use crate::problem::{SceneError, visible};
+use crate::rounding::Stored;
 use opruga_math::words::counted;
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
@@ -29,7 +30,9 @@ pub(super) fn assemble<const D: usize>(
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
     let work = Assembly { found: &found, nodes, items };
     let dimension = work.dimension::<D>()?;
-    let mut notices = found.notices.clone();
+    let mut notices = found.all_notices();
+    let stored = Stored::of(&found.positions, found.items.iter().map(Item::nodes), found.single);
+    notices.extend(stored.told().map_err(|error| work.file(error))?);
     let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, ..Mesh::default() };
     // Cells are counted kind by kind: `order` says which item each of them was.
     let order = work.order(dimension);

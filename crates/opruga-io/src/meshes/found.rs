@@ -1,8 +1,10 @@
 //! Nodes and elements as a mesh file gives them, before a body is made of them.
 
 use super::scanner::Scanner;
+use crate::budget::{NOTICES, VALUES};
 use crate::problem::SceneError;
-use std::collections::BTreeMap;
+use opruga_math::words::counted;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Elements that Opruga knows, numbered as in [`opruga_mesh::Cells`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,8 +102,14 @@ pub(crate) struct Found {
     pub(crate) node_groups: BTreeMap<String, Vec<u32>>,
     /// Named numbers, one per item; NaN for items that have none.
     pub(crate) item_values: BTreeMap<String, Vec<f64>>,
-    /// What is left out, counted.
-    pub(crate) notices: Vec<SceneError>,
+    /// What is left out, up to a number.
+    notices: Vec<SceneError>,
+    /// What more is left out.
+    more: usize,
+    /// Values of items and memberships in groups.
+    given: u64,
+    /// Whether the file holds coordinates of 4 bytes each.
+    pub(crate) single: bool,
 }
 
 impl Found {
@@ -141,9 +149,45 @@ impl Found {
         Err(error.value(number.to_string()).allowed("a number of its own for every element"))
     }
 
+    /// Adds the last items, from one on, to groups, each of them to all.
+    ///
+    /// # Errors
+    /// `limit.values` for too many.
+    pub(super) fn join_all(&mut self, groups: &BTreeSet<String>, first: usize) -> Result<(), SceneError> {
+        let items = first as u32..self.items.len() as u32;
+        for group in groups {
+            self.gives(items.len())?;
+            self.item_groups.entry(group.clone()).or_default().extend(items.clone());
+        }
+        Ok(())
+    }
+
+    /// Counts values of items and memberships in groups.
+    ///
+    /// # Errors
+    /// `limit.values`.
+    pub(super) fn gives(&mut self, values: usize) -> Result<(), SceneError> {
+        self.given = self.given.saturating_add(values as u64);
+        VALUES.check(self.given)
+    }
+
     /// Says what of the file has no place in a body at rest.
     pub(super) fn left_out(&mut self, what: String, value: String) {
-        self.notices.push(SceneError::new("mesh.left_out", what).value(value));
+        if self.notices.len() < NOTICES {
+            self.notices.push(SceneError::new("mesh.left_out", what).value(value));
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// All that is left out: what is not listed is counted.
+    pub(crate) fn all_notices(&self) -> Vec<SceneError> {
+        let mut all = self.notices.clone();
+        if self.more > 0 {
+            let message = format!("{} left out", counted(self.more as u64, "more thing is", "more things are"));
+            all.push(SceneError::new("mesh.left_out", message).value(self.more.to_string()));
+        }
+        all
     }
 }
 

@@ -42,6 +42,8 @@ pub(super) struct Context {
     pub(super) divided: bool,
     /// How often values of a name came again, as those of later steps do.
     later: BTreeMap<String, u64>,
+    /// The numbers of elements, ascending, with their places in the list; made where values are first looked for.
+    order: Vec<(u64, usize)>,
 }
 
 /// Reads a file.
@@ -71,12 +73,12 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
                 context.listed = true;
             }
             "Nodes" if numbers.is_none() => {
-                if modern {
-                    gmsh_4::nodes(scanner, &mut context.found)?;
+                numbers = Some(if modern {
+                    gmsh_4::nodes(scanner, &mut context.found)?
                 } else {
                     gmsh_2::nodes(scanner, &mut context.found)?;
-                }
-                numbers = Some(Numbers::of(&context.found, scanner)?);
+                    Numbers::of(&context.found, scanner)?
+                });
             }
             "Elements" if !elements => {
                 let Some(numbers) = &numbers else {
@@ -87,8 +89,8 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
                     gmsh_4::elements(scanner, &mut context, numbers)?;
                 } else {
                     gmsh_2::elements(scanner, &mut context, numbers)?;
+                    context.found.distinct_elements(scanner)?;
                 }
-                context.found.distinct_elements(scanner)?;
                 elements = true;
             }
             "ElementData" if elements => element_data(scanner, &mut context)?,
@@ -239,8 +241,13 @@ fn element_data(scanner: &mut Scanner<'_>, context: &mut Context) -> Result<(), 
         };
     }
     scanner.line_end(SYNTAX, "the count of values")?;
-    let mut order: Vec<(u64, usize)> = found.items.iter().zip(0..).map(|(item, k)| (item.number, k)).collect();
-    order.sort_unstable();
+    if context.order.len() != found.items.len() {
+        context.order = found.items.iter().zip(0..).map(|(item, k)| (item.number, k)).collect();
+        context.order.sort_unstable();
+    }
+    let order = &context.order;
+    // Elements that have no value take room too.
+    found.gives(found.items.len()).map_err(|e| scanner.at(e, from))?;
     let mut values = vec![f64::NAN; found.items.len()];
     for _ in 0..scanner.fits(SIZE, count, 4, "values", from)? {
         if !scanner.binary {

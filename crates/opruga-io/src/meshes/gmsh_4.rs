@@ -4,6 +4,7 @@ use super::found::{Found, Numbers};
 use super::gmsh::{Context, SIZE, SYNTAX, element_type, reorder};
 use super::scanner::Scanner;
 use crate::problem::SceneError;
+use std::collections::BTreeSet;
 
 /// A whole number of 8 bytes in binary, or a word; with its place.
 fn long(scanner: &mut Scanner<'_>, what: &str) -> Result<(u64, usize), SceneError> {
@@ -89,7 +90,7 @@ fn bounds(scanner: &mut Scanner<'_>, of: &str) -> Result<([u64; 2], usize), Scen
     Ok(([lowest, highest], from))
 }
 
-/// Refuses numbers that are not the promised ones.
+/// Refuses numbers whose lowest and highest are not the promised ones. Those between may be left out.
 fn within(
     scanner: &Scanner<'_>,
     ([lowest, highest], from): ([u64; 2], usize),
@@ -98,14 +99,17 @@ fn within(
 ) -> Result<(), SceneError> {
     let there = numbers
         .fold(None, |bounds: Option<[u64; 2]>, n| Some(bounds.map_or([n, n], |[low, high]| [low.min(n), high.max(n)])));
-    let Some([low, high]) = there.filter(|[low, high]| *low < lowest || *high > highest) else { return Ok(()) };
+    let Some([low, high]) = there.filter(|there| *there != [lowest, highest]) else { return Ok(()) };
     let message =
         format!("numbers of {what} from {lowest} to {highest} are promised, but those from {low} to {high} are there");
-    Err(scanner.error(SIZE, message, from).value(format!("{lowest}, {highest}")).allowed(format!("{low}, {high}")))
+    let error = scanner.error(SIZE, message, from).value(format!("{lowest}, {highest}"));
+    Err(error
+        .allowed(format!("{low}, {high}"))
+        .hint("the head of the section is wrong, or what it tells of is missing"))
 }
 
 /// `$Nodes`: blocks of numbers and then of coordinates, parametric ones behind them.
-pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), SceneError> {
+pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<Numbers, SceneError> {
     let blocks = count(scanner, 20, "blocks")?;
     let (promised, from) = long(scanner, "the number of nodes")?;
     scanner.fits(SIZE, promised, if scanner.binary { 32 } else { 8 }, "nodes", from)?;
@@ -146,7 +150,9 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<(), 
         );
         return Err(error.value(promised.to_string()).allowed(found.positions.len().to_string()));
     }
-    within(scanner, bounds, found.node_numbers.iter().copied(), "nodes")
+    let numbers = Numbers::of(found, scanner)?;
+    within(scanner, bounds, found.node_numbers.iter().copied(), "nodes")?;
+    Ok(numbers)
 }
 
 /// `$Elements`: blocks of elements of one type and one entity, which knows its physical groups.
@@ -179,9 +185,9 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
         }
         let own = count(scanner, 8 * (1 + kind.nodes() as u64), "elements")?;
         line_end(scanner, "a block of elements")?;
-        let groups: Vec<String> = context
-            .entities
-            .get(&(kind.dimension(), tag))
+        let first = context.found.items.len();
+        let entity = context.entities.get(&(kind.dimension(), tag)).filter(|_| own > 0);
+        let groups: BTreeSet<String> = entity
             .into_iter()
             .flatten()
             // The sign of a group tells the direction of its curves and surfaces.
@@ -198,13 +204,14 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
             let nodes = &mut nodes[..kind.nodes()];
             reorder(kind, nodes);
             context.found.item(kind, nodes, name, place);
-            groups.iter().for_each(|group| context.found.join(group.clone()));
         }
+        context.found.join_all(&groups, first).map_err(|e| scanner.at(e, at_tag))?;
     }
     if context.found.items.len() as u64 != promised {
         let there = context.found.items.len();
         let error = scanner.error(SIZE, format!("{promised} elements are promised, but {there} are there"), from);
         return Err(error.value(promised.to_string()).allowed(there.to_string()));
     }
+    context.found.distinct_elements(scanner)?;
     within(scanner, bounds, context.found.items.iter().map(|item| item.number), "elements")
 }

@@ -49,9 +49,14 @@ impl<'a> Scanner<'a> {
 
     /// An error at the word or number that begins at a byte.
     pub(super) fn error(&self, code: &'static str, message: impl Into<String>, from: usize) -> SceneError {
+        self.at(SceneError::new(code, message), from)
+    }
+
+    /// The same for an error that has no place yet.
+    pub(super) fn at(&self, error: SceneError, from: usize) -> SceneError {
         let end =
             from + self.bytes[from.min(self.bytes.len())..].iter().take_while(|b| !b.is_ascii_whitespace()).count();
-        self.mark(SceneError::new(code, message), from, end)
+        self.mark(error, from, end)
     }
 
     /// An error at the end of the file.

@@ -240,6 +240,7 @@ impl Reader<'_, '_> {
     fn points(&mut self) -> Result<(), SceneError> {
         let (count, from) = self.scanner.whole::<u64>(SYNTAX, "the number of points")?;
         let kind = self.number_type()?;
+        self.found.single |= kind == Number::Real(4);
         let numbers = self.values(count.saturating_mul(3), kind, "coordinates", from)?;
         for (number, x) in numbers.chunks_exact(3).enumerate() {
             self.found.node(number as u64, [x[0].0, x[1].0, x[2].0], x[0].1);

@@ -8,8 +8,11 @@ use super::scanner::Scanner;
 use super::vtk;
 use super::vtk_numbers::{Number, Value};
 use crate::base64;
+use crate::budget::{NUMBERS, NUMBERS_PER_BYTE};
 use crate::problem::{SceneError, visible};
 use roxmltree::{Document, Node, ParsingOptions};
+use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::io::Read;
 
 const SYNTAX: &str = "vtu.syntax";
@@ -27,13 +30,20 @@ struct Reader<'a> {
     compressed: bool,
     /// Appended data behind its underscore: raw, or letters.
     appended: Option<(&'a [u8], bool)>,
+    /// How many numbers binary arrays hold.
+    numbers: Cell<u64>,
 }
 
 /// An error at an element of the file.
 fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, code: &'static str, message: impl Into<String>) -> SceneError {
+    marked(scanner, node, SceneError::new(code, message))
+}
+
+/// The same for an error that has no place yet.
+fn marked(scanner: &Scanner<'_>, node: Node<'_, '_>, error: SceneError) -> SceneError {
     let range = node.range();
     let end = scanner.bytes[range.start..].iter().position(|b| *b == b'>').map_or(range.end, |k| range.start + k + 1);
-    scanner.mark(SceneError::new(code, message), range.start, end)
+    scanner.mark(error, range.start, end)
 }
 
 /// The text of the file without appended data, and that data.
@@ -105,7 +115,14 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
             return Err(error.value(visible(other)).allowed("LittleEndian, BigEndian"));
         }
     };
-    let reader = Reader { scanner: &scanner, big_endian, header, compressed: compressor.is_some(), appended };
+    let reader = Reader {
+        scanner: &scanner,
+        big_endian,
+        header,
+        compressed: compressor.is_some(),
+        appended,
+        numbers: Cell::new(0),
+    };
     let mut found = Found::default();
     let pieces = root.descendants().filter(|node| node.has_tag_name("Piece"));
     let mut any = false;
@@ -113,6 +130,11 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
         any = true;
         reader.piece(piece, &mut found)?;
     }
+    // Cells that have no value take room too.
+    let items = found.items.len();
+    let missing = found.item_values.values().map(|values| items - values.len()).sum();
+    found.gives(missing).map_err(|e| marked(&scanner, root, e))?;
+    found.item_values.values_mut().for_each(|values| values.resize(items, f64::NAN));
     if !any {
         return Err(at(&scanner, root, SYNTAX, "there is no piece")
             .value("0")
@@ -180,6 +202,7 @@ impl Reader<'_> {
             let error = at(self.scanner, array, SYNTAX, format!("points have `{}` coordinates", visible(components)));
             return Err(error.value(visible(components)).allowed("3"));
         }
+        found.single |= array.attribute("type") == Some("Float32");
         let numbers = self.values(array, points * 3)?;
         for (number, x) in numbers.chunks_exact(3).enumerate() {
             if let Some(bad) = x.iter().find(|x| !x.is_finite()) {
@@ -220,7 +243,7 @@ impl Reader<'_> {
     /// Values of cells of one component; others, and those of points, are counted.
     fn data(&self, piece: Node<'_, '_>, cells: u64, first: usize, found: &mut Found) -> Result<(), SceneError> {
         self.only(piece, ("<CellData>", "<CellData>"), |node| node.has_tag_name("CellData"))?;
-        let mut names = Vec::new();
+        let mut names = BTreeSet::new();
         for (of, node) in piece.children().filter(Node::is_element).flat_map(|parent| {
             parent.children().filter(|n| n.has_tag_name("DataArray")).map(move |n| (parent.tag_name().name(), n))
         }) {
@@ -228,11 +251,12 @@ impl Reader<'_> {
             let single = matches!(node.attribute("NumberOfComponents"), None | Some("1" | "0"));
             match of {
                 "CellData" if single => {
-                    if names.contains(&name) {
+                    if !names.insert(name) {
                         return Err(vtk::twice(at(self.scanner, node, SYNTAX, vtk::values_twice(name)), name));
                     }
-                    names.push(name);
                     let own = self.values(node, cells)?;
+                    let before = found.item_values.get(name).map_or(0, Vec::len);
+                    found.gives(first - before + own.len()).map_err(|e| marked(self.scanner, node, e))?;
                     let values = found.item_values.entry(name.to_string()).or_default();
                     values.resize(first, f64::NAN);
                     values.extend(own);
@@ -243,8 +267,6 @@ impl Reader<'_> {
                 _ => {}
             }
         }
-        let items = found.items.len();
-        found.item_values.values_mut().for_each(|values| values.resize(items, f64::NAN));
         Ok(())
     }
 
@@ -301,6 +323,14 @@ impl Reader<'_> {
             }
         };
         bytes.chunks_exact(size).map(|word| made(kind.of_bytes(word, self.big_endian))).collect()
+    }
+
+    /// Counts numbers of binary arrays: compressed ones are few bytes, and those at the end of the file may be named again and again.
+    fn counted(&self, array: Node<'_, '_>, count: u64) -> Result<(), SceneError> {
+        self.numbers.set(self.numbers.get().saturating_add(count));
+        let held = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;
+        let counted = NUMBERS.check_beside(self.numbers.get(), NUMBERS_PER_BYTE.saturating_mul(held));
+        counted.map_err(|e| marked(self.scanner, array, e.hint("save the file without compression")))
     }
 
     fn wrong_count(&self, array: Node<'_, '_>, there: u64, count: u64) -> SceneError {
@@ -372,6 +402,7 @@ impl Reader<'_> {
                 return Err(self.wrong_count(array, own / size as u64, count));
             }
             let bytes = take(header + wanted)?;
+            self.counted(array, count)?;
             return Ok(bytes[self.header..][..wanted as usize].to_vec());
         }
         // Number of blocks, their size, the size of the last one, then the compressed sizes.
@@ -391,6 +422,7 @@ impl Reader<'_> {
         if total != wanted || total > packed.saturating_mul(MOST_COMPRESSED) + MOST_COMPRESSED {
             return Err(self.wrong_count(array, total / size as u64, count));
         }
+        self.counted(array, count)?;
         let start = (header * (3 + blocks)) as usize;
         let bytes = take((start as u64).saturating_add(packed))?;
         let (mut at_byte, mut out) = (start, Vec::with_capacity(wanted as usize));

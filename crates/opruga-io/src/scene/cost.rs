@@ -56,6 +56,6 @@ impl Cost {
 }
 
 /// A count as a whole number; beyond those of 64 bits by its power of ten.
-fn shown(count: f64) -> String {
+pub(crate) fn shown(count: f64) -> String {
     if count < u64::MAX as f64 { format!("{count:.0}") } else { format!("{count:.0e}") }
 }

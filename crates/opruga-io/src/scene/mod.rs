@@ -29,7 +29,7 @@ use crate::files::Files;
 use crate::overrides;
 use crate::problem::{Notice, SceneError};
 use crate::source::Source;
-pub(crate) use cost::Cost;
+pub(crate) use cost::{Cost, shown};
 use moments::Frames;
 use opruga_core::spec::Values;
 use opruga_world::blueprint::{

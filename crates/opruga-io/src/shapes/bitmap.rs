@@ -5,25 +5,23 @@
 
 use super::curves::Curves;
 use super::drawing::Drawing;
+use crate::budget::{OUTLINES, PIXELS, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
-
-/// The largest number of pixels.
-const MOST_PIXELS: u64 = 1 << 26;
 
 /// Reads a PNG picture.
 ///
 /// # Errors
-/// `png.syntax`, `shape.too_large` before the pixels are read, `shape.no_area` where none of them is inside.
+/// `png.syntax`, `limit.pixels` before the pixels are read, `limit.outlines`, `limit.points`, `shape.no_area` where none of them is inside.
 pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, SceneError> {
     let inside = shape.text("inside").unwrap_or("dark");
-    let grid = pixels(bytes, inside)?;
     let threshold = shape.number("threshold").unwrap_or(0.5);
+    let mut lines = Lines::new(threshold);
+    let most = pixels(bytes, inside, |row| lines.row(row))?;
     let mut curves = Curves::default();
-    for contour in contours(&grid, threshold) {
-        curves.polygon(&contour);
-    }
-    let most = grid.values.iter().fold(0.0, |most: f32, x| if *x > most { *x } else { most });
+    let (contours, points) = lines.contours(&mut curves);
+    let hint = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours";
+    OUTLINES.check(contours).and(POINTS.check(points)).map_err(|e| e.hint(hint))?;
     if f64::from(most) <= threshold {
         let error = SceneError::new("shape.no_area", format!("no pixel is more {inside} than the threshold"));
         let error = error.value(format!("at most {most:.3}")).allowed(format!("pixels above {threshold}"));
@@ -33,14 +31,12 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     Ok(Drawing { curves, y_down: true, source: None, places, painted, rules, notices })
 }
 
-/// Values from 0 to 1, with a border of zeros.
-struct Grid {
-    width: usize,
-    height: usize,
-    values: Vec<f32>,
-}
-
-fn pixels(bytes: &[u8], inside: &str) -> Result<Grid, SceneError> {
+/// Gives the values of the pixels, from 0 to 1, row by row, with a border of zeros on all sides; returns the largest.
+fn pixels(
+    bytes: &[u8],
+    inside: &str,
+    mut take: impl FnMut(&[f32]) -> Result<(), SceneError>,
+) -> Result<f32, SceneError> {
     let refuse = |e: png::DecodingError| {
         let error =
             SceneError::new("png.syntax", format!("this is no PNG that can be read: {}", visible(&e.to_string())));
@@ -51,17 +47,13 @@ fn pixels(bytes: &[u8], inside: &str) -> Result<Grid, SceneError> {
     decoder.set_limits(png::Limits { bytes: 1 << 30 });
     let mut reader = decoder.read_info().map_err(refuse)?;
     let (w, h) = (reader.info().width, reader.info().height);
-    if u64::from(w) * u64::from(h) > MOST_PIXELS {
-        let error = SceneError::new("shape.too_large", format!("the picture has {w}×{h} pixels"));
-        return Err(error.value(format!("{w}×{h}")).allowed(format!("at most {MOST_PIXELS} pixels")));
-    }
-    let mut data = vec![0; reader.output_buffer_size().unwrap_or(0)];
-    let info = reader.next_frame(&mut data).map_err(refuse)?;
-    let samples = info.color_type.samples();
-    let (width, height) = (w as usize + 2, h as usize + 2);
-    let mut grid = Grid { width, height, values: vec![0.0; width * height] };
-    for (y, row) in data.chunks_exact(info.line_size).take(h as usize).enumerate() {
-        for (x, pixel) in row.chunks_exact(samples).take(w as usize).enumerate() {
+    PIXELS.check(u64::from(w) * u64::from(h)).map_err(|e| e.value(format!("{w}×{h}")))?;
+    let samples = reader.output_color_type().0.samples();
+    let width = w as usize + 2;
+    let (mut values, mut most) = (vec![0.0f32; width], 0.0f32);
+    take(&values)?;
+    let mut row = |data: &[u8]| {
+        for (value, pixel) in values[1..].iter_mut().zip(data.chunks_exact(samples)).take(w as usize) {
             let part = |k: usize| f32::from(pixel.get(k).copied().unwrap_or(255)) / 255.0;
             // Luma of ITU-R BT.601, over white for dark shapes and over black for bright ones.
             let (luma, alpha) = match samples {
@@ -70,31 +62,84 @@ fn pixels(bytes: &[u8], inside: &str) -> Result<Grid, SceneError> {
                 3 => (0.299 * part(0) + 0.587 * part(1) + 0.114 * part(2), 1.0),
                 _ => (0.299 * part(0) + 0.587 * part(1) + 0.114 * part(2), part(3)),
             };
-            grid.values[(y + 1) * width + x + 1] = match inside {
+            *value = match inside {
                 "opaque" => alpha,
                 "bright" => luma * alpha,
                 _ => (1.0 - luma) * alpha,
             };
+            most = if *value > most { *value } else { most };
+        }
+        take(&values)
+    };
+    if reader.info().interlaced {
+        // Rows of interlaced pictures come in seven rounds: these need room for all of them.
+        let mut data = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        let info = reader.next_frame(&mut data).map_err(refuse)?;
+        data.chunks_exact(info.line_size).take(h as usize).try_for_each(&mut row)?;
+    } else {
+        for _ in 0..h {
+            let Some(data) = reader.next_row().map_err(refuse)? else { break };
+            row(data.data())?;
         }
     }
-    Ok(grid)
+    take(&vec![0.0; width])?;
+    Ok(most)
 }
 
-/// Closed contours with the inside to their left, where y counts upwards.
-fn contours(grid: &Grid, threshold: f64) -> Vec<Vec<[f64; 2]>> {
-    let (w, h) = (grid.width, grid.height);
-    let value = |x: usize, y: usize| f64::from(grid.values[y * w + x]);
-    // A border of zeros must lie outside, whatever the threshold is.
-    let is_in = |x: usize, y: usize| value(x, y) > threshold;
-    // Lines of the grid by number: 2·corner to the right of it, 2·corner + 1 below it.
-    let line = |x: usize, y: usize, down: usize| 2 * (y * w + x) + down;
-    let mut next: Vec<u32> = vec![u32::MAX; 2 * w * h];
-    for y in 0..h - 1 {
+/// Contours while rows come in: the steps from one line of the grid to the next, with their places.
+struct Lines {
+    threshold: f64,
+    /// The row before, and how many rows there have been.
+    above: Vec<f32>,
+    rows: usize,
+    /// From which line of the grid, to which, and where the contour crosses the first one.
+    steps: Vec<(u64, u64, [f64; 2])>,
+}
+
+impl Lines {
+    fn new(threshold: f64) -> Lines {
+        Lines { threshold, above: Vec::new(), rows: 0, steps: Vec::new() }
+    }
+
+    /// Takes the next row.
+    fn row(&mut self, below: &[f32]) -> Result<(), SceneError> {
+        if self.rows > 0 {
+            let above = std::mem::take(&mut self.above);
+            self.squares(&above, below);
+            self.above = above;
+        }
+        self.above.clear();
+        self.above.extend(below);
+        self.rows += 1;
+        // A contour has a step on every side of a pixel at most.
+        POINTS.check(self.steps.len() as u64)
+    }
+
+    /// The squares between two rows of pixels, with the inside to the left of each step where y counts upwards.
+    fn squares(&mut self, above: &[f32], below: &[f32]) {
+        let (w, y, threshold) = (above.len(), self.rows - 1, self.threshold);
+        let inside = |value: f32| f64::from(value) > threshold;
+        // Lines of the grid by number: 2·corner to the right of it, 2·corner + 1 below it.
+        let line = |x: usize, y: usize, down: usize| 2 * (y * w + x) as u64 + down as u64;
+        let crossing = |a: f32, b: f32| (threshold - f64::from(a)) / (f64::from(b) - f64::from(a));
         for x in 0..w - 1 {
+            let values = [above[x], above[x + 1], below[x + 1], below[x]];
+            // A border of zeros must lie outside, whatever the threshold is.
+            let code = values.iter().enumerate().map(|(k, value)| usize::from(inside(*value)) << k).sum::<usize>();
+            if code == 0 || code == 15 {
+                continue;
+            }
             let (top, bottom, left, right) = (line(x, y, 0), line(x, y + 1, 0), line(x, y, 1), line(x + 1, y, 1));
-            let corners = [is_in(x, y), is_in(x + 1, y), is_in(x + 1, y + 1), is_in(x, y + 1)];
-            let code = corners.iter().enumerate().map(|(k, inside)| usize::from(*inside) << k).sum::<usize>();
-            let mut go = |from: usize, to: usize| next[from] = to as u32;
+            let mut go = |from: u64, to: u64| {
+                let (fx, fy) = (x as f64, y as f64);
+                let place = match from {
+                    _ if from == top => [fx + crossing(values[0], values[1]), fy],
+                    _ if from == bottom => [fx + crossing(values[3], values[2]), (y + 1) as f64],
+                    _ if from == left => [fx, fy + crossing(values[0], values[3])],
+                    _ => [(x + 1) as f64, fy + crossing(values[1], values[2])],
+                };
+                self.steps.push((from, to, place));
+            };
             // Seen with y down, the inside lies to the right of each step.
             match code {
                 1 => go(left, top),
@@ -109,42 +154,46 @@ fn contours(grid: &Grid, threshold: f64) -> Vec<Vec<[f64; 2]>> {
                 13 => go(right, top),
                 11 => go(bottom, right),
                 7 => go(left, bottom),
-                5 | 10 => {
-                    let mean = 0.25 * (value(x, y) + value(x + 1, y) + value(x + 1, y + 1) + value(x, y + 1));
+                _ => {
+                    let [a, b, c, d] = values.map(f64::from);
+                    let mean = 0.25 * (a + b + c + d);
                     let joined = mean > threshold;
-                    if (code == 5) != joined {
-                        // Corners 0 and 2 apart, or corners 1 and 3 joined.
-                        let pairs =
-                            if code == 5 { [(left, top), (right, bottom)] } else { [(top, left), (bottom, right)] };
-                        pairs.into_iter().for_each(|(a, b)| go(a, b));
-                    } else {
-                        let pairs =
-                            if code == 5 { [(left, bottom), (right, top)] } else { [(top, right), (bottom, left)] };
-                        pairs.into_iter().for_each(|(a, b)| go(a, b));
-                    }
+                    // Corners 0 and 2 apart, or corners 1 and 3 joined; or the other way.
+                    let pairs = match (code == 5, (code == 5) != joined) {
+                        (true, true) => [(left, top), (right, bottom)],
+                        (false, true) => [(top, left), (bottom, right)],
+                        (true, false) => [(left, bottom), (right, top)],
+                        (false, false) => [(top, right), (bottom, left)],
+                    };
+                    pairs.into_iter().for_each(|(a, b)| go(a, b));
                 }
-                _ => {}
             }
         }
     }
-    let place = |line: usize| {
-        let (corner, down) = (line / 2, line % 2);
-        let (x, y) = (corner % w, corner / w);
-        let (a, b) = (value(x, y), if down == 1 { value(x, y + 1) } else { value(x + 1, y) });
-        let t = (threshold - a) / (b - a);
-        if down == 1 { [x as f64, y as f64 + t] } else { [x as f64 + t, y as f64] }
-    };
-    let mut found = Vec::new();
-    for start in 0..next.len() {
+
+    /// Draws the closed contours, the lowest lines first; returns how many contours and points there are. Too many are counted only.
+    fn contours(mut self, curves: &mut Curves) -> (u64, u64) {
+        self.steps.sort_unstable_by_key(|step| step.0);
+        let (mut contours, points) = (0, self.steps.len() as u64);
+        let mut taken = vec![false; self.steps.len()];
         let mut contour = Vec::new();
-        let mut at = start;
-        while next[at] != u32::MAX {
-            contour.push(place(at));
-            at = std::mem::replace(&mut next[at], u32::MAX) as usize;
+        for start in 0..self.steps.len() {
+            contour.clear();
+            let mut at = start;
+            while !std::mem::replace(&mut taken[at], true) {
+                let (_, to, place) = self.steps[at];
+                contour.push(place);
+                let Ok(next) = self.steps.binary_search_by_key(&to, |step| step.0) else { break };
+                at = next;
+            }
+            if contour.is_empty() {
+                continue;
+            }
+            contours += 1;
+            if contours <= OUTLINES.most {
+                curves.polygon(&contour);
+            }
         }
-        if !contour.is_empty() {
-            found.push(contour);
-        }
+        (contours, points)
     }
-    found
 }

@@ -133,6 +133,11 @@ impl Curves {
         self.contours.len()
     }
 
+    /// How many of them enclose something, perhaps.
+    pub(super) fn closed(&self) -> usize {
+        self.contours.iter().filter(|contour| !contour.segments.is_empty()).count()
+    }
+
     /// The contours from one on.
     pub(super) fn from(&self, begun: usize) -> Curves {
         Curves { contours: self.contours.get(begun..).unwrap_or(&[]).to_vec(), ..Curves::default() }
@@ -197,6 +202,28 @@ impl Curves {
             }
         }
         larger(high[0] - low[0], high[1] - low[1])
+    }
+
+    /// How many points [`Curves::flatten`] would make; at most as many as it needs to know that they are more than some.
+    pub(super) fn flat_points(&self, tolerance: f64, most: u64) -> u64 {
+        let mut count = 0;
+        for contour in &self.contours {
+            let mut at = contour.start;
+            count += 1;
+            for segment in &contour.segments {
+                count += match *segment {
+                    Segment::Line(_) => 1,
+                    Segment::Cubic(p, q, to) => pieces([at, p, q, to], tolerance),
+                };
+                at = match *segment {
+                    Segment::Line(to) | Segment::Cubic(_, _, to) => to,
+                };
+            }
+            if count > most {
+                break;
+            }
+        }
+        count
     }
 
     /// Rings that stay within `tolerance` of the curves. Points that repeat the one before are left out.

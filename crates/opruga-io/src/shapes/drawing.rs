@@ -3,12 +3,14 @@
 use super::curves::{Curves, larger};
 use super::rules::{self, Rule};
 use super::{Content, Loaded, Problem, told};
+use crate::budget::{OUTLINES, POINTS};
 use crate::problem::SceneError;
+use crate::scene::shown;
 use crate::source::Source;
 use opruga_core::spec::Values;
-use opruga_math::words::{counted, number};
+use opruga_math::words::{counted, number, rounded};
 use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
-use opruga_mesh::{Mesh, MeshError};
+use opruga_mesh::{MAXIMUM_NODES, Mesh, MeshError};
 
 /// Curves are followed within this part of the spacing.
 const TOLERANCE: f64 = 0.002;
@@ -97,7 +99,13 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         let error = SceneError::new("shape.no_area", "the file holds no closed outline").value(format!("{extent:e}"));
         return Err(error.allowed("outlines that enclose area, of an extent from 1e-150 to 1e150").into());
     }
-    let mut rings = drawing.curves.flatten(TOLERANCE * spacing * extent / size);
+    OUTLINES.check(drawing.curves.closed() as u64)?;
+    let tolerance = TOLERANCE * spacing * extent / size;
+    let points = drawing.curves.flat_points(tolerance, POINTS.most);
+    POINTS
+        .check(points)
+        .map_err(|e| Problem::new("spacing", e.hint("take a larger `spacing`, or a drawing of fewer points")))?;
+    let mut rings = drawing.curves.flatten(tolerance);
     drawing.notices.extend(rules::follow(&mut rings, &drawing.rules));
     let mut painted = painted(&drawing.painted, &rings);
 
@@ -154,6 +162,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         }
         _ => Inside::Nothing,
     };
+    too_fine(&rings, spacing, inside)?;
     // Points of a contour or a font are not what one has drawn.
     let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
     let before = rings;
@@ -164,6 +173,28 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     drawing.notices.extend(told::thinned(given, &before, &rings, spacing));
     let outline = Outline { rings, inside, painted };
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
+}
+
+/// Refuses a spacing with which the body would have more nodes than any may have, before they are made.
+fn too_fine(rings: &[Ring], spacing: f64, inside: Inside) -> Result<(), Problem> {
+    let length: f64 = rings.iter().map(Ring::length).sum();
+    let area = match inside {
+        Inside::Triangles(_) => rings.iter().map(Ring::area).sum::<f64>().abs(),
+        _ => 0.0,
+    };
+    // One node for every two equilateral triangles, and one for every piece of the outline.
+    let (most, each) = (MAXIMUM_NODES as f64, 0.75f64.sqrt());
+    let nodes = length / spacing + area / (each * spacing * spacing);
+    if nodes <= most {
+        return Ok(());
+    }
+    let least = (length + (length * length + 4.0 * most * area / each).sqrt()) / (2.0 * most);
+    let message = format!("nodes {} m apart would be {}", number(spacing), shown(nodes));
+    let error = SceneError::new("limit.nodes", message).value(number(spacing));
+    Err(Problem::new(
+        "spacing",
+        error.allowed(format!("from {} m on: at most {MAXIMUM_NODES} nodes", rounded(least, 3))),
+    ))
 }
 
 /// Whether a ring encloses more than an area: halves of a figure of eight add, though their signed areas cancel.
@@ -266,12 +297,18 @@ pub(super) fn refused(error: &OutlineError) -> SceneError {
         OutlineError::Meeting { .. } => "shape.crossing",
         OutlineError::TooCoarse { .. } => "shape.spacing",
         OutlineError::TooFine { .. } => "limit.nodes",
+        OutlineError::Mesh(MeshError::NotCompared { .. }) => "limit.comparisons",
         OutlineError::Mesh(_) => "scene.shape",
     };
     let value = match error {
         OutlineError::Meeting { place, .. } | OutlineError::NoArea { place, .. } => place.map(number).join(", "),
         OutlineError::NotFinite { value, .. } => value.to_string(),
         OutlineError::TooCoarse { spacing, .. } | OutlineError::TooFine { spacing, .. } => spacing.to_string(),
+        OutlineError::Mesh(MeshError::NotCompared { edges, most }) => {
+            let error = SceneError::new(code, error.to_string()).value(edges.to_string());
+            let error = error.allowed(format!("edges of which at most {most} pairs lie side by side"));
+            return error.hint("draw the outline with fewer points");
+        }
         OutlineError::Empty | OutlineError::Mesh(_) => return SceneError::new(code, error.to_string()),
     };
     SceneError::new(code, error.to_string()).value(value)

@@ -174,11 +174,7 @@ fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
             }
         }
     }
-    let meets = |a: &(usize, f64, [f64; 2], bool), b: &(usize, f64, [f64; 2], bool)| {
-        a.3 != b.3 && (a.1 - b.1).abs() < SAME && a.2[0] < b.2[1] && b.2[0] < a.2[1]
-    };
-    let mut cut: Vec<usize> =
-        borders.iter().filter(|a| borders.iter().any(|b| meets(a, b))).map(|border| border.0).collect();
+    let mut cut: Vec<usize> = shared(&borders);
     cut.sort_unstable();
     cut.dedup();
     let Some(first) = cut.first().copied() else { return 0 };
@@ -199,6 +195,33 @@ fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
     polygons[first].0 = outline::joined(&rings, Overlap::Union).into_iter().map(|ring| ring.points).collect();
     polygons.retain(|(polygon, _)| !polygon.is_empty());
     cut.len()
+}
+
+/// The polygons of borders that lie on a border of the other side, for a part of its length.
+fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
+    // Those of one meridian, from south to north.
+    let turn = |x: f64| ((x - 180.0) / TURN).round();
+    let mut order: Vec<&(usize, f64, [f64; 2], bool)> = borders.iter().collect();
+    order.sort_by(|a, b| turn(a.1).total_cmp(&turn(b.1)).then(a.2[0].total_cmp(&b.2[0])).then(a.0.cmp(&b.0)));
+    let mut found = Vec::new();
+    for meridian in order.chunk_by(|a, b| turn(a.1) == turn(b.1)) {
+        let side = |west: bool| meridian.iter().filter(move |border| border.3 == west);
+        for west in [false, true] {
+            // Of the other side: where each begins, and how far north those reach that begin there or before.
+            let (mut reach, mut others) = (f64::NEG_INFINITY, Vec::new());
+            for border in side(!west) {
+                reach = larger(reach, border.2[1]);
+                others.push((border.2[0], reach));
+            }
+            for border in side(west) {
+                let before = others.partition_point(|other| other.0 < border.2[1]);
+                if before > 0 && others[before - 1].1 > border.2[0] {
+                    found.push(border.0);
+                }
+            }
+        }
+    }
+    found
 }
 
 #[cfg(test)]

@@ -8,116 +8,29 @@
 //! The Khronos Group, glTF 2.0 Specification (2021).
 
 use super::Open;
+use super::gltf_json::{Accessor, Asset, Buffer, Mesh, Node, Primitive, Root, View};
 use super::json::{Raw, parse, refuse, span};
 use super::triangles::{Places, Triangles};
 use crate::base64;
+use crate::budget::INSTANCES;
 use crate::problem::{SceneError, visible};
+use crate::rounding::Stored;
 use crate::source::Source;
 use opruga_math::words::counted;
-use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Nodes may be nested this deep.
 const DEEPEST: usize = 128;
 
-/// The largest number of triangles: nodes may draw one mesh many times.
-const MOST_TRIANGLES: usize = 1 << 26;
+/// The least bytes that a vertex or a triangle takes in a file.
+const LEAST_BYTES: u64 = 3;
 
-#[derive(Deserialize)]
-struct Root<'a> {
-    #[serde(borrow)]
-    asset: Raw<'a>,
-    scene: Option<usize>,
-    #[serde(default)]
-    scenes: Vec<Scene>,
-    #[serde(borrow, default)]
-    nodes: Vec<Raw<'a>>,
-    #[serde(borrow, default)]
-    meshes: Vec<Raw<'a>>,
-    #[serde(borrow, default)]
-    accessors: Vec<Raw<'a>>,
-    #[serde(borrow, default, rename = "bufferViews")]
-    views: Vec<Raw<'a>>,
-    #[serde(borrow, default)]
-    buffers: Vec<Raw<'a>>,
-    #[serde(borrow, default)]
-    animations: Vec<Raw<'a>>,
-    #[serde(default, rename = "extensionsRequired")]
-    extensions: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Asset {
-    version: String,
-}
-
-#[derive(Deserialize)]
-struct Scene {
-    #[serde(default)]
-    nodes: Vec<usize>,
-}
-
-#[derive(Deserialize)]
-struct Node {
+/// A mesh as it is drawn: its name, and its primitives with their places.
+struct Parts<'a> {
     name: Option<String>,
-    mesh: Option<usize>,
-    skin: Option<usize>,
-    #[serde(default)]
-    children: Vec<usize>,
-    matrix: Option<[f64; 16]>,
-    translation: Option<[f64; 3]>,
-    rotation: Option<[f64; 4]>,
-    scale: Option<[f64; 3]>,
-}
-
-#[derive(Deserialize)]
-struct Mesh<'a> {
-    name: Option<String>,
-    #[serde(borrow)]
-    primitives: Vec<Raw<'a>>,
-}
-
-#[derive(Deserialize)]
-struct Primitive<'a> {
-    attributes: std::collections::BTreeMap<String, usize>,
-    indices: Option<usize>,
-    mode: Option<u32>,
-    /// Shapes to morph into.
-    #[serde(borrow, default)]
-    targets: Vec<Raw<'a>>,
-}
-
-#[derive(Deserialize)]
-struct Accessor<'a> {
-    #[serde(rename = "bufferView")]
-    view: Option<usize>,
-    #[serde(default, rename = "byteOffset")]
-    offset: u64,
-    #[serde(rename = "componentType")]
-    component: u32,
-    count: u64,
-    #[serde(rename = "type")]
-    kind: String,
-    #[serde(borrow)]
-    sparse: Option<Raw<'a>>,
-}
-
-#[derive(Deserialize)]
-struct View {
-    buffer: usize,
-    #[serde(default, rename = "byteOffset")]
-    offset: u64,
-    #[serde(rename = "byteLength")]
-    length: u64,
-    #[serde(rename = "byteStride")]
-    stride: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct Buffer {
-    uri: Option<String>,
-    #[serde(rename = "byteLength")]
-    length: u64,
+    primitives: Vec<(Raw<'a>, Primitive<'a>)>,
 }
 
 /// A row-major map of space: x′ = A x + b.
@@ -143,6 +56,12 @@ struct Reader<'a, 's, 'o, 'f> {
     found: Triangles,
     /// For every triangle the byte of the text where its primitive begins.
     starts: Vec<u32>,
+    /// Nodes that have been placed in the tree.
+    placed: Vec<bool>,
+    /// Meshes that have been read.
+    meshes: BTreeMap<usize, Rc<Parts<'a>>>,
+    /// Rows of accessors that have been taken, and texts that have been read again.
+    drawn: u64,
     others: usize,
     /// Nodes whose vertices would follow bones.
     skinned: usize,
@@ -153,7 +72,7 @@ struct Reader<'a, 's, 'o, 'f> {
 /// Reads the triangles of the default scene, or of all meshes where there is no scene.
 ///
 /// # Errors
-/// `json.syntax`, `gltf.syntax`, `gltf.index`, `gltf.size`, `gltf.unsupported` with the place in the JSON; `mesh.index`; `scene.not_finite`.
+/// `json.syntax`, `gltf.syntax`, `gltf.index`, `gltf.size`, `gltf.tree`, `gltf.unsupported`, `limit.instances` with the place in the JSON; `mesh.index`; `scene.not_finite`.
 pub(super) fn read<'a>(
     source: &'a Source<'a>,
     binary: Option<&'a [u8]>,
@@ -180,9 +99,21 @@ pub(super) fn read<'a>(
         (None, None) => None,
     };
     let (scenes, animations) = (root.scenes.len(), root.animations.len());
-    let found = Triangles::default();
-    let mut reader =
-        Reader { source, root, buffers, binary, open, found, starts: Vec::new(), others: 0, skinned: 0, morphed: 0 };
+    let mut reader = Reader {
+        source,
+        root,
+        buffers,
+        binary,
+        open,
+        found: Triangles::default(),
+        starts: Vec::new(),
+        placed: vec![false; nodes],
+        meshes: BTreeMap::new(),
+        drawn: 0,
+        others: 0,
+        skinned: 0,
+        morphed: 0,
+    };
     match start {
         Some(start) => {
             for node in start {
@@ -244,6 +175,16 @@ impl<'a> Reader<'a, '_, '_, '_> {
 
     fn node(&mut self, index: usize, map: &Map, depth: usize) -> Result<(), SceneError> {
         let raw = self.entry(&self.root.nodes, index, "node")?;
+        // Else a short list of nodes could stand for a tree without end.
+        if std::mem::replace(&mut self.placed[index], true) {
+            let error = SceneError::new("gltf.tree", format!("node {index} has two parents, or is its own"));
+            let error = error.value(index.to_string()).allowed("one parent for every node");
+            return Err(refuse(
+                self.source,
+                raw.get(),
+                error.hint("give each place a node of its own that names the same mesh"),
+            ));
+        }
         if depth > DEEPEST {
             let error = SceneError::new(
                 "gltf.depth",
@@ -283,11 +224,10 @@ impl<'a> Reader<'a, '_, '_, '_> {
     }
 
     fn mesh(&mut self, index: usize, name: Option<&str>, map: &Map) -> Result<(), SceneError> {
-        let raw = self.entry(&self.root.meshes, index, "mesh")?;
-        let mesh: Mesh<'a> = parse(self.source, raw.get())?;
+        let mesh = self.parts(index)?;
         let first = self.found.positions.len() as u32;
-        for raw in mesh.primitives {
-            self.primitive(raw, map)?;
+        for (raw, primitive) in &mesh.primitives {
+            self.primitive(raw, primitive, map)?;
         }
         let nodes = first..self.found.positions.len() as u32;
         if let Some(name) = name.or(mesh.name.as_deref()).filter(|_| !nodes.is_empty()) {
@@ -296,8 +236,31 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(())
     }
 
-    fn primitive(&mut self, raw: Raw<'a>, map: &Map) -> Result<(), SceneError> {
-        let primitive: Primitive<'a> = parse(self.source, raw.get())?;
+    /// A mesh, which is taken apart once.
+    fn parts(&mut self, index: usize) -> Result<Rc<Parts<'a>>, SceneError> {
+        if let Some(known) = self.meshes.get(&index) {
+            return Ok(Rc::clone(known));
+        }
+        let raw = self.entry(&self.root.meshes, index, "mesh")?;
+        let mesh: Mesh<'a> = parse(self.source, raw.get())?;
+        let read = |raw: Raw<'a>| Ok((raw, parse::<Primitive<'a>>(self.source, raw.get())?));
+        let primitives = mesh.primitives.into_iter().map(read).collect::<Result<_, SceneError>>()?;
+        let parts = Rc::new(Parts { name: mesh.name, primitives });
+        self.meshes.insert(index, Rc::clone(&parts));
+        Ok(parts)
+    }
+
+    /// Counts rows that are drawn: as many as the file can hold, and some that stand there once and are drawn again.
+    fn draw(&mut self, more: u64, at: Raw<'_>) -> Result<(), SceneError> {
+        self.drawn = self.drawn.saturating_add(more);
+        let held: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
+        let held = (held + self.source.text.len()) as u64 / LEAST_BYTES;
+        let hint = "draw a mesh less often, or leave out what the body does not need";
+        INSTANCES.check_beside(self.drawn, held).map_err(|e| refuse(self.source, at.get(), e.hint(hint)))
+    }
+
+    fn primitive(&mut self, raw: Raw<'a>, primitive: &Primitive<'a>, map: &Map) -> Result<(), SceneError> {
+        self.draw(1, raw)?;
         match primitive.mode {
             None | Some(4) => {}
             Some(0..=3) => {
@@ -315,8 +278,8 @@ impl<'a> Reader<'a, '_, '_, '_> {
             return Err(refuse(self.source, raw.get(), error.allowed("an attribute POSITION")));
         };
         let first = self.found.positions.len();
-        for row in self.accessor(*place, "VEC3", &[5126])? {
-            let p = [row[0], row[1], row[2]];
+        let rows = self.accessor(*place, "VEC3", &[5126])?;
+        for p in &rows {
             let q = core::array::from_fn(|i| (0..3).map(|k| map[i][k] * p[k]).sum::<f64>() + map[i][3]);
             if q.iter().any(|x: &f64| !x.is_finite()) {
                 let message = format!("a coordinate of vertex {} is not finite", self.found.positions.len() - first);
@@ -332,12 +295,14 @@ impl<'a> Reader<'a, '_, '_, '_> {
             }
             None => (0..count as u32).collect(),
         };
-        if !indices.len().is_multiple_of(3) || self.found.triangles.len() + indices.len() / 3 > MOST_TRIANGLES {
+        if !indices.len().is_multiple_of(3) {
             let error = SceneError::new("gltf.syntax", format!("a primitive has {} corners", indices.len()));
-            let error =
-                error.value(indices.len().to_string()).allowed("three for every triangle, at most 2^26 triangles");
+            let error = error.value(indices.len().to_string()).allowed("three for every triangle");
             return Err(refuse(self.source, raw.get(), error));
         }
+        // What nodes do to them is not rounded by the file.
+        let stored = Stored::of(&rows, indices.chunks_exact(3), true);
+        self.found.stored = Some(self.found.stored.unwrap_or_default().worse(stored));
         let start = span(self.source, raw.get()).0 as u32;
         // A map that mirrors turns triangles inside out.
         let det = map[0][0] * (map[1][1] * map[2][2] - map[1][2] * map[2][1])
@@ -408,6 +373,8 @@ impl<'a> Reader<'a, '_, '_, '_> {
                 .value(accessor.count.to_string())
                 .hint("the file is cut off, or the view is too short"));
         }
+        // What describes it is read again too.
+        self.draw(accessor.count + (raw.get().len() + view_raw.get().len()) as u64 / 64, raw)?;
         let start = (view.offset + accessor.offset) as usize;
         let rows = (0..accessor.count as usize).map(|k| {
             let row = &bytes[start + k * stride as usize..];

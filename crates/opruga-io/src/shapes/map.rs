@@ -7,11 +7,14 @@ use super::curves::{Curves, Point, larger, smaller};
 use super::drawing::Drawing;
 use super::globe::{self, Polygon};
 use super::json::{Raw, parse, refuse, span};
+use crate::budget::POINTS;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::{Values, nearest};
 use opruga_math::words::counted;
+use opruga_mesh::outline::Inside;
 use serde::Deserialize;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// Collections may be nested this deep.
@@ -56,6 +59,8 @@ struct Reader<'a, 's> {
     wanted: Option<&'s str>,
     /// The arcs of a topology, in degrees.
     arcs: Option<Vec<Vec<Point>>>,
+    /// Points of arcs, as often as rings name them.
+    drawn: Cell<u64>,
     polygons: Vec<(Polygon, Raw<'a>)>,
     names: Vec<String>,
     /// Geometries with area that the scene does not want.
@@ -78,7 +83,9 @@ pub(super) fn read<'a>(source: &'a Source<'a>, shape: &'a Values) -> Result<Draw
     let top: Object<'_> = parse(source, raw.get())?;
     let wanted = shape.text("feature");
     let (polygons, names) = (Vec::new(), Vec::new());
-    let mut reader = Reader { source, wanted, arcs: None, polygons, names, areas: 0, meant: 0, others: 0, empty: 0 };
+    let drawn = Cell::new(0);
+    let mut reader =
+        Reader { source, wanted, arcs: None, drawn, polygons, names, areas: 0, meant: 0, others: 0, empty: 0 };
     if top.kind == "Topology" {
         let topology: Topology<'_> = parse(source, raw.get())?;
         reader.arcs = Some(arcs(source, &topology)?);
@@ -290,7 +297,14 @@ impl<'a> Reader<'a, '_> {
                         };
                         // The first point of an arc repeats the last of the one before.
                         points.pop();
-                        if backwards { points.extend(arc.iter().rev()) } else { points.extend(arc) }
+                        if backwards {
+                            points.extend(arc.iter().rev())
+                        } else {
+                            points.extend(arc)
+                        }
+                        let drawn = self.drawn.get() + arc.len() as u64;
+                        self.drawn.set(drawn);
+                        POINTS.check(drawn).map_err(|e| refuse(self.source, ring.get(), e))?;
                     }
                     points
                 }
@@ -303,8 +317,12 @@ impl<'a> Reader<'a, '_> {
             points.pop();
             out.push(points);
         }
+        let lies_outside = |(outer, holes): (&Vec<Point>, &[Vec<Point>])| {
+            let inside = (!holes.is_empty()).then(|| Inside::of(outer))?;
+            holes.iter().position(|hole| !hole.iter().any(|p| inside.holds(*p)))
+        };
         if let Some((outer, holes)) = out.split_first()
-            && let Some(k) = holes.iter().position(|hole| !hole.iter().any(|p| encloses(outer, *p)))
+            && let Some(k) = lies_outside((outer, holes))
             && self.checks_holes(outer)
         {
             let error = SceneError::new("map.hole", format!("hole {} lies outside of its polygon", k + 1));
@@ -368,18 +386,6 @@ impl<'a> Reader<'a, '_> {
         };
         refuse(self.source, &raw.get()[..1], error)
     }
-}
-
-/// Whether a point lies inside of a ring: an odd number of edges cross the ray to its right.
-pub(super) fn encloses(ring: &[Point], point: Point) -> bool {
-    let mut inside = false;
-    for (k, a) in ring.iter().enumerate() {
-        let b = ring[(k + 1) % ring.len()];
-        if (a[1] > point[1]) != (b[1] > point[1]) {
-            inside ^= a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > point[0];
-        }
-    }
-    inside
 }
 
 /// From degrees to the plane; the middle of the polygons keeps its proportions.

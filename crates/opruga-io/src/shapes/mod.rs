@@ -8,11 +8,14 @@
 //! Every reader tells what is wrong with the line or byte of its file. Nothing is repaired unless the scene asks for it, and then it is counted.
 
 mod bitmap;
+mod composite;
 mod curves;
 mod drawing;
+mod entities;
 mod glb;
 mod globe;
 mod gltf;
+mod gltf_json;
 mod json;
 mod map;
 mod obj;
@@ -24,6 +27,7 @@ mod svg;
 mod svg_clip;
 mod svg_elements;
 mod svg_fill;
+mod svg_index;
 mod svg_path;
 mod svg_sheets;
 mod svg_style;

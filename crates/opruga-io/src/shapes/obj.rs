@@ -12,6 +12,7 @@ use super::triangles::{CORNERS, Places, Triangles};
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_math::words::counted;
+use std::collections::BTreeMap;
 
 /// A polygon as it stands in the file, before all vertices are known.
 struct Face {
@@ -27,6 +28,8 @@ struct Face {
 pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
     let mut found = Triangles::default();
     let (mut faces, mut corners, mut names): (Vec<Face>, Vec<i64>, Vec<String>) = Default::default();
+    // The number of each name of a group.
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
     let mut group = None;
     let (mut strokes, mut weighed) = (0usize, 0usize);
     // How many `vt` and `vn` there are, and the largest that a face names with its place.
@@ -114,8 +117,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
             "o" | "g" => {
                 let name = words.collect::<Vec<_>>().join(" ");
                 group = (!name.is_empty()).then(|| {
-                    names.iter().position(|n| *n == name).unwrap_or_else(|| {
-                        names.push(name);
+                    *numbers.entry(name).or_insert_with_key(|name| {
+                        names.push(name.clone());
                         names.len() - 1
                     })
                 });

@@ -105,6 +105,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                     let error = SceneError::new("ply.syntax", "`vertex` has no properties x, y, z").value("vertex");
                     return Err(SceneError { file: file.into(), ..error });
                 };
+                found.single |= [x, y, z].into_iter().any(|k| element.properties[k].kind == Kind::F32);
                 for _ in 0..element.count {
                     let mut row = [0.0; 3];
                     for (k, property) in element.properties.iter().enumerate() {
@@ -165,7 +166,8 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
                 }
             }
             name => {
-                for _ in 0..element.count {
+                // Without properties they take no room: however many there are, nothing stands there.
+                for _ in 0..if element.properties.is_empty() { 0 } else { element.count } {
                     for property in &element.properties {
                         values.property(property)?;
                     }

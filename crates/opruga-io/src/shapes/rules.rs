@@ -18,26 +18,29 @@ pub(super) enum Rule {
 /// that name no rule the two differ.
 pub(super) fn follow(rings: &mut Vec<Ring>, rules: &[Rule]) -> Option<SceneError> {
     let mut differing = 0;
-    for (part, rule) in rules.iter().enumerate().filter(|(_, rule)| **rule != Rule::EvenOdd) {
-        // Rings come part by part.
-        let from = rings.partition_point(|ring| (ring.part as usize) < part);
-        let own = from..rings.partition_point(|ring| ring.part as usize <= part);
-        if own.is_empty() {
+    // Rings come part by part.
+    let mut followed = Vec::with_capacity(rings.len());
+    let mut rest = std::mem::take(rings).into_iter().peekable();
+    while let Some(part) = rest.peek().map(|ring| ring.part) {
+        let own: Vec<Ring> = std::iter::from_fn(|| rest.next_if(|ring| ring.part == part)).collect();
+        let rule = rules.get(part as usize).copied().unwrap_or(Rule::EvenOdd);
+        if rule == Rule::EvenOdd {
+            followed.extend(own);
             continue;
         }
-        let (odd, mut wound) =
-            (outline::joined(&rings[own.clone()], Overlap::EvenOdd), outline::wound(&rings[own.clone()]));
+        let (odd, mut wound) = (outline::joined(&own, Overlap::EvenOdd), outline::wound(&own));
         let area = |rings: &[Ring]| rings.iter().map(Ring::area).sum::<f64>();
         if (area(&wound) - area(&odd)).abs() <= 1e-9 * area(&wound).abs() {
-            continue;
-        }
-        if *rule == Rule::Unsaid {
+            followed.extend(own);
+        } else if rule == Rule::Unsaid {
             differing += 1;
-            continue;
+            followed.extend(own);
+        } else {
+            wound.iter_mut().for_each(|ring| ring.part = part);
+            followed.append(&mut wound);
         }
-        wound.iter_mut().for_each(|ring| ring.part = part as u32);
-        rings.splice(own, wound);
     }
+    *rings = followed;
     (differing > 0).then(|| {
         let what = if differing == 1 { "shape names" } else { "shapes name" };
         let message = format!("{differing} {what} no `fill-rule` and would have fewer holes by the non-zero rule");

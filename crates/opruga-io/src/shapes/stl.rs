@@ -53,7 +53,12 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
         }
     }
     let count = (bytes.len() - HEAD) / EACH;
-    let mut found = Triangles { soup: true, places: Places::Bytes { first: HEAD, each: EACH }, ..Triangles::default() };
+    let mut found = Triangles {
+        soup: true,
+        single: true,
+        places: Places::Bytes { first: HEAD, each: EACH },
+        ..Triangles::default()
+    };
     found.positions.reserve_exact(3 * count);
     found.triangles.reserve_exact(count);
     let mut normals = Normals::default();

@@ -16,6 +16,7 @@ use super::svg_fill::{Fill, Fills};
 use super::svg_sheets::Sheets;
 use super::svg_style::{ANIMATIONS, animations_of};
 use super::svg_xml::{document, is_drawing};
+use crate::budget::OUTLINES;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_core::spec::nearest;
@@ -24,9 +25,6 @@ use roxmltree::{Document, Node};
 
 /// Elements may be nested this deep, `use` included.
 const DEEPEST: usize = 128;
-
-/// The largest number of parts, which `use` could draw many times.
-const MOST_PARTS: usize = 1 << 18;
 
 /// Elements inside which nothing is drawn.
 const NOT_DRAWN: [&str; 15] = [
@@ -50,12 +48,12 @@ const NOT_DRAWN: [&str; 15] = [
 /// Reads a whole drawing, or the element with an id; its fill colours too where they are wanted.
 ///
 /// # Errors
-/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.style`, `svg.unknown_id`, `svg.same_id`, `svg.colour`, with line and
-/// column.
+/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.style`, `svg.unknown_id`, `svg.same_id`, `svg.colour`,
+/// `limit.…`, with line and column.
 pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) -> Result<Drawing<'a>, SceneError> {
     let document = document(source)?;
     let root = document.root_element();
-    let sheets = Sheets::of(&document, source);
+    let sheets = Sheets::of(&document, source)?;
     let mut reader = Reader::new(source, &document, &sheets, Fills::of(&document, source, &sheets, colours));
     reader.animations = animations_of(root);
     reader.canvas = reader.canvas_of(root)?;
@@ -151,25 +149,28 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     pub(super) fn error(&self, node: Node<'_, '_>, code: &'static str, message: String) -> SceneError {
+        self.marked(node, SceneError::new(code, message))
+    }
+
+    /// An error at the tag of an element.
+    fn marked(&self, node: Node<'_, '_>, error: SceneError) -> SceneError {
         let range = node.range();
         // The tag alone, not all that it holds.
         let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
-        self.source.mark(SceneError::new(code, message), range.start, end)
+        self.source.mark(error, range.start, end)
     }
 
     fn unknown(&self, node: Node<'_, '_>, id: &str, code: &'static str) -> SceneError {
-        let near = nearest(id, self.document.descendants().filter_map(|n| n.attribute("id")));
+        let near = nearest(id, self.sheets.index.ids());
         self.error(node, code, format!("no element has the id `{}`", visible(id))).value(visible(id)).nearest(near)
     }
 
     /// The only element with an id.
     pub(super) fn named(&self, node: Node<'_, '_>, id: &str) -> Result<Node<'d, 'a>, SceneError> {
-        let document = self.document;
-        let mut all = document.descendants().filter(|node| node.attribute("id") == Some(id));
-        let Some(first) = all.next() else { return Err(self.unknown(node, id, "svg.unknown_id")) };
-        match all.next() {
-            None => Ok(first),
-            Some(second) => {
+        match self.sheets.index.named(self.document, id) {
+            [None, _] => Err(self.unknown(node, id, "svg.unknown_id")),
+            [Some(first), None] => Ok(first),
+            [_, Some(second)] => {
                 let message = format!("two elements have the id `{}`", visible(id));
                 Err(self.error(second, "svg.same_id", message).value(visible(id)).allowed("ids that differ"))
             }
@@ -275,6 +276,8 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Ok(());
         }
         let name = node.tag_name().name();
+        // Elements that `use` draws are counted again.
+        self.sheets.index.element().map_err(|e| self.marked(node, e))?;
         if path.len() >= DEEPEST {
             let message = format!("elements are nested more than {DEEPEST} deep");
             return Err(self
@@ -317,6 +320,8 @@ impl<'a, 'd> Reader<'a, 'd> {
                     path.pop();
                     return Ok(());
                 }
+                let parts = OUTLINES.check(self.places.len() as u64 + 1);
+                parts.and(sheets.index.points(curves.points())).map_err(|e| self.marked(node, e))?;
                 self.unfilled += usize::from(!fill.filled);
                 self.strokes += usize::from(fill.filled && sheets.has_stroke(node));
                 self.fills.paint(fill);
@@ -359,10 +364,6 @@ impl<'a, 'd> Reader<'a, 'd> {
         if path.contains(&goal.id().get_usize()) {
             let error = self.error(node, "svg.cycle", format!("`#{}` contains itself", visible(id)));
             return Err(error.value(visible(id)).hint("an element cannot be drawn inside of itself"));
-        }
-        // Many `use` of `use` could draw without end.
-        if self.places.len() > MOST_PARTS {
-            return Err(self.error(node, "shape.too_large", "the drawing has too many parts".into()).value(id));
         }
         let moved = [1.0, 0.0, 0.0, 1.0, self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?];
         let map = after(map, &moved);

@@ -159,9 +159,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         let mut next = id;
         // A gradient may take its stops from another one.
         for _ in 0..16 {
-            let Some(node) = self.document.descendants().find(|node| node.attribute("id") == Some(next)) else {
-                return Ok(None);
-            };
+            let [Some(node), _] = self.sheets.index.named(self.document, next) else { return Ok(None) };
             if !matches!(node.tag_name().name(), "linearGradient" | "radialGradient") {
                 return Ok(None);
             }

@@ -6,8 +6,10 @@
 //! # Source
 //! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.
 
+use super::svg_index::Index;
 use super::svg_style::changes_outlines;
 use super::svg_xml::is_drawing;
+use crate::budget::RULES;
 use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node};
@@ -22,9 +24,19 @@ const ELSEWHERE: [&str; 5] = ["@font-face", "@keyframes", "@page", "@counter-sty
 #[derive(Debug, Default)]
 pub(super) struct Sheets {
     rules: Vec<Rule>,
+    /// The elements of the drawing by their ids.
+    pub(super) index: Index,
     /// What elements have been asked about: the rules that each obeys, with their weights.
     obeyed: RefCell<BTreeMap<usize, Obeyed>>,
+    /// Of elements with a long `style`: where the value of each of its properties stands in it.
+    styles: RefCell<BTreeMap<usize, LongStyle>>,
 }
+
+/// From where to where the value of each property stands.
+type LongStyle = BTreeMap<String, (usize, usize)>;
+
+/// A `style` of more bytes is taken apart once and not whenever it is asked.
+const LONG_STYLE: usize = 1024;
 
 /// The rules that an element obeys, by their numbers.
 type Obeyed = Rc<[(Weight, usize)]>;
@@ -62,8 +74,11 @@ enum Block {
 
 impl Sheets {
     /// Reads the style sheets of a drawing.
-    pub(super) fn of(document: &Document<'_>, source: &Source<'_>) -> Sheets {
-        let mut sheets = Sheets::default();
+    ///
+    /// # Errors
+    /// `limit.rules` where it would take too long to look which elements obey them.
+    pub(super) fn of(document: &Document<'_>, source: &Source<'_>) -> Result<Sheets, SceneError> {
+        let mut sheets = Sheets { index: Index::of(document), ..Sheets::default() };
         for node in document.descendants().filter(|node| is_drawing(*node) && node.tag_name().name() == "style") {
             let other = |name, usual: &[&str]| node.attribute(name).is_some_and(|value| !usual.contains(&value.trim()));
             if other("type", &["", "text/css"]) {
@@ -75,7 +90,13 @@ impl Sheets {
             let conditional = other("media", &["", "all", "screen"]);
             sheets.read(&without_comments(&text), (range.start, end), conditional);
         }
-        sheets
+        if let Some(last) = sheets.rules.last() {
+            let elements = document.descendants().filter(Node::is_element).count() as u64;
+            let words = |rule: &Rule| rule.perhaps.len() + rule.selectors.iter().map(|s| s.0.len()).sum::<usize>();
+            let compared = elements.saturating_mul(sheets.rules.iter().map(words).sum::<usize>() as u64);
+            RULES.check(compared).map_err(|e| source.mark(e, last.sheet.0, last.sheet.1))?;
+        }
+        Ok(sheets)
     }
 
     fn read(&mut self, text: &str, sheet: (usize, usize), conditional: bool) {
@@ -119,12 +140,7 @@ impl Sheets {
 
     /// A property in the `style` of an element, or by a sheet.
     pub(super) fn declared<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
-        let own = node.attribute("style").and_then(|text| {
-            // Of two that say the same the later one counts.
-            let mut pieces = text.rsplit(';').filter_map(|piece| piece.split_once(':'));
-            let (_, value) = pieces.find(|(word, _)| word.trim() == name)?;
-            Some(without_importance(value))
-        });
+        let own = node.attribute("style").and_then(|text| self.of_attribute(node, text, name));
         let own = own.map(|(value, important)| ((important, true, [0; 3], 0), value));
         let obeyed = self.obeyed(node);
         let mut best = own;
@@ -137,6 +153,27 @@ impl Sheets {
             }
         }
         best.map(|(_, value)| value)
+    }
+
+    /// What a `style` says of a property. Long ones are taken apart once: those of groups are asked by all that is in them.
+    fn of_attribute<'n>(&self, node: Node<'n, '_>, text: &'n str, name: &str) -> Option<(&'n str, bool)> {
+        // Of two that say the same the later one counts.
+        let mut pieces = text.rsplit(';').filter_map(|piece| piece.split_once(':'));
+        if text.len() <= LONG_STYLE {
+            let (_, value) = pieces.find(|(word, _)| word.trim() == name)?;
+            return Some(without_importance(value));
+        }
+        let mut known = self.styles.borrow_mut();
+        let own = known.entry(node.id().get_usize()).or_insert_with(|| {
+            let mut said = BTreeMap::new();
+            for (word, value) in pieces {
+                let from = value.as_ptr() as usize - text.as_ptr() as usize;
+                said.entry(word.trim().to_string()).or_insert((from, from + value.len()));
+            }
+            said
+        });
+        let (from, to) = *own.get(name)?;
+        Some(without_importance(&text[from..to]))
     }
 
     /// The rules that an element obeys.

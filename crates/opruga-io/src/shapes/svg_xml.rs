@@ -4,7 +4,7 @@ use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node, ParsingOptions};
 
-/// The largest number of elements and texts.
+/// The largest number of elements and texts that stand in a file.
 const MOST_NODES: u32 = 4 << 20;
 
 /// Whether an element belongs to the drawing: one of SVG, or of no language at all.
@@ -15,8 +15,9 @@ pub(super) fn is_drawing(node: Node<'_, '_>) -> bool {
 /// Reads the elements of a drawing.
 ///
 /// # Errors
-/// `svg.syntax`, `svg.entity`, `shape.too_large`, with line and column.
+/// `svg.syntax`, `svg.entity`, `limit.expansion`, `limit.elements`, with line and column.
 pub(super) fn document<'a>(source: &Source<'a>) -> Result<Document<'a>, SceneError> {
+    super::entities::check(source)?;
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, entity_resolver: None };
     let document = Document::parse_with_options(source.text, options).map_err(|e| syntax(source, &e))?;
     let root = document.root_element();
@@ -40,7 +41,7 @@ fn syntax(source: &Source<'_>, error: &roxmltree::Error) -> SceneError {
             ("svg.entity", Some("entities from outside of the file are never read"))
         }
         roxmltree::Error::EntityReferenceLoop(_) => ("svg.entity", Some("entities may not contain one another")),
-        roxmltree::Error::NodesLimitReached => ("shape.too_large", None),
+        roxmltree::Error::NodesLimitReached => ("limit.elements", None),
         _ => ("svg.syntax", None),
     };
     let text = error.to_string();

@@ -1,8 +1,10 @@
 //! Texts: the outlines of letters in a font.
 
 use super::Problem;
+use super::composite;
 use super::curves::Curves;
 use super::drawing::Drawing;
+use crate::budget::{EXPANSION, POINTS};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
@@ -76,6 +78,7 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
     let text = shape.text("text").unwrap_or("");
     let mut pen = Pen { curves: Curves::default(), from: 0.0, start: [0.0; 2] };
     let mut last: Option<GlyphId> = None;
+    let (mut read, mut points) = (0u64, 0u64);
     for (part, letter) in text.chars().enumerate() {
         let refuse = |code, message: String| {
             Problem::new("text", SceneError::new(code, message).value(visible(&letter.to_string())))
@@ -105,8 +108,14 @@ pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawi
             pen.from += f64::from(kerning.unwrap_or(0));
         }
         let mut own = Pen { curves: Curves::of_part(part as u32), from: pen.from, start: [0.0; 2] };
+        read = read.saturating_add(composite::bytes(&face, glyph));
+        EXPANSION
+            .check(read)
+            .map_err(|e| Problem::new("text", e.hint("the letters of this font are made of too many others")))?;
         // Spaces have no outline.
         let _ = face.outline_glyph(glyph, &mut own);
+        points += own.curves.points() as u64;
+        POINTS.check(points).map_err(|e| Problem::new("text", e))?;
         pen.curves.append(own.curves, &super::curves::IDENTITY);
         pen.from += f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
         last = Some(glyph);

@@ -1,6 +1,5 @@
 //! What the making of a body has lost, and where it is worse than promised: said in figures.
 
-use super::map::encloses;
 use crate::problem::SceneError;
 use opruga_math::words::{counted, number, rounded};
 use opruga_mesh::Mesh;
@@ -66,20 +65,11 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
 /// How many outlines of a drawing are holes since they lie within one of another element, which paints there too; and the first of these
 /// elements. Rings are nested, holes run clockwise.
 pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
-    let boxes: Vec<_> = rings.iter().map(|ring| outline::bounds(core::slice::from_ref(ring))).collect();
-    let areas: Vec<f64> = rings.iter().map(Ring::area).collect();
-    let within = |number: usize| {
-        let point = *rings[number].points.first()?;
-        let around = |other: &usize| {
-            let inside = |(low, high): ([f64; 2], [f64; 2])| (0..2).all(|a| low[a] <= point[a] && point[a] <= high[a]);
-            *other != number && boxes[*other].is_some_and(inside) && encloses(&rings[*other].points, point)
-        };
-        // The innermost of those around it is what it is a hole of.
-        (0..rings.len()).filter(around).min_by(|a, b| areas[*a].abs().total_cmp(&areas[*b].abs()))
-    };
-    let holes = (0..rings.len()).filter(|number| areas[*number] < 0.0);
+    // The innermost of those around it is what a ring is a hole of.
+    let around = outline::around(rings);
+    let holes = (0..rings.len()).filter(|number| rings[*number].area() < 0.0);
     let foreign: Vec<u32> = holes
-        .filter(|number| within(*number).is_some_and(|outer| rings[outer].part != rings[*number].part))
+        .filter(|number| around[*number].is_some_and(|outer| rings[outer].part != rings[*number].part))
         .map(|number| rings[number].part)
         .collect();
     let first = *foreign.first()?;
@@ -120,4 +110,11 @@ pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
     );
     let error = SceneError::new("shape.thin_triangles", message).value(rounded(thin.angle, 3));
     error.allowed(format!("angles from {SMALLEST_ANGLE}°")).hint(hint)
+}
+
+/// Vertices that lie exactly where another one lies.
+pub(super) fn seams(mesh: &Mesh<3>) -> usize {
+    let mut places: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    places.sort_unstable();
+    places.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }

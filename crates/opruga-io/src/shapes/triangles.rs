@@ -1,8 +1,9 @@
 //! Triangles as a file gives them, and what becomes of them: a closed surface, cloth, or a filled body.
 
 use super::curves::larger;
-use super::{Content, Loaded, Problem};
+use super::{Content, Loaded, Problem, told};
 use crate::problem::{SceneError, visible};
+use crate::rounding::Stored;
 use crate::source::Source;
 use opruga_core::spec::Values;
 use opruga_math::words::{counted, number, rounded};
@@ -34,6 +35,10 @@ pub(super) struct Triangles {
     pub(super) places: Places,
     /// Named sets of vertices.
     pub(super) groups: BTreeMap<String, Vec<u32>>,
+    /// What the file has rounded away, where positions are not as they stand in it.
+    pub(super) stored: Option<Stored>,
+    /// Whether coordinates have 4 bytes.
+    pub(super) single: bool,
     /// Whether the format gives every triangle corners of its own.
     pub(super) soup: bool,
     pub(super) notices: Vec<SceneError>,
@@ -65,6 +70,11 @@ pub(super) enum Places {
 }
 
 impl Triangles {
+    /// What the numbers of the file have rounded away.
+    fn as_stored(&self) -> Stored {
+        Stored::of(&self.positions, self.triangles.iter().map(|triangle| &triangle[..]), self.single)
+    }
+
     /// Adds a polygon as triangles inside it, and says how many; or why there are none.
     pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, String> {
         if corners.len() < 3 {
@@ -177,7 +187,9 @@ pub(super) fn loaded(
         let error = SceneError::new("mesh.empty", "the file holds no triangles").value("0");
         return Err(named(error.allowed("at least one triangle")));
     }
+    let stored = found.stored.unwrap_or_else(|| found.as_stored());
     let mut notices = std::mem::take(&mut found.notices);
+    notices.extend(stored.told().map_err(named)?);
     notices.extend(found.cut());
     weld(&mut found, source, shape, &mut notices).map_err(named)?;
     let given = found.triangles.len();
@@ -438,7 +450,7 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
             let shown: Vec<String> = nodes.iter().take(8).map(|n| format!("({})", place(*n))).collect();
             let free = counted(*loops as u64, "free boundary", "free boundaries");
             let message = format!("the surface is not closed: {free}, through {}", shown.join(", "));
-            let hint = match seams(mesh) {
+            let hint = match told::seams(mesh) {
                 0 => "`open = \"cap\"` closes it, `open = \"sheet\"` keeps it as cloth".to_string(),
                 n => format!(
                     "{} at the place of another: `weld = 0` joins them; or `open = \"cap\"`, `open = \"sheet\"`",
@@ -463,13 +475,6 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
         }
         other => SceneError::new("mesh.topology", visible(&other.to_string())),
     }
-}
-
-/// Vertices that lie exactly where another one lies.
-fn seams(mesh: &Mesh<3>) -> usize {
-    let mut places: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
-    places.sort_unstable();
-    places.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
 /// Brings the surface upright, to its size and to its place.

@@ -42,7 +42,8 @@ pub(super) fn surface(name: &str, bytes: &[u8], open: &mut Open<'_>) -> Result<T
         ));
     }
     let found = file.into_found();
-    let mut out = Triangles { positions: found.positions, notices: found.notices, ..Triangles::default() };
+    let notices = found.all_notices();
+    let mut out = Triangles { positions: found.positions, notices, single: found.single, ..Triangles::default() };
     out.groups = found.node_groups;
     for (name, items) in &found.item_groups {
         let nodes = out.groups.entry(name.clone()).or_default();

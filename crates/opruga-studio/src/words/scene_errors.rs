@@ -49,6 +49,7 @@ const CODES: &[(&str, &str)] = &[
     ("shape", "oblik ne može postati tijelo"),
     ("mesh.open", "ploha nije zatvorena"),
     ("mesh.self_intersection", "ploha siječe samu sebe"),
+    ("mesh.rounded", "datoteka zaokružuje koordinate"),
     ("mesh.non_manifold", "ploha se grana"),
     ("mesh", "mreža ne može postati tijelo"),
     ("svg", "crtež SVG ne može se pročitati"),
@@ -66,7 +67,10 @@ const CODES: &[(&str, &str)] = &[
     ("tetgen", "datoteka TetGen ne može se pročitati"),
     ("medit", "datoteka Medit ne može se pročitati"),
     ("mfem", "datoteka MFEM ne može se pročitati"),
-    ("limit", "prizor je prevelik"),
+    ("limit.bodies", "prizor je prevelik"),
+    ("limit.nodes", "prizor je prevelik"),
+    ("limit.memory", "prizor je prevelik"),
+    ("limit", "datoteka traži previše"),
 ];
 
 /// The errors of a reader in Croatian; none where the text is not theirs.

@@ -1,5 +1,6 @@
 //! What the readers of scenes, shapes and meshes say in English, in Croatian.
 
+mod limits;
 mod maps;
 mod meshes;
 mod notices;
@@ -7,8 +8,8 @@ mod scenes;
 mod shapes;
 
 /// Whole sentences, by what says them: of these and of those of the engine the first that fits counts.
-pub(super) const SENTENCES: [&[(&str, &str)]; 5] =
-    [notices::SENTENCES, maps::SENTENCES, shapes::SENTENCES, scenes::SENTENCES, meshes::SENTENCES];
+pub(super) const SENTENCES: [&[(&str, &str)]; 6] =
+    [limits::SENTENCES, notices::SENTENCES, maps::SENTENCES, shapes::SENTENCES, scenes::SENTENCES, meshes::SENTENCES];
 
 /// Parts of sentences; those of meshes first, since some of shapes fit much.
 pub(super) const PARTS: [&[(&str, &str)]; 2] = [meshes::PARTS, shapes::PARTS];
@@ -74,7 +75,8 @@ mod tests {
         let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crates");
         let io = crates.join("opruga-io/src");
         let folders = [io.join("shapes"), io.join("scene"), crates.join("opruga-mesh/src")];
-        let files = ["document.rs", "files.rs", "overrides.rs", "source.rs"].map(|name| io.join(name));
+        let files = ["budget.rs", "document.rs", "files.rs", "overrides.rs", "rounding.rs", "source.rs"]
+            .map(|name| io.join(name));
         // What writes meshes is asked by the command line alone.
         let meshes = std::fs::read_dir(io.join("meshes")).expect("the readers of meshes").flatten();
         let meshes = meshes.map(|entry| entry.path()).filter(|path| !path.ends_with("write.rs"));

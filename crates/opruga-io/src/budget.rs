@@ -1,0 +1,95 @@
+//! How much work a file may ask for: limits of what small files can make large.
+//!
+//! A file that is read as it stands takes time and memory as its bytes, which are limited themselves. What is listed here can grow faster: points that
+//! curves are cut into, elements and triangles that are named again and again, texts that stand for longer ones, compressed data. Each limit is far
+//! above what people draw, and small enough that a file which goes up to it is read within seconds. What goes beyond is refused with the count, before
+//! memory is taken for it.
+
+use crate::problem::SceneError;
+
+/// The most of something that one file may ask for.
+#[derive(Debug)]
+pub(crate) struct Limit {
+    /// The code of the error: `limit.…`.
+    code: &'static str,
+    /// How many there may be.
+    pub(crate) most: u64,
+    /// What is counted.
+    what: &'static str,
+}
+
+/// Closed curves of a drawing, a map, a text or a picture: a body has so many parts. A chessboard in pixels, or noise, has a million.
+pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: "closed outlines" };
+
+/// Points of these curves: as drawn, as often as `use`, arcs of a topology or letters repeat them, and as many as curves are cut into.
+pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: "points of outlines" };
+
+/// Pixels of a picture. They are read row by row; only contours are kept.
+pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: "pixels" };
+
+/// Elements of a drawing, counted as often as `use` draws them: two in two in two … draw nothing 2⁶⁰ times.
+pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: "elements of a drawing" };
+
+/// Bytes that the entities of an XML file, or the parts of composite letters, stand for.
+pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 24, what: "bytes of repeated text" };
+
+/// How often rules of style sheets are compared with elements.
+pub(crate) const RULES: Limit =
+    Limit { code: "limit.rules", most: 1 << 26, what: "comparisons of rules with elements" };
+
+/// Vertices, or corners of triangles, of a glTF file that are drawn more often than they stand there, and parts of its meshes.
+pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: "repeated vertices" };
+
+/// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
+pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: "numbers in arrays" };
+
+/// Meshes are compressed to a byte for every one or two of their numbers; zeros to a byte for a thousand.
+pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
+
+/// Values of cells, and cells in groups: names times cells, whether a file gives them all or leaves most of them out.
+pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: "values or memberships of cells" };
+
+/// What is left out of a file is listed up to so many; the rest is counted.
+pub(crate) const NOTICES: usize = 50;
+
+impl Limit {
+    /// Refuses a count that is too large.
+    pub(crate) fn check(&self, count: u64) -> Result<(), SceneError> {
+        self.check_beside(count, 0)
+    }
+
+    /// The same where there may be some more.
+    pub(crate) fn check_beside(&self, count: u64, more: u64) -> Result<(), SceneError> {
+        let Limit { code, what, .. } = *self;
+        let most = self.most.saturating_add(more);
+        if count <= most {
+            return Ok(());
+        }
+        let error = SceneError::new(code, format!("the file asks for {count} {what} or more"));
+        Err(error.value(count.to_string()).allowed(format!("at most {most} {what}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_limits_has_every_limit() {
+        let page = include_str!("../../../docs/limits.md");
+        for limit in [OUTLINES, POINTS, PIXELS, ELEMENTS, EXPANSION, RULES, INSTANCES, NUMBERS, VALUES] {
+            let row = page.lines().find(|line| line.starts_with(&format!("| `{}` |", limit.code)));
+            let row = row.unwrap_or_else(|| panic!("`{}` is missing", limit.code));
+            assert!(row.contains(&format!("| {} |", limit.most)), "{row}");
+        }
+    }
+
+    #[test]
+    fn a_count_at_the_limit_is_allowed_and_one_more_is_told() {
+        assert_eq!(OUTLINES.check(OUTLINES.most), Ok(()));
+        let error = OUTLINES.check(OUTLINES.most + 1).expect_err("one more");
+        assert_eq!((error.code, error.value.as_deref()), ("limit.outlines", Some("65537")));
+        assert_eq!(error.allowed.as_deref(), Some("at most 65536 closed outlines"));
+        assert_eq!(NUMBERS.check_beside(NUMBERS.most + 5, 5), Ok(()));
+    }
+}

@@ -1,0 +1,87 @@
+//! How much of a shape the numbers of its file have rounded away.
+//!
+//! Numbers of 4 bytes have seven digits: ten thousand kilometres from the origin they are a metre apart, and a cube of 1.3 m becomes one of 1 m. Bodies
+//! may lie anywhere once they are read; what the file has lost stays lost.
+
+use crate::problem::SceneError;
+use opruga_math::words::rounded;
+
+/// Rounding above this part of the distance of neighbouring nodes is told: strains and angles are off by as much.
+const TOLD: f64 = 1e-3;
+/// Above this part it is refused: the shape is another one.
+const REFUSED: f64 = 0.1;
+
+/// Coordinates as they stand in a file: how far from the origin they lie, and how far neighbours are from one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Stored {
+    /// Half of the distance of neighbouring numbers [m], where coordinates are largest.
+    rounding: f64,
+    /// The largest coordinate [m].
+    farthest: f64,
+    /// The mean distance of neighbouring nodes [m].
+    apart: f64,
+    /// Whether numbers have 4 bytes.
+    single: bool,
+}
+
+impl Stored {
+    /// Of nodes and the elements between them.
+    pub(crate) fn of<'e>(positions: &[[f64; 3]], elements: impl Iterator<Item = &'e [u32]>, single: bool) -> Stored {
+        let farthest = positions.iter().flatten().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+        let (mut sum, mut count) = (0.0, 0.0);
+        for element in elements {
+            for (k, node) in element.iter().enumerate().take(if element.len() > 2 { element.len() } else { 1 }) {
+                let other = element[(k + 1) % element.len()];
+                let (Some(a), Some(b)) = (positions.get(*node as usize), positions.get(other as usize)) else {
+                    continue;
+                };
+                let square: f64 = (0..3).map(|d| (b[d] - a[d]) * (b[d] - a[d])).sum();
+                sum += square.sqrt();
+                count += 1.0;
+            }
+        }
+        let step = match single {
+            true => f64::from((farthest as f32).next_up()) - f64::from(farthest as f32),
+            false => farthest.next_up() - farthest,
+        };
+        let apart = if count > 0.0 { sum / count } else { 0.0 };
+        Stored { rounding: 0.5 * step, farthest, apart, single }
+    }
+
+    /// The rounding as a part of the distance of neighbours; none where they all lie in one place.
+    fn part(&self) -> f64 {
+        if self.apart > 0.0 && self.apart.is_finite() { self.rounding / self.apart } else { 0.0 }
+    }
+
+    /// Of two parts of a file the one that has lost more.
+    pub(crate) fn worse(self, other: Stored) -> Stored {
+        if other.part() > self.part() { other } else { self }
+    }
+
+    /// What to tell of it, if anything.
+    ///
+    /// # Errors
+    /// `mesh.rounded` where the shape is another one.
+    pub(crate) fn told(&self) -> Result<Option<SceneError>, SceneError> {
+        let part = self.part();
+        if part <= TOLD {
+            return Ok(None);
+        }
+        let message = format!(
+            "the file rounds coordinates by up to {} m, {} % of the distance of neighbouring nodes: they lie up to {} m from the origin in numbers of \
+             {} bytes",
+            rounded(self.rounding, 2),
+            rounded(100.0 * part, 2),
+            rounded(self.farthest, 3),
+            if self.single { 4 } else { 8 },
+        );
+        let error = SceneError::new("mesh.rounded", message).value(rounded(part, 2));
+        let error = error.allowed(format!("up to {} %; above {} % is an error", 100.0 * TOLD, 100.0 * REFUSED));
+        let error = error.hint(if self.single {
+            "move the shape to the origin before it is saved, or save it in a format with numbers of 8 bytes"
+        } else {
+            "move the shape to the origin before it is saved"
+        });
+        if part > REFUSED { Err(error) } else { Ok(Some(error)) }
+    }
+}
