@@ -8,7 +8,8 @@ use crate::{Element, Mesh};
 pub struct CellMeasure {
     /// Its signed area [m²] or volume [m³].
     pub whole: f64,
-    /// The least and the greatest det ∂x/∂ξ at its nodes, as the area or volume of a cell that has it everywhere.
+    /// The least and the greatest det ∂x/∂ξ at its nodes, as the area or volume of a cell that has it everywhere. Where it is positive
+    /// at the nodes and negative between them, `least` is that: see [`crate::least_jacobian`].
     pub least: f64,
     /// See `least`.
     pub greatest: f64,
@@ -21,7 +22,7 @@ pub struct CellMeasure {
 pub struct CellQuality {
     /// Number of cells.
     pub cells: usize,
-    /// Number of cells with a negative Jacobian at one of their nodes.
+    /// Number of cells with a negative Jacobian anywhere.
     pub inverted: usize,
     /// Area or volume of all of them [m², m³].
     pub measure: f64,
@@ -67,7 +68,8 @@ impl<const D: usize> Mesh<D> {
         lift(&self.positions[node as usize])
     }
 
-    /// Least and greatest Jacobian at the nodes of a cell, as areas or volumes.
+    /// Least and greatest Jacobian at the nodes of a cell, as areas or volumes; the least also between the nodes, where it is negative
+    /// there alone.
     pub(crate) fn extreme_measures(&self, element: Element, nodes: &[u32], whole: f64) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let side = |a: usize, b: usize| subtract(at(b), at(a));
@@ -80,9 +82,23 @@ impl<const D: usize> Mesh<D> {
             }
             _ => return (whole, whole),
         };
-        values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        let (low, high) = values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (if x < low { x } else { low }, if x > high { x } else { high })
-        })
+        });
+        // Positive at its nodes, a cell may be folded between them.
+        let unit = match element {
+            Element::QuadraticTriangle => 0.5,
+            Element::QuadraticTetrahedron => 1.0 / 6.0,
+            Element::Hexahedron => 1.0,
+            _ => return (low, high),
+        };
+        let between = if low > 0.0 { self.least_jacobian_of(nodes).filter(|least| least.is_inverted()) } else { None };
+        (between.map_or(low, |least| unit * least.found), high)
+    }
+
+    fn least_jacobian_of(&self, nodes: &[u32]) -> Option<crate::LeastJacobian> {
+        let rest: Vec<[f64; D]> = nodes.iter().map(|&node| self.positions[node as usize]).collect();
+        crate::least_jacobian(&rest)
     }
 
     /// Turns cells round, so that their measure changes its sign; cells are counted in the order of [`crate::Cells::iter`].

@@ -1,6 +1,9 @@
 //! Cells of second order: numbering, measures, shares, boundaries, maps; groups and values of cells.
 
-use opruga_mesh::{Cells, EdgeSet, Element, Mesh, MeshError, Problem, Share, signed_volume};
+use opruga_mesh::{
+    Cells, EdgeSet, Element, Mesh, MeshError, Problem, Share, TETRAHEDRON_EDGES, jacobian_at, least_jacobian,
+    signed_volume,
+};
 use std::collections::BTreeMap;
 
 #[track_caller]
@@ -141,6 +144,40 @@ fn a_cell_that_folds_over_at_a_node_is_inverted() {
         matches!(problems[0], Problem::Inverted { element: Element::QuadraticTriangle, index: 0, measure } if measure < 0.0),
         "{problems:?}"
     );
+}
+
+#[test]
+fn a_cell_that_folds_over_between_its_nodes_is_inverted() {
+    // Numbers from −1 to 1, the same in every run.
+    let mut state = 3_u64;
+    let mut chance = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let straight = {
+        let mut out = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for [a, b] in TETRAHEDRON_EDGES {
+            out.push(std::array::from_fn(|d| 0.5 * (out[a][d] + out[b][d])));
+        }
+        out
+    };
+    let at = |node: usize| -> [f64; 4] {
+        std::array::from_fn(|corner| match node.checked_sub(4) {
+            None => f64::from(u8::from(corner == node)),
+            Some(edge) => 0.5 * f64::from(u8::from(TETRAHEDRON_EDGES[edge].contains(&corner))),
+        })
+    };
+    let folded = (0..200_000).find_map(|_| {
+        let nodes: Vec<[f64; 3]> = straight.iter().map(|x| x.map(|x| x + 0.18 * chance())).collect();
+        let right = (0..10).all(|node| jacobian_at(&nodes, at(node)).is_some_and(|j| j > 0.0));
+        (right && least_jacobian(&nodes).is_some_and(|least| least.is_inverted())).then_some(nodes)
+    });
+    let cells = Cells { quadratic_tetrahedra: vec![[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]], ..Cells::default() };
+    let mut mesh = Mesh::<3> { positions: folded.expect("such a cell"), cells, ..Mesh::default() };
+    mesh.facets = mesh.facets_from_cells().unwrap();
+    assert!(matches!(mesh.check()[..], [Problem::Inverted { .. }]), "{:?}", mesh.check());
+    assert!(mesh.cell_measures()[0].least < 0.0);
+    assert_eq!(mesh.cell_quality().unwrap().inverted, 1);
 }
 
 #[test]

@@ -167,9 +167,11 @@ impl<const D: usize> World<D> {
         /// A body that is not there, or has none, says nothing.
         pub fn cell_states(&self, body: usize) -> Vec<CellState> = cell_states_here;
 
-        /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, at one of their
-        /// integration points at least, which the rules of motion allow; none where all are right side out. Looked for anew by
-        /// every call.
+        /// A warning (`cells.inverted`) of cells of finite elements that are inside out in the present state, wholly or
+        /// somewhere, which the rules of motion allow; none where all are certainly right side out. Looked for anew by every call.
+        ///
+        /// J of quadratic cells and boxes is bounded over the whole cell ([`opruga_mesh::least_jacobian`]), whatever their integration
+        /// points see. A cell that is so nearly flat somewhere that the bounds do not decide is counted as one that may be.
         pub fn inverted_cells(&self) -> Option<Warning> = inverted_cells_here;
 
         /// A warning (`cells.other_balance`) of bodies of finite elements that are nearly at rest and hold more energy than the

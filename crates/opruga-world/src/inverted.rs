@@ -1,35 +1,88 @@
-//! Cells of finite elements that are inside out in the present state, wholly or at some of their integration points.
+//! Cells of finite elements that are inside out in the present state, wholly or somewhere.
+//!
+//! Two things are looked at. Integration points, with what the law is asked with there: that of a box is not its shape alone. And J of
+//! the shape over the whole cell: it is a polynomial over another one, of quadratic cells and boxes, whose sign its coefficients prove
+//! or one of its values refutes ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner while all of its integration points
+//! are right side out, and no force tells.
 
 use crate::world::{Warning, World};
 use opruga_math::words::{counted, number};
+use opruga_mesh::{jacobian_at, least_jacobian};
 
 /// The code of the warning.
 const INVERTED: &str = "cells.inverted";
 
+/// What is known of a cell.
+enum Found {
+    /// It is inside out where J is this.
+    Inverted(f64),
+    /// It is flat somewhere, or nearly: J is as little as this, and may be negative.
+    Nearly(f64),
+}
+
 impl<const D: usize> World<D> {
     pub(crate) fn inverted_cells_here(&self) -> Option<Warning> {
         let solid = |body: &usize| self.blueprint.bodies[*body].models.iter().any(|model| model.kind() == "fem");
-        let mut first: Option<(usize, u32, f64)> = None;
-        let mut count = 0;
+        let mut first: Option<(usize, u32, Found)> = None;
+        let (mut count, mut near) = (0, 0);
         for body in self.bodies().filter(solid) {
-            for cell in self.cell_states(body).iter().filter(|cell| cell.smallest_volume_ratio <= 0.0) {
-                first.get_or_insert((body, cell.cell, cell.smallest_volume_ratio));
-                count += 1;
+            let shapes = self.shapes_of_cells(body);
+            for cell in self.cell_states(body) {
+                let points = cell.smallest_volume_ratio;
+                // Written so that what is no number is inverted.
+                let right = points > 0.0;
+                let found = match shapes.get(cell.cell as usize) {
+                    Some(Some(Found::Inverted(ratio))) if right || *ratio < points => Found::Inverted(*ratio),
+                    _ if !right => Found::Inverted(points),
+                    Some(Some(Found::Nearly(ratio))) => Found::Nearly(*ratio),
+                    _ => continue,
+                };
+                let certain = matches!(found, Found::Inverted(_));
+                (count, near) = if certain { (count + 1, near) } else { (count, near + 1) };
+                // What is certain is named before what is not.
+                if first.as_ref().is_none_or(|(.., known)| certain && matches!(known, Found::Nearly(_))) {
+                    first = Some((body, cell.cell, found));
+                }
             }
         }
-        let (body, cell, ratio) = first?;
+        let (body, cell, Found::Inverted(ratio) | Found::Nearly(ratio)) = first?;
+        let cells = |count: u64| match count {
+            1 => "1 cell is".into(),
+            _ => format!("{} are", counted(count, "cell", "cells")),
+        };
         let message = format!(
             "at t = {} s {} inside out, the first of them cell {cell} of body `{}` with J = {}; hint: more substeps, {}",
             number(self.time()),
-            match count {
-                1 => "1 cell is".into(),
-                _ => format!("{} are", counted(count, "cell", "cells")),
+            match (count, near) {
+                (_, 0) => cells(count),
+                (0, _) => format!("perhaps {}", cells(near)),
+                _ => format!("{count} and perhaps {near} more cells are"),
             },
             self.blueprint.bodies[body].name,
             number(ratio),
             self.what_rights_cells(body),
         );
-        Some(Warning { code: INVERTED.into(), message, count })
+        Some(Warning { code: INVERTED.into(), message, count: count + near })
+    }
+
+    /// What the shapes of the cells of a body show, in the order of its cells. Cells that have no positive J at rest, such as those with
+    /// nodes at a quarter of their sides, have none that could keep its sign.
+    fn shapes_of_cells(&self, body: usize) -> Vec<Option<Found>> {
+        let mesh = &self.blueprint.bodies[body].mesh;
+        let (mut now, mut rest) = (Vec::new(), Vec::new());
+        let found = mesh.cells.iter().map(|(_, _, nodes)| {
+            now.clear();
+            now.extend(nodes.iter().map(|node| self.position(body, *node)));
+            let least = least_jacobian(&now).filter(|least| !least.is_upright())?;
+            rest.clear();
+            rest.extend(nodes.iter().map(|node| mesh.positions[*node as usize]));
+            if !least_jacobian(&rest)?.is_positive() {
+                return None;
+            }
+            let ratio = least.found / jacobian_at(&rest, least.at)?;
+            Some(if least.is_inverted() { Found::Inverted(ratio) } else { Found::Nearly(ratio) })
+        });
+        found.collect()
     }
 
     /// What else than more substeps turns cells of a body right side out: no law that it already has.

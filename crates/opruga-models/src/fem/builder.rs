@@ -176,6 +176,15 @@ impl<'a, const D: usize> Builder<'a, D> {
             }
             measure += weight * determinant;
         }
+        // A quadratic cell may be folded where no point of its own lies.
+        let folded = if E::BOX || E::SIMPLEX { None } else { opruga_mesh::least_jacobian(&rest) };
+        if let Some(found) = folded.map(|jacobian| jacobian.found).filter(|found| *found < -least) {
+            let message = format!(
+                "cell {} with the nodes {:?} is turned inside out at rest: det ∂X/∂ξ = {found:e}; allowed: more than {least:e}",
+                cell.number, cell.nodes
+            );
+            return Err(refuse("model.inverted_cell", message));
+        }
         Ok(measure)
     }
 
