@@ -33,9 +33,11 @@ mod scene_delta;
 pub mod schema;
 pub mod selection;
 pub mod shapes;
+mod slender;
 mod slots;
 mod snapshot;
 mod stability;
+mod turned;
 pub mod validity;
 mod world;
 

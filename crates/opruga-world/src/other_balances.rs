@@ -224,7 +224,7 @@ fn accounted(nodes: &[Node], dimension: usize) -> f64 {
 }
 
 /// The rotation in the plane that brings X nearest to x, from Σ w X xᵀ.
-fn turn_in_plane(moments: &[[f64; 3]; 3]) -> [Vector; 3] {
+pub(crate) fn turn_in_plane(moments: &[[f64; 3]; 3]) -> [Vector; 3] {
     let (along, across) = (moments[0][0] + moments[1][1], moments[0][1] - moments[1][0]);
     let size = (along * along + across * across).sqrt();
     let (c, s) = if size > 0.0 { (along / size, across / size) } else { (1.0, 0.0) };
@@ -233,7 +233,7 @@ fn turn_in_plane(moments: &[[f64; 3]; 3]) -> [Vector; 3] {
 
 /// The rotation in space that brings X nearest to x, from Σ w X xᵀ: its quaternion belongs to the largest eigenvalue of Horn's
 /// matrix (Horn 1987).
-fn turn_in_space(m: &[[f64; 3]; 3]) -> [Vector; 3] {
+pub(crate) fn turn_in_space(m: &[[f64; 3]; 3]) -> [Vector; 3] {
     let trace = m[0][0] + m[1][1] + m[2][2];
     let mut matrix = [0.0; 16];
     matrix[0] = trace;
@@ -300,7 +300,7 @@ fn beyond_whole(nodes: &[Node], dimension: usize) -> f64 {
     kinetic
 }
 
-fn in_space<const D: usize>(x: &[f64; D]) -> Vector {
+pub(crate) fn in_space<const D: usize>(x: &[f64; D]) -> Vector {
     core::array::from_fn(|d| if d < D { x[d] } else { 0.0 })
 }
 

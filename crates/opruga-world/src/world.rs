@@ -105,6 +105,8 @@ pub struct World<const D: usize> {
     pub(crate) warnings: Vec<Warning>,
     /// The parts of the blueprint that have changed since the start, as they were.
     pub(crate) at_start: AtStart<D>,
+    /// The cosine of the farthest turn of cells under the law `linear` that was warned of.
+    pub(crate) farthest_turn: f64,
     /// What the program has done since it was last asked for; none: it is not written down.
     pub(crate) inputs: Option<Vec<Input<D>>>,
     /// One for each thread.
@@ -168,6 +170,7 @@ impl<const D: usize> World<D> {
             stability: Vec::new(),
             warnings: Vec::new(),
             at_start: AtStart::default(),
+            farthest_turn: 1.0,
             inputs: None,
             workspaces,
             pool,
@@ -175,6 +178,7 @@ impl<const D: usize> World<D> {
         world.regroup(&Touched::All, &states)?;
         world.check_stability()?;
         world.warn_of_buried_bodies();
+        world.warn_of_slender_cells();
         // The ledger starts from here.
         world.flows.start = 0.0;
         let start = world.stock_energy();
@@ -261,6 +265,7 @@ impl<const D: usize> World<D> {
             self.energy.loss_integrator > 0.0 && self.islands.iter().all(|island| island.integrator.damps_by_itself());
         self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE && !damped);
         self.warn_of_crushed_bodies();
+        self.warn_of_turned_cells();
         self.take_away_what_is_far()
     }
 

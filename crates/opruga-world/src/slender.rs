@@ -1,0 +1,165 @@
+//! Cells that are long for the thickness of their body, and bend and twist too stiffly.
+//!
+//! A cell whose shape functions lack what bending needs pays for it with a strain that is none, in proportion to its length: a body of the
+//! thickness T bends too stiffly by a part of about (L/T)², however many cells lie across. Measured on beams and plates
+//! (`tests/slender_cells.rs`, docs/finite-elements.md): linear cells are 45 % too high in the first frequencies where their longest edge
+//! is T; quadratic tetrahedra, which lack a part of twisting alone, 10 % where it is 8.5 T. Quadratic triangles and boxes have no limit.
+
+use crate::blueprint::BodyBlueprint;
+use crate::world::{Warning, World};
+use opruga_math::words::rounded;
+use opruga_mesh::{Element, Mesh};
+use opruga_solve::dense::symmetric_eigen;
+
+/// The code of the warning.
+const SLENDER: &str = "cells.slender";
+
+/// What was measured of a kind of cells.
+struct Limit {
+    /// The longest edge of cells in thicknesses of their body.
+    length: f64,
+    /// By how much the first frequencies are too high there [%].
+    error: f64,
+    /// What bends better.
+    hint: &'static str,
+}
+
+const LINEAR: Limit =
+    Limit { length: 1.0, error: 45.0, hint: "quadratic cells (`order = 2`), quadrilaterals or hexahedra" };
+const QUADRATIC_TETRAHEDRON: Limit = Limit { length: 8.5, error: 10.0, hint: "hexahedra, or shorter cells" };
+
+/// The limit of a kind of cells, if it has one.
+fn limit(element: Element) -> Option<&'static Limit> {
+    match element {
+        Element::Triangle | Element::Tetrahedron => Some(&LINEAR),
+        Element::QuadraticTetrahedron => Some(&QUADRATIC_TETRAHEDRON),
+        _ => None,
+    }
+}
+
+impl<const D: usize> World<D> {
+    /// Warns of bodies of finite elements more than half of whose volume lies in cells beyond the limit of their kind. One warning, with
+    /// the body that is farthest beyond; copies count.
+    pub(crate) fn warn_of_slender_cells(&mut self) {
+        let mut worst: Option<(usize, Slender)> = None;
+        let mut count = 0;
+        // Copies share their mesh.
+        let mut last: Option<(*const Mesh<D>, Option<Slender>)> = None;
+        for (number, body) in self.blueprint.bodies.iter().enumerate() {
+            let mesh: *const Mesh<D> = &raw const *body.mesh;
+            let found = match &last {
+                Some((known, found)) if *known == mesh => *found,
+                _ => slender(body),
+            };
+            last = Some((mesh, found));
+            let Some(found) = found else { continue };
+            count += 1;
+            if worst.is_none_or(|(_, known)| found.times() / found.limit.length > known.times() / known.limit.length) {
+                worst = Some((number, found));
+            }
+        }
+        let Some((body, found)) = worst else { return };
+        let message = format!(
+            "body `{}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at \
+             {} times the first frequencies of plates were measured {} % too high, and they rise farther; hint: {}",
+            self.blueprint.bodies[body].name,
+            rounded(found.length, 3),
+            rounded(found.times(), 3),
+            rounded(found.thickness, 3),
+            found.limit.length,
+            found.limit.error,
+            found.limit.hint,
+        );
+        self.warnings.push(Warning { code: SLENDER.into(), message, count });
+    }
+}
+
+/// The cells of a body that are too long.
+#[derive(Clone, Copy)]
+struct Slender {
+    /// The mean of their longest edges [m].
+    length: f64,
+    /// The thickness of the body [m].
+    thickness: f64,
+    limit: &'static Limit,
+}
+
+impl Slender {
+    fn times(&self) -> f64 {
+        self.length / self.thickness
+    }
+}
+
+fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
+    let mesh = &*body.mesh;
+    let solid = body.models.iter().any(|model| model.kind() == "fem");
+    if !solid || mesh.cells.iter().all(|(element, ..)| limit(element).is_none()) {
+        return None;
+    }
+    let measures = mesh.cell_measures();
+    let volume: f64 = measures.iter().map(|cell| cell.whole).sum();
+    let thickness = thickness(mesh, volume)?;
+    let (mut beyond, mut lengths) = (0.0, 0.0);
+    let mut kind: Option<(f64, &'static Limit)> = None;
+    for ((element, ..), cell) in mesh.cells.iter().zip(&measures) {
+        let Some(limit) = limit(element).filter(|limit| cell.longest > limit.length * thickness) else { continue };
+        beyond += cell.whole;
+        lengths += cell.whole * cell.longest;
+        // Of several kinds the one with the lower limit is named.
+        if kind.is_none_or(|(length, _)| limit.length < length) {
+            kind = Some((limit.length, limit));
+        }
+    }
+    let (_, limit) = kind?;
+    (beyond > 0.5 * volume).then(|| Slender { length: lengths / beyond, thickness, limit })
+}
+
+/// How thick a body is where it is thinnest [m]: its extent along its shortest axis of inertia, or, where it is curved or hollow, twice its
+/// volume over its surface, which is the thickness of a plate and of a shell. A block has 2D times its volume over its surface at most.
+fn thickness<const D: usize>(mesh: &Mesh<D>, volume: f64) -> Option<f64> {
+    let mut surface = 0.0;
+    for facet in &mesh.facets {
+        let at = |k: usize| mesh.positions[facet[k] as usize];
+        let side = |k: usize| -> [f64; 3] {
+            let (from, to) = (at(0), at(k));
+            core::array::from_fn(|d| if d < D { to[d] - from[d] } else { 0.0 })
+        };
+        let (a, b) = (side(1), if D == 3 { side(2) } else { [0.0, 0.0, 1.0] });
+        let normal: [f64; 3] =
+            core::array::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
+        let area = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        surface += if D == 3 { 0.5 * area } else { area };
+    }
+    let plate = 2.0 * volume / surface;
+    let block = D as f64 * plate;
+    let across = shortest_extent(mesh);
+    let thickness = if across > 2.0 * block {
+        plate
+    } else if across < block {
+        across
+    } else {
+        block
+    };
+    (thickness > 0.0 && thickness.is_finite()).then_some(thickness)
+}
+
+/// The extent along the axis about which the nodes spread least [m].
+fn shortest_extent<const D: usize>(mesh: &Mesh<D>) -> f64 {
+    let count = mesh.positions.len() as f64;
+    let center: [f64; D] = core::array::from_fn(|d| mesh.positions.iter().map(|x| x[d]).sum::<f64>() / count);
+    let mut spread = vec![0.0; D * D];
+    for x in &mesh.positions {
+        for (k, s) in spread.iter_mut().enumerate() {
+            *s += (x[k / D] - center[k / D]) * (x[k % D] - center[k % D]);
+        }
+    }
+    let (_, axes) = symmetric_eigen(&spread, D);
+    let Some(axis) = axes.first() else { return 0.0 };
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for x in &mesh.positions {
+        let along: f64 = (0..D).map(|d| axis[d] * (x[d] - center[d])).sum();
+        low = if along < low { along } else { low };
+        high = if along > high { along } else { high };
+    }
+    high - low
+}
