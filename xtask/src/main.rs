@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask licences | goldens | gallery | bench | web | web-trial | web-measure`.
+//! Chores of the workspace: `cargo xtask licences | goldens | gallery | bench | web | web-trial | web-measure`; `--help` tells of each.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;
@@ -9,27 +9,137 @@ mod web;
 
 use std::process::ExitCode;
 
+/// A chore: its word, what may stand behind it, what it does, the most words behind it, and its work.
+struct Chore {
+    word: &'static str,
+    arguments: &'static str,
+    about: &'static str,
+    most: usize,
+    work: fn(&[String]) -> Result<(), String>,
+}
+
+const CHORES: [Chore; 7] = [
+    Chore {
+        word: "licences",
+        arguments: "",
+        about: "looks whether the licences of all dependencies are allowed",
+        most: 0,
+        work: |_| licences::check(),
+    },
+    Chore {
+        word: "goldens",
+        arguments: "",
+        about: "runs every scene and writes scenes/golden.txt",
+        most: 0,
+        work: |_| goldens::write(),
+    },
+    Chore {
+        word: "gallery",
+        arguments: "[--check] [PICTURE …]",
+        about: "draws the pictures of the documentation anew, or only compares them",
+        most: usize::MAX,
+        work: gallery::run,
+    },
+    Chore {
+        word: "bench",
+        arguments: "",
+        about: "measures Opruga beside the baseline, for about ten minutes",
+        most: 0,
+        work: |_| bench::compare(),
+    },
+    Chore {
+        word: "web",
+        arguments: "[--serve] [--port NUMBER]",
+        about: "compiles the page of the studio and lays its files out",
+        most: 3,
+        work: web::build,
+    },
+    Chore {
+        word: "web-trial",
+        arguments: "[PROFILE]",
+        about: "tries the page in a browser",
+        most: 1,
+        work: web::trial,
+    },
+    Chore {
+        word: "web-measure",
+        arguments: "[PICTURES]",
+        about: "measures the page in a browser",
+        most: 1,
+        work: web::measure,
+    },
+];
+
+impl Chore {
+    fn usage(&self) -> String {
+        format!("cargo xtask {} {}", self.word, self.arguments).trim_end().to_string()
+    }
+}
+
+/// All chores, for people.
+fn help() -> String {
+    let rows: Vec<String> = CHORES.iter().map(|chore| format!("  {:<46} {}", chore.usage(), chore.about)).collect();
+    format!("Chores of the workspace\n{}", rows.join("\n"))
+}
+
+/// Does what the words say; help is text to print.
+fn chore(arguments: &[String]) -> Result<Option<String>, String> {
+    let is_help = |word: &String| word == "--help" || word == "-h" || word == "help";
+    let chore = arguments.first().and_then(|word| CHORES.iter().find(|chore| chore.word == word));
+    match (chore, arguments.first()) {
+        (Some(chore), _) => {
+            let rest = &arguments[1..];
+            if rest.iter().any(is_help) {
+                return Ok(Some(format!("{}\n{}", chore.usage(), chore.about)));
+            }
+            let option =
+                rest.iter().find(|word| word.starts_with('-') && !chore.arguments.contains(&format!("[{word}")));
+            if let Some(unknown) = option.or(rest.get(chore.most)) {
+                return Err(format!("`{unknown}` says nothing here; usage: {}", chore.usage()));
+            }
+            (chore.work)(rest).map(|()| None)
+        }
+        (None, Some(word)) if is_help(word) => Ok(Some(help())),
+        (None, Some(word)) => Err(format!("there is no chore `{word}`\n{}", help())),
+        (None, None) => Err(help()),
+    }
+}
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let outcome = match arguments.first().map(String::as_str) {
-        Some("licences") => licences::check(),
-        Some("goldens") => goldens::write(),
-        Some("gallery") => gallery::run(&arguments[1..]),
-        Some("bench") => bench::compare(),
-        Some("web") => web::build(&arguments[1..]),
-        Some("web-trial") => web::trial(&arguments[1..]),
-        Some("web-measure") => web::measure(&arguments[1..]),
-        _ => Err(
-            "usage: cargo xtask licences | goldens | gallery [--check] [PICTURE …] | bench | web [--serve] [--port NUMBER] | \
-                  web-trial [PROFILE] | web-measure [PICTURES]"
-                .into(),
-        ),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+    match chore(&arguments) {
+        Ok(text) => {
+            text.iter().for_each(|text| println!("{text}"));
+            ExitCode::SUCCESS
+        }
         Err(message) => {
             eprintln!("{message}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(words: &[&str]) -> Result<Option<String>, String> {
+        chore(&words.iter().map(ToString::to_string).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn every_chore_answers_help_and_refuses_words_that_say_nothing() {
+        assert!(said(&["--help"]).is_ok_and(|text| text.is_some_and(|text| text.contains("web-measure"))));
+        assert!(said(&[]).is_err() && said(&["banch"]).is_err());
+        for chore in &CHORES {
+            for help in [&[chore.word, "--help"][..], &[chore.word, "-h"], &[chore.word, "x", "--help"]] {
+                assert!(said(help).is_ok_and(|text| text.is_some_and(|text| text.contains(chore.about))), "{help:?}");
+            }
+            assert!(said(&[chore.word, "--no-such-word"]).is_err(), "{}", chore.word);
+            if chore.most < usize::MAX {
+                let many = [&[chore.word][..], &["1"; 4][..]].concat();
+                assert!(said(&many).is_err(), "{}", chore.word);
+            }
         }
     }
 }
