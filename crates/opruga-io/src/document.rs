@@ -2,7 +2,7 @@
 
 use crate::brackets::unclosed;
 use crate::problem::{SceneError, visible};
-use crate::scene::MOST_ERRORS;
+use crate::scene::{Limits, MOST_ERRORS};
 use crate::source::Source;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -102,6 +102,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let mut problems: Vec<_> = problems.iter().collect();
     problems.sort_by_key(|problem| problem.span().map_or(0, |span| span.start));
     let (open, mut told) = (if problems.is_empty() { None } else { unclosed(source.text) }, false);
+    let count = problems.len();
     for problem in problems.into_iter().take(MOST_ERRORS) {
         let span = problem.span().unwrap_or(0..0);
         // All that is read as part of a list that is never closed makes no sense: that is one slip.
@@ -140,6 +141,9 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
         let mut error = SceneError::new("scene.syntax", format!("the text is no TOML: {message}"));
         error.hint = source.text.lines().nth(line - 1).and_then(|text| with_unit(text.split_once('=')?.1));
         errors.push(source.mark(error, span.start, span.end));
+    }
+    if count > MOST_ERRORS {
+        errors.push(SceneError { file: source.file.to_string(), ..SceneError::and_more(count - MOST_ERRORS) });
     }
     (if broken { None } else { Some(root) }, errors)
 }
@@ -232,9 +236,13 @@ fn node(value: Spanned<DeValue<'_>>) -> Node {
     Node { place, data }
 }
 
-/// The value of an override: a TOML value, or a bare word.
-pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, String> {
+/// The value of an override: a TOML value, or a bare word. It may be as deep and as large as one in a scene.
+///
+/// # Errors
+/// `set.value`, `scene.depth` or `scene.too_large`, without a place.
+pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, SceneError> {
     let trimmed = text.trim();
+    Source::check_value(trimmed, &Limits::default())?;
     let (parsed, errors) = DeValue::parse_recoverable(trimmed);
     let mut value = if errors.is_empty() {
         node(parsed)
@@ -244,7 +252,8 @@ pub(crate) fn parse_value(text: &str, number: usize) -> Result<Node, String> {
     {
         Node { place: Place::Override(number), data: Data::Text(trimmed.to_string()) }
     } else {
-        return Err(errors.first().map(|e| e.message().to_string()).unwrap_or_default());
+        let why = errors.first().map(|e| e.message().to_string()).unwrap_or_default();
+        return Err(SceneError::new("set.value", format!("the value is no TOML: {why}")));
     };
     set_place(&mut value, Place::Override(number));
     Ok(value)

@@ -41,8 +41,11 @@ fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), 
     if value.is_empty() {
         return Err(SceneError::new("set.value", "the value is missing").path(path).allowed("PATH=VALUE"));
     }
-    let value = document::parse_value(value, number).map_err(|why| {
-        let error = SceneError::new("set.value", format!("the value is no TOML: {why}")).path(path).value(visible(value));
+    let value = document::parse_value(value, number).map_err(|error| {
+        let error = error.path(path).value(visible(value));
+        if error.code != "set.value" {
+            return error;
+        }
         let several = value.contains(',') || value.contains("..");
         if several && !value.contains(['[', '{', '"', '\'']) {
             let hint = "`opruga sweep` takes lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector stands in brackets";

@@ -64,6 +64,17 @@ impl SceneError {
             excerpt: None,
         }
     }
+    /// What stands behind the errors that are shown: so many were only counted.
+    pub(crate) fn and_more(count: usize) -> SceneError {
+        SceneError { value: Some(count.to_string()), ..SceneError::new(MORE, format!("and {count} more")) }
+    }
+    /// How many errors this one stands for.
+    fn stands_for(&self) -> usize {
+        match (&self.value, self.code) {
+            (Some(count), MORE) => count.parse().unwrap_or(1),
+            _ => 1,
+        }
+    }
     /// Adds the path of the field.
     #[must_use]
     pub fn path(mut self, path: impl Into<String>) -> SceneError {
@@ -116,6 +127,31 @@ impl SceneError {
     pub fn exit_code(&self) -> i32 {
         if self.code.starts_with("read.") { 4 } else { 2 }
     }
+}
+
+/// The code of the error that stands for those that are not shown.
+const MORE: &str = "scene.more";
+
+/// The most errors that are shown of a file: who has mended fifty calls again.
+pub const MOST_SHOWN: usize = 50;
+
+/// The first errors of a list, and one behind them that says how many more there are.
+pub fn shown(mut errors: Vec<SceneError>) -> Vec<SceneError> {
+    let of_list = |error: &SceneError| error.code != MORE;
+    let mut hidden: usize = errors.iter().filter(|error| !of_list(error)).map(SceneError::stands_for).sum();
+    let file = errors.first().map(|error| error.file.clone()).unwrap_or_default();
+    errors.retain(of_list);
+    hidden += errors.len().saturating_sub(MOST_SHOWN);
+    errors.truncate(MOST_SHOWN);
+    if hidden > 0 {
+        errors.push(SceneError { file, ..SceneError::and_more(hidden) });
+    }
+    errors
+}
+
+/// How many errors a list stands for.
+pub fn count_of(errors: &[SceneError]) -> usize {
+    errors.iter().map(SceneError::stands_for).sum()
 }
 
 impl fmt::Display for SceneError {

@@ -30,6 +30,8 @@ fn empty_and_foreign_encodings() {
     let errors = read(&latin, "scene.toml", &catalogue(), &Options::default()).expect_err("latin-1");
     assert_eq!((errors[0].code, errors[0].line, errors[0].column), ("scene.encoding", Some(7), Some(13)));
     assert!(codes(format!("\u{feff}{HEAD}").as_bytes()).is_empty());
+    // The parser would skip a second mark.
+    assert_eq!(codes(format!("\u{feff}\u{feff}{HEAD}").as_bytes()), ["scene.encoding"]);
 }
 
 /// Row 2: every prefix of a full scene is read whole or refused with line and column.
@@ -336,7 +338,77 @@ fn all_errors_at_once() {
     // Very many errors are cut, and it is said.
     let many: String = (0..500).map(|k| format!("x{k} = 1\n")).collect();
     let found = errors(&format!("{many}{HEAD}"));
-    assert_eq!((found.len(), found[200].code), (201, "scene.more"));
+    assert_eq!((found.len(), found[50].code, found[50].message.as_str()), (51, "scene.more", "and 450 more"));
+}
+
+/// Whatever fills a scene, it is refused before a parser takes memory for it: here is what took 0.4 to 1.4 GB.
+#[test]
+fn the_memory_of_a_parser_is_bounded() {
+    let many: [(&str, String); 9] = [
+        ("keys", (0..2_000_000).map(|k| format!("k{k} = 1\n")).collect()),
+        ("empty lines", "\n".repeat(30_000_000)),
+        ("remarks", "#\n".repeat(15_000_000)),
+        ("words", "x\n".repeat(2_000_000)),
+        ("numbers", format!("a = {}", "1 ".repeat(10_000_000))),
+        ("dotted keys", (0..10_000).map(|k| format!("a{k}.{}b = 1\n", "b.".repeat(99))).collect()),
+        ("heads", "[[a]]\n".repeat(2_000_000)),
+        ("dotted heads", (0..10_000).map(|k| format!("[a{k}.{}b]\n", "b.".repeat(99))).collect()),
+        ("tables", format!("a = [{}]", "{},".repeat(2_000_000))),
+    ];
+    for (what, text) in many {
+        let errors = read(format!("{HEAD}{text}").as_bytes(), "scene.toml", &catalogue(), &Options::default());
+        let found: Vec<&str> = errors.expect_err(what).iter().map(|error| error.code).collect();
+        assert_eq!(found, ["scene.too_large"], "{what}");
+    }
+    // As many unknown keys as are read are told by the first fifty, as errors and as warnings.
+    let text = (0..300_000).map(|k| format!("k{k} = 1\n")).collect::<String>() + HEAD;
+    let found = errors(&text);
+    assert_eq!((found.len(), found[50].code, found[50].message.as_str()), (51, "scene.more", "and 299950 more"));
+    let lenient = Options { lenient: true, ..Options::default() };
+    let (_, notices) = read(text.as_bytes(), "scene.toml", &catalogue(), &lenient).expect("a scene");
+    assert_eq!((notices.len(), notices[50].about.message.as_str()), (51, "and 299950 more"));
+    // Keys that are there twice too; the first of them is no field.
+    let found = errors(&format!("{HEAD}{}", "a = 1\n".repeat(1_000)));
+    assert_eq!((found.len(), found[50].message.as_str()), (51, "and 950 more"));
+}
+
+/// A value of the command line is as deep and as large as one of a scene.
+#[test]
+fn overrides_have_the_limits_of_scenes() {
+    let with = |value: String| {
+        let overrides = vec![("world.gravity".to_string(), value)];
+        let options = Options { overrides, ..Options::default() };
+        let found = read(HEAD.as_bytes(), "scene.toml", &catalogue(), &options).expect_err("no gravity");
+        (found[0].code, found[0].path.clone())
+    };
+    for deep in ["[", "{a=", "[{a=["] {
+        assert_eq!(with(deep.repeat(10_000)), ("scene.depth", "world.gravity".into()), "{deep}");
+    }
+    assert_eq!(with(format!("{}1{}", "[".repeat(10_000), "]".repeat(10_000))).0, "scene.depth");
+    assert_eq!(with(format!("{{{}a = 1}}", "a.".repeat(10_000))).0, "scene.depth");
+    assert_eq!(with(format!("[{}]", "1,".repeat(5_000_000))).0, "scene.too_large");
+    // What a scene may hold is no error of depth here.
+    assert_eq!(with(format!("{}1{}", "[".repeat(100), "]".repeat(100))).0, "scene.length");
+}
+
+/// Names that print alike and differ by their code points: nobody could tell which body is meant.
+#[test]
+fn names_that_print_alike_are_refused() {
+    let named = |name: &str| BALL.replace("\"ball\"", &format!("\"{name}\""));
+    let text = format!("{HEAD}{}{}", named("caf\u{e9}"), named("cafe\u{301}"));
+    let found = errors(&text);
+    assert_eq!((found.len(), found[0].code), (1, "scene.duplicate_name"));
+    assert!(found[0].message.contains("U+00E9") && found[0].message.contains("U+0065 U+0301"), "{}", found[0]);
+    assert!(codes(format!("{HEAD}{}{}", named("caf\u{e9}"), named("cafe")).as_bytes()).is_empty());
+    let probe = |name: &str| {
+        format!("[[probe]]\nname = \"{name}\"\nbody = \"ball\"\nselect = {{ node = 0 }}\nrecord = [\"position\"]\n")
+    };
+    let text = format!("{HEAD}{BALL}{}{}", probe("\u{e9}"), probe("e\u{301}"));
+    assert_eq!(errors(&text).iter().map(|e| e.code).collect::<Vec<_>>(), ["scene.duplicate_name"]);
+    let add =
+        format!("[[command]]\ndo = \"add\"\nat = 0.5\n[command.body]\n{}", named("e\u{301}").replace("[[body]]\n", ""));
+    let text = format!("{HEAD}{}{add}", named("\u{e9}"));
+    assert_eq!(errors(&text).iter().map(|e| e.code).collect::<Vec<_>>(), ["scene.duplicate_name"]);
 }
 
 /// A misspelt name is one slip: what it stands for is not said to be missing too. Where unknown fields pass, it is.

@@ -2,6 +2,7 @@
 
 use super::Cost;
 use super::copies::{Copies, copies, write_out};
+use super::names::{Names, What};
 use super::reader::{Reader, join};
 use super::shape::{self, ShapePlace};
 use super::velocities::{self, Velocities};
@@ -109,6 +110,8 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
 /// The bodies that `add` commands bring: other commands, loads and probes may name them.
 pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node, String)], bodies: &mut Bodies<D>) {
     let mut added: Vec<(f64, usize, BodyBlueprint<D>)> = Vec::new();
+    let mut names = Names::of(What::Bodies);
+    bodies.names.keys().chain(bodies.copied.keys()).for_each(|name| drop(names.take(name, (), |_| String::new())));
     for (number, (node, path)) in commands.iter().enumerate() {
         let (Some("add"), Some(at)) = (node.get("do").and_then(Node::text), node.get("body")) else { continue };
         let path = join(path, "body");
@@ -116,10 +119,8 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
             bodies.broken.extend(at.get("name").and_then(Node::text).map(String::from));
             continue;
         };
-        if bodies.knows(&body.name) || added.iter().any(|(_, _, other)| other.name == body.name) {
-            let error =
-                SceneError::new("scene.duplicate_name", format!("two bodies are called `{}`", visible(&body.name)));
-            reader.report(place_of(at, "name"), error.path(join(&path, "name")).value(visible(&body.name)));
+        if let Some(error) = names.take(&body.name, (), |_| String::new()) {
+            reader.report(place_of(at, "name"), error.path(join(&path, "name")));
         }
         let time = match node.get("at").map(|n| &n.data) {
             Some(Data::Number(x, _)) => *x,
@@ -283,31 +284,19 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
     }
 }
 
-/// The same name twice: both places are named.
+/// The same name twice, or two that print alike: both places are named.
 fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
-    let mut seen: BTreeMap<&str, Place> = BTreeMap::new();
-    for draft in drafts {
-        if draft.name.is_empty() {
-            continue;
-        }
+    let mut names = Names::of(What::Bodies);
+    for draft in drafts.iter().filter(|draft| !draft.name.is_empty()) {
         let place = place_of(draft.node, "name");
-        match seen.get(draft.name.as_str()) {
-            Some(first) => {
-                let first = match first {
-                    Place::Bytes(at, _) => format!(", first in line {}", reader.source.position(*at).0),
-                    Place::Override(_) => String::new(),
-                };
-                let error = SceneError::new(
-                    "scene.duplicate_name",
-                    format!("two bodies are called `{}`{first}", visible(&draft.name)),
-                )
-                .path(join(&draft.path, "name"))
-                .value(visible(&draft.name));
-                reader.report(place, error.hint("every body needs a name of its own; many alike are `copies`"));
-            }
-            None => {
-                seen.insert(&draft.name, place);
-            }
+        let source = reader.source;
+        let line = |first: &Place| match first {
+            Place::Bytes(at, _) => format!(", first in line {}", source.position(*at).0),
+            Place::Override(_) => String::new(),
+        };
+        if let Some(error) = names.take(&draft.name, place, line) {
+            let error = error.path(join(&draft.path, "name"));
+            reader.report(place, error.hint("every body needs a name of its own; many alike are `copies`"));
         }
     }
 }

@@ -12,6 +12,7 @@ mod dimension;
 mod lifetimes;
 mod machine;
 mod moments;
+mod names;
 mod parameters;
 mod parts;
 mod pins;
@@ -52,7 +53,8 @@ pub struct Limits {
     pub shape_bytes: u64,
     /// How deep tables and arrays may be nested.
     pub depth: usize,
-    /// The largest number of values in a scene file.
+    /// The largest number of values in the lists of a scene file; what else takes memory when it is parsed counts by what it takes, a
+    /// line with a key as three.
     pub values: u64,
     /// The largest number of bodies.
     pub bodies: u64,
@@ -78,7 +80,8 @@ impl Limits {
             file_bytes: 64 << 20,
             shape_bytes: 256 << 20,
             depth: 128,
-            values: 4 << 20,
+            // Read in 300 MB and two seconds, whatever they are.
+            values: 1 << 20,
             bodies: 4_000_000,
             nodes: 200_000_000,
             memory_bytes: if bits > 32 { 8 << 30 } else { 2 << 30 },

@@ -1,14 +1,14 @@
 //! `[[probe]]`: columns of `diagnostics.csv`.
 
 use super::bodies::{self, Bodies};
+use super::names::{Names, What};
 use super::reader::{Reader, join, listed};
 use super::{place_of, selectors};
-use crate::document::{Data, Node, Place};
+use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
 use opruga_core::spec::nearest;
 use opruga_world::blueprint::{BodyBlueprint, ProbeBlueprint, Recorded};
 use opruga_world::schema;
-use std::collections::BTreeMap;
 
 /// Columns of `diagnostics.csv`.
 pub(crate) fn probes<const D: usize>(
@@ -17,18 +17,15 @@ pub(crate) fn probes<const D: usize>(
     bodies: &Bodies<D>,
 ) -> Vec<ProbeBlueprint<D>> {
     let mut probes = Vec::new();
-    let mut seen: BTreeMap<String, Place> = BTreeMap::new();
+    let mut names = Names::of(What::Probes);
     for (node, path) in reader.list(root, "", "probe") {
         let values = reader.fields(node, &path, &schema::PROBE, None);
         let name = values.text("name").unwrap_or("").to_string();
         if let Some(at) = node.get("name").filter(|_| values.text("name").is_some()) {
             bodies::check_name(reader, at, &join(&path, "name"), &name);
-            if seen.contains_key(&name) {
-                let error =
-                    SceneError::new("scene.duplicate_name", format!("two probes are called `{}`", visible(&name)));
-                reader.report(at.place, error.path(join(&path, "name")).value(visible(&name)));
+            if let Some(error) = names.take(&name, (), |_| String::new()) {
+                reader.report(at.place, error.path(join(&path, "name")));
             }
-            seen.insert(name.clone(), at.place);
         }
         let record = recorded(reader, node, &path);
         let body = bodies.reference(reader, node, &path);

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// More errors than this are counted, not listed: finding a place takes time.
-pub(crate) const MOST_ERRORS: usize = 200;
+pub(crate) const MOST_ERRORS: usize = crate::problem::MOST_SHOWN;
 
 /// What every part of the reader needs.
 pub(crate) struct Reader<'a> {
@@ -23,6 +23,8 @@ pub(crate) struct Reader<'a> {
     /// Errors that were counted only.
     more: usize,
     notices: Vec<Notice>,
+    /// Notices that were counted only.
+    more_notices: usize,
     /// The files that shapes have named so far.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
     /// Those that could not be read.
@@ -49,6 +51,7 @@ impl<'a> Reader<'a> {
             errors,
             more: 0,
             notices: Vec::new(),
+            more_notices: 0,
             files: BTreeMap::new(),
             unread: Vec::new(),
         }
@@ -62,6 +65,15 @@ impl<'a> Reader<'a> {
         }
         let error = self.placed(place, error);
         self.errors.push(error);
+    }
+
+    /// Adds an error that is made only if it will be listed: words that are near to another one take time to find.
+    fn report_lazily(&mut self, place: Place, error: impl FnOnce() -> SceneError) {
+        if self.errors.len() >= MOST_ERRORS {
+            self.more += 1;
+        } else {
+            self.report(place, error());
+        }
     }
 
     /// The bytes of a file that the scene names.
@@ -107,9 +119,8 @@ impl<'a> Reader<'a> {
         } else if self.notices.len() < MOST_ERRORS {
             let about = self.placed(place, about);
             self.notices.push(Notice { about, count: 1 });
-        } else if let Some(last) = self.notices.last_mut() {
-            last.about.message = "more warnings".into();
-            last.count += 1;
+        } else {
+            self.more_notices += 1;
         }
     }
 
@@ -129,11 +140,14 @@ impl<'a> Reader<'a> {
     /// Errors in the order of their places, and notices.
     pub(crate) fn finish(mut self) -> (Vec<SceneError>, Vec<Notice>) {
         self.errors.sort_by_key(|e| (e.line.unwrap_or(0), e.column.unwrap_or(0)));
+        let of_file = |count| SceneError { file: self.source.file.to_string(), ..SceneError::and_more(count) };
         if self.more > 0 {
-            let error = SceneError::new("scene.more", format!("{} more errors", self.more));
-            self.errors.push(SceneError { file: self.source.file.to_string(), ..error });
+            self.errors.push(of_file(self.more));
         }
-        (self.errors, self.notices)
+        if self.more_notices > 0 {
+            self.notices.push(Notice { about: of_file(self.more_notices), count: 1 });
+        }
+        (crate::problem::shown(self.errors), self.notices)
     }
 
     /// Whether the format is the one that is read here: without it nothing else can be understood.
@@ -183,26 +197,7 @@ impl<'a> Reader<'a> {
                     self.report(entry.value.place, SceneError::new("scene.range", e.to_string()).path(here));
                 }
             } else if !names().any(|n| n == entry.key) {
-                let known =
-                    if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
-                let mut error = SceneError::new(
-                    "scene.unknown_field",
-                    format!("there is no field `{}`{known}", visible(&entry.key)),
-                )
-                .path(visible(&here))
-                .value(visible(&entry.key))
-                .nearest(nearest(&entry.key, names()));
-                error.allowed = Some(listed(names()));
-                // The field was one of the kind that an override has put another in the place of.
-                if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
-                    && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
-                {
-                    error.hint = Some(format!(
-                        "`{table}.kind` was set to `{0}`, and the other fields stayed; --set {table}={0} takes its defaults",
-                        section.spec.kind
-                    ));
-                }
-                if self.options.lenient { self.notice(entry.place, error) } else { self.report(entry.place, error) }
+                self.unknown_field(node, entry, &here, section, tag);
             }
         }
         let meant = self.misspelt(node, section, tag);
@@ -212,6 +207,37 @@ impl<'a> Reader<'a> {
         values
     }
 
+    /// Reports a field that a table does not have.
+    fn unknown_field(&mut self, node: &Node, entry: &Entry, here: &str, section: &Section, tag: Option<&'static str>) {
+        let names = || names(section, tag);
+        let error = || {
+            let known =
+                if section.spec.kind == "scene" { String::new() } else { format!(" in `{}`", section.spec.kind) };
+            let mut error =
+                SceneError::new("scene.unknown_field", format!("there is no field `{}`{known}", visible(&entry.key)))
+                    .path(visible(here))
+                    .value(visible(&entry.key))
+                    .nearest(nearest(&entry.key, names()));
+            error.allowed = Some(listed(names()));
+            // The field was one of the kind that an override has put another in the place of.
+            if let Some(Place::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.place)
+                && let (Place::Bytes(..), Some((table, _))) = (entry.place, here.rsplit_once('.'))
+            {
+                error.hint = Some(format!(
+                    "`{table}.kind` was set to `{0}`, and the other fields stayed; --set {table}={0} takes its defaults",
+                    section.spec.kind
+                ));
+            }
+            error
+        };
+        match self.options.lenient {
+            // Each has a message of its own: behind the last that is listed there is nothing to look for.
+            true if self.notices.len() >= MOST_ERRORS => self.more_notices += 1,
+            true => self.notice(entry.place, error()),
+            false => self.report_lazily(entry.place, error),
+        }
+    }
+
     /// The fields that are there under a misspelt name: one slip is one error. Where unknown fields pass with a warning, what
     /// they may have meant is missing all the same.
     pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
@@ -219,7 +245,8 @@ impl<'a> Reader<'a> {
             return Vec::new();
         }
         let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
-        unknown.filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
+        // Those that are listed; of the others nobody reads what they may have meant.
+        unknown.take(MOST_ERRORS).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 
     /// Tells of fields that are written and have no say among the others.

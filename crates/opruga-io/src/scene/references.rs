@@ -48,12 +48,6 @@ impl<const D: usize> Bodies<D> {
             }
         }
     }
-
-    /// Whether a body, all copies of a body, or one of `others` has this name.
-    pub(crate) fn knows(&self, name: &str) -> bool {
-        self.names.contains_key(name) || self.copied.contains_key(name)
-    }
-
     /// The first body that a name means, copies by their common name too.
     pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
         let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));

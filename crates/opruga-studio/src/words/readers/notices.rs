@@ -217,5 +217,4 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("{} triangle that faces against its neighbours is turned", "okrenuto trokuta suprotnih svojim susjedima: {}"),
     // Scenes.
     ("the points of `{}` run clockwise", "točke tijela `{}` idu u smjeru kazaljke na satu"),
-    ("more warnings", "još upozorenja"),
 ];

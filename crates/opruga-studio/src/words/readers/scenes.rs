@@ -141,6 +141,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "`reaction` and `contact` are forces, which every body has",
         "`reaction` i `contact` su sile, koje ima svako tijelo",
     ),
+    (
+        "the names of two probes print alike and differ by Unicode normalisation alone, {} here and {} there: `{}`",
+        "imena dviju sonda izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje {}, ondje {}: `{}`",
+    ),
     ("`record` is empty", "`record` je prazan"),
     ("`{}` is empty", "`{}` je prazan"),
     ("`{}` is recorded twice", "`{}` se bilježi dvaput"),
@@ -159,6 +163,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "[[0.1, 0], [0, 0]] rasteže duž x, [[0, 1], [0, 0]] smiče",
     ),
     ("[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]] stretches along x", "[[0.1, 0, 0], [0, 0, 0], [0, 0, 0]] rasteže duž x"),
+    (
+        "the names of two bodies print alike and differ by Unicode normalisation alone, {} here and {} there: `{}`, first in line {}",
+        "imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje {}, ondje {}: `{}`, prvo u retku {}",
+    ),
+    (
+        "the names of two bodies print alike and differ by Unicode normalisation alone, {} here and {} there: `{}`",
+        "imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje {}, ondje {}: `{}`",
+    ),
     ("two bodies are called `{}`, first in line {}", "dva tijela zovu se `{}`, prvo u retku {}"),
     ("two bodies are called `{}`", "dva tijela zovu se `{}`"),
     (
@@ -236,7 +248,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("at most {} nodes", "najviše {} čvorova"),
     ("at most {} bytes", "najviše {} bajtova"),
     ("at most {} levels", "najviše {} razina"),
-    ("at most {} values", "najviše {} vrijednosti"),
+    (
+        "at most {} values in lists, or {} lines with a key",
+        "najviše {} vrijednosti u popisima, ili {} redaka s ključem",
+    ),
     // Time and pictures.
     ("a step of {} s is lost in {} s: time would stand still", "korak od {} s gubi se u {} s: vrijeme bi stajalo"),
     ("a step that changes the time", "korak koji mijenja vrijeme"),
@@ -293,7 +308,7 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ),
     ("[0, 0, 6.2832] turns once a second about z", "[0, 0, 6.2832] okreće se jednom u sekundi oko z"),
     // The scene as a whole.
-    ("{} more errors", "još pogrešaka: {}"),
+    ("and {} more", "i još {}"),
     ("`dimension` is missing", "`dimension` nedostaje"),
     ("`dimension` is {#}", "`dimension` je {#}"),
     ("the format is missing", "nedostaje zapis (`format`)"),
@@ -366,6 +381,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("`{}` is given twice, first in line {}", "`{}` je zadano dvaput, prvi put u retku {}"),
     ("`{}` is given twice", "`{}` je zadano dvaput"),
     ("keep one of the two", "zadrži jedno od toga"),
+    (
+        "the scene begins with two byte-order marks (U+FEFF)",
+        "prizor počinje dvjema oznakama redoslijeda bajtova (U+FEFF)",
+    ),
+    ("UTF-8, with one byte-order mark at most", "UTF-8, s najviše jednom oznakom redoslijeda bajtova"),
+    ("save it as UTF-8 without a byte-order mark", "spremi ga kao UTF-8 bez oznake redoslijeda bajtova"),
     ("the scene is written in UTF-16 or UTF-32", "prizor je napisan u UTF-16 ili UTF-32"),
     ("save it as UTF-8", "spremi ga kao UTF-8"),
     ("byte 0x{} is no UTF-8", "bajt 0x{} nije UTF-8"),
@@ -373,7 +394,10 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     ("the scene is empty", "prizor je prazan"),
     ("`opruga new NAME` writes a scene to begin with", "`opruga new IME` piše prizor za početak"),
     ("tables and arrays are nested more than {} deep", "tablice i popisi ugniježđeni su dublje od {}"),
-    ("the scene has more than {} values", "prizor ima više od {} vrijednosti"),
+    (
+        "the text has more values, keys and lines than fit into the memory of its reader",
+        "tekst ima više vrijednosti, ključeva i redaka nego što stane u memoriju njegova čitača",
+    ),
     ("the scene has {} bytes", "prizor ima {} bajtova"),
     ("large shapes belong in mesh files", "veliki oblici idu u datoteke mreža"),
     // Files.

@@ -1,0 +1,80 @@
+//! Names that are the same, or print alike.
+
+use crate::problem::{SceneError, visible};
+use std::collections::BTreeMap;
+use unicode_normalization::UnicodeNormalization as _;
+
+/// What bears the names.
+#[derive(Clone, Copy)]
+pub(super) enum What {
+    Bodies,
+    Probes,
+}
+
+/// The names of a kind of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which print alike: nobody could tell
+/// two bodies apart that differ by that alone, so both are one name here.
+pub(super) struct Names<P> {
+    what: What,
+    /// The composed form (NFC) of a name → the name as it was written first, and its place.
+    seen: BTreeMap<String, (String, P)>,
+}
+
+impl<P> Names<P> {
+    /// No names yet.
+    pub(super) fn of(what: What) -> Names<P> {
+        Names { what, seen: BTreeMap::new() }
+    }
+
+    /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `wording` adds what is
+    /// known of the place of the first one.
+    pub(super) fn take(&mut self, name: &str, place: P, wording: impl FnOnce(&P) -> String) -> Option<SceneError> {
+        let form: String = name.nfc().collect();
+        let Some((first, at)) = self.seen.get(&form) else {
+            self.seen.insert(form, (name.to_string(), place));
+            return None;
+        };
+        let (shown, at) = (visible(name), wording(at));
+        let (here, there) = (code_points(name, first), code_points(first, name));
+        let message = match (self.what, first == name) {
+            (What::Bodies, true) => format!("two bodies are called `{shown}`{at}"),
+            (What::Probes, true) => format!("two probes are called `{shown}`{at}"),
+            (What::Bodies, false) => format!(
+                "the names of two bodies print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{shown}`{at}"
+            ),
+            (What::Probes, false) => format!(
+                "the names of two probes print alike and differ by Unicode normalisation alone, {here} here and {there} there: `{shown}`{at}"
+            ),
+        };
+        Some(SceneError::new("scene.duplicate_name", message).value(shown))
+    }
+}
+
+/// The characters of a name from the first to the last that another one does not share, as code points.
+fn code_points(name: &str, other: &str) -> String {
+    let (own, others): (Vec<char>, Vec<char>) = (name.chars().collect(), other.chars().collect());
+    let before = own.iter().zip(&others).take_while(|(a, b)| a == b).count();
+    let left = own.len().min(others.len()) - before;
+    let behind = own.iter().rev().zip(others.iter().rev()).take(left).take_while(|(a, b)| a == b).count();
+    let points: Vec<String> = own[before..own.len() - behind].iter().map(|c| format!("U+{:04X}", *c as u32)).collect();
+    match points.is_empty() {
+        true => "nothing".into(),
+        false => points.join(" "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_print_alike_are_one_name_and_their_code_points_are_told() {
+        let mut names = Names::of(What::Bodies);
+        assert!(names.take("caf\u{e9}-1", (), |_| String::new()).is_none());
+        assert!(names.take("cafe-1", (), |_| String::new()).is_none(), "another letter is another name");
+        let error = names.take("cafe\u{301}-1", (), |_| ", first in line 3".into()).expect("it prints alike");
+        assert_eq!(error.code, "scene.duplicate_name");
+        assert!(error.message.contains("U+0065 U+0301 here and U+00E9 there"), "{error}");
+        let twice = names.take("cafe-1", (), |_| String::new()).expect("it is there");
+        assert_eq!(twice.message, "two bodies are called `cafe-1`");
+    }
+}
