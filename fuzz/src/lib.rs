@@ -94,7 +94,7 @@ pub fn sweep_folder(bytes: &[u8]) {
         Err(errors) => errors.iter().for_each(|error| printable(error.to_string())),
         Ok(points) => match read_rows(&sweep, &points, &String::from_utf8_lossy(table), "results.csv") {
             Ok(rows) => assert!(rows.iter().all(|row| row.number < points.len())),
-            Err(error) => printable(error.to_string()),
+            Err(errors) => errors.iter().for_each(|error| printable(error.to_string())),
         },
     }
 }

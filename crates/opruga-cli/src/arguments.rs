@@ -17,7 +17,9 @@ pub(crate) use verify::Verify;
     name = "opruga",
     version,
     max_term_width = 110,
-    after_help = "Without a command, `opruga` opens the studio where there is a screen; where there is none, it runs the scene `ball`."
+    after_help = "Without a command, `opruga` opens the studio where there is a screen; where there is none, it runs the scene `ball`.\n\n\
+                  OPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment chooses the vector instructions of the kernels instead of the best that \
+                  the processor has; the results are the same to the bit. `scalar` is what every processor of its kind has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -245,6 +247,7 @@ impl Pictures {
     /// What shall be seen; `notes`: and said, where frames do not have the rate that was asked for.
     fn wanted(&self, notes: bool) -> Wanted {
         Wanted {
+            row_every: None,
             fps: self.fps,
             pictures: !self.no_pictures,
             arrows: self.arrows,
@@ -262,7 +265,7 @@ pub(crate) struct Run {
     pub(crate) scene: Option<String>,
     /// The simulated time at which the run ends, instead of what the scene says [s]
     ///
-    /// Whole frames are run, the last one to this time or just beyond it. A resumed run that goes on from t = 5 with
+    /// Whole frames are run, the last one to this time or just beyond it, which is said. A resumed run that goes on from t = 5 with
     /// --seconds 8 runs for 3 s; without it, it ends where the earlier run was meant to end. 0 writes the state at the
     /// start.
     #[arg(long, allow_negative_numbers = true)]
@@ -317,6 +320,12 @@ pub(crate) struct Run {
     /// than a tenth of the run, at most 32.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
+    /// Write one row of diagnostics.csv for so many frames; 1: all
+    ///
+    /// The first frame and the last one always have a row. Without this option every frame has one, as long as the table has 67 MB
+    /// at most; of more frames so many are left out, with a warning that counts them.
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    pub(crate) diagnostics_every: Option<u32>,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,
@@ -438,7 +447,8 @@ impl Replay {
 impl Run {
     /// What shall be seen.
     pub(crate) fn wanted(&self) -> Wanted {
-        self.pictures.wanted(!self.json && !self.pictures.no_pictures)
+        let wanted = self.pictures.wanted(!self.json && !self.pictures.no_pictures);
+        Wanted { row_every: self.diagnostics_every, ..wanted }
     }
 
     /// What `opruga` without a command does.

@@ -154,7 +154,7 @@ fn read(path: &Path) -> Result<(SavedRun, Source), Box<SceneError>> {
     })?;
     let file = format!("scene {} (in {})", run.name, path.display());
     let files = Files::held(run.calling.files.clone());
-    let source = Source { name: run.name.clone(), file, bytes: checkpoint.scene.into_bytes(), files };
+    let source = Source { name: run.name.clone(), file, path: None, bytes: checkpoint.scene.into_bytes(), files };
     Ok((run, source))
 }
 

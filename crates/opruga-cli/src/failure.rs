@@ -1,6 +1,6 @@
 //! Why a command failed, for people and for programs, and the exit code.
 
-use opruga::io::problem::SceneError;
+use opruga::io::problem::{SceneError, count_of, shown};
 use opruga::io::safe_write::WriteError;
 use serde_json::{Value, json};
 
@@ -79,6 +79,7 @@ impl Failure {
         };
         match self {
             Failure::Scene(errors) => {
+                let errors = shown(errors.clone());
                 let mut first = errors.first().map_or(Value::Null, SceneError::to_json);
                 if let Some(object) = first.as_object_mut() {
                     let rest: Vec<Value> = errors.iter().skip(1).map(SceneError::to_json).collect();
@@ -106,10 +107,10 @@ impl Failure {
         }
         let _ = match self {
             Failure::Scene(errors) => {
-                for error in errors {
+                for error in shown(errors.clone()) {
                     let _ = writeln!(err, "{error}");
                 }
-                if errors.len() > 1 { writeln!(err, "{} errors", errors.len()) } else { Ok(()) }
+                if count_of(errors) > 1 { writeln!(err, "{} errors", count_of(errors)) } else { Ok(()) }
             }
             Failure::Run(error) => writeln!(err, "{error}"),
             Failure::Write(error) => writeln!(err, "{error}"),

@@ -21,6 +21,7 @@ mod run;
 mod source;
 mod studio;
 mod sweep;
+mod uses;
 mod verify;
 mod watch;
 

@@ -4,6 +4,7 @@
 use crate::arguments::Mesh as Call;
 use crate::failure::{Failure, print_data};
 use crate::source::overrides;
+use crate::uses;
 use opruga::core::spec::Values;
 use opruga::draw::{self, BodyPicture, ColourMap, Facets, Legend, Picture};
 use opruga::io::problem::visible;
@@ -34,20 +35,46 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
             format!("{} cannot be written: files ending in `.{}` are unknown", path.display(), visible(ending));
         return Err(Failure::Call { message, hint: Some(format!("{} can", meshes::WRITTEN)) });
     }
+    let mut uses = uses::of_file("the input", &call.input);
+    let written =
+        |path: &Path, ending: &str| meshes::endings(ending).into_iter().map(|e| path.with_extension(e)).collect();
+    let written: Vec<PathBuf> = out.as_ref().map_or_else(Vec::new, |(path, ending)| written(path, ending));
+    written.iter().for_each(|path| uses.output("-o", path));
+    if let Some(path) = picture_of(call, out.as_ref()) {
+        uses.output("--picture", &path);
+    }
+    uses::apart(&uses)?;
     let folder = call.input.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let Some(name) = call.input.file_name().and_then(|name| name.to_str()) else {
         return Err(Failure::call(format!("{} is no name of a file in UTF-8", call.input.display())));
     };
     let (dimension, shape) = shape(call, folder, name, &ending(&call.input))?;
     let files = Files::in_folder(folder);
-    // One way from files to meshes: that of scenes.
+    // One way from files to meshes: that of scenes. The files that lie beside the input are known once they are read.
+    let mut named = Vec::new();
+    let mut apart = |named: &[String]| {
+        let beside = named.iter().filter_map(|name| Some((name, files.path_of(name)?)));
+        beside.for_each(|(name, path)| uses.input(format!("`{name}`, which the input names"), &path));
+        uses::apart(&uses)
+    };
     if dimension == 2 {
-        let (mesh, notices) = body::<2>(&shape, &files, &Limits::default()).map_err(|e| refused(call, name, e))?;
+        let made = body::<2>(&shape, &files, &Limits::default(), &mut named);
+        let (mesh, notices) = made.map_err(|e| refused(call, name, e))?;
+        apart(&named)?;
         finish(call, mesh, &told(call, name, notices), out)
     } else {
-        let (mesh, notices) = body::<3>(&shape, &files, &Limits::default()).map_err(|e| refused(call, name, e))?;
+        let made = body::<3>(&shape, &files, &Limits::default(), &mut named);
+        let (mesh, notices) = made.map_err(|e| refused(call, name, e))?;
+        apart(&named)?;
         finish(call, mesh, &told(call, name, notices), out)
     }
+}
+
+/// Where the picture goes; none where nobody asks for one. It has the whole name of the mesh: each format of a mesh may lie beside
+/// the others with its own.
+fn picture_of(call: &Call, out: Option<&(&Path, String)>) -> Option<PathBuf> {
+    let beside = || out.map(|(path, ending)| path.with_extension(format!("{ending}.png")));
+    call.picture.clone().or_else(beside)
 }
 
 /// What the call asks for in the words of scenes, and the dimension.
@@ -258,9 +285,7 @@ fn finish<const D: usize>(
             return Err(Failure::Scene(errors));
         }
     }
-    // The picture has the whole name of the mesh: each format of a mesh may lie beside the others with its own.
-    let beside = || out.as_ref().map(|(path, ending)| path.with_extension(format!("{ending}.png")));
-    if let Some(path) = call.picture.clone().or_else(beside) {
+    if let Some(path) = picture_of(call, out.as_ref()) {
         written.push((path, drawn(&mesh, &call.input).map_err(|e| Failure::Draw(e.to_string()))?));
     }
     // All of them or none.

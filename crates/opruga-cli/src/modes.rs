@@ -4,6 +4,7 @@ use crate::arguments::Modes;
 use crate::failure::{Failure, print_data};
 use crate::run::default_folder;
 use crate::source::{Opened, Source, open};
+use crate::uses;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::Values;
 use opruga::draw;
@@ -15,6 +16,7 @@ use opruga::world::modes::Mode;
 use opruga::{Registry, World};
 use serde_json::json;
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 /// The part of the square of the largest frequency that rounding may leave of none.
 const ROUNDING: f64 = 1e-15;
@@ -27,14 +29,20 @@ pub(crate) fn modes(call: &Modes) -> Result<u8, Failure> {
     if !(0.0..=1e9).contains(&call.after) {
         return Err(Failure::range("--after", call.after, "0 to 1e9"));
     }
-    let Opened { source, reading, options, blueprint } = open(&call.scene, &call.set, call.allow_outside, call.json)?;
+    let Opened { source, reading, options, blueprint, files } =
+        open(&call.scene, &call.set, call.allow_outside, call.json)?;
+    let mut uses = uses::of_scene(&source, &reading.files, files.iter());
+    uses.folder(&folder_of(call, &source), uses::modes_writes);
+    uses::apart(&uses)?;
     match blueprint {
         AnyBlueprint::Plane(mut blueprint) => {
             look_for_equilibrium(call, &mut blueprint);
+            leave_statics(call, &mut blueprint);
             of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
         }
         AnyBlueprint::Space(mut blueprint) => {
             look_for_equilibrium(call, &mut blueprint);
+            leave_statics(call, &mut blueprint);
             of_world(call, &source, &reading, source.build(blueprint, &reading, &options)?)
         }
     }
@@ -56,6 +64,23 @@ fn look_for_equilibrium<const D: usize>(call: &Modes, blueprint: &mut Blueprint<
         }
         *values = statics;
     }
+}
+
+/// Lets statics be where no frame is run: modes are those of a state, no integrator takes part in them, and bodies that nothing holds,
+/// which statics refuses, have modes as all others do. What takes its place goes with every body and every step.
+fn leave_statics<const D: usize>(call: &Modes, blueprint: &mut Blueprint<D>) {
+    let registry = Registry::<D>::default();
+    let runs = call.equilibrium || call.after > 0.0;
+    let Some(spec) = registry.integrator("backward_euler").map(|kind| kind.spec()).filter(|_| !runs) else { return };
+    let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());
+    for values in own.chain([&mut blueprint.integrator]).filter(|values| values.kind() == "equilibrium") {
+        *values = Values::defaults(spec, D);
+    }
+}
+
+/// Where the output goes.
+fn folder_of(call: &Modes, source: &Source) -> PathBuf {
+    call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-modes", source.name)))
 }
 
 fn of_world<const D: usize>(
@@ -88,11 +113,8 @@ fn of_world<const D: usize>(
         })
         .collect();
     let mut files = Vec::new();
-    let folder = match &call.out {
-        Some(path) => path.clone(),
-        None => default_folder(&format!("{}-modes", source.name)),
-    };
-    let folder = OutputFolder::open(&folder, if call.force { Existing::Replace } else { Existing::Refuse })?;
+    let folder =
+        OutputFolder::open(&folder_of(call, source), if call.force { Existing::Replace } else { Existing::Refuse })?;
     folder.write("modes.csv", false, |out| out.write_all(table_of_shapes(&modes).as_bytes()))?;
     files.push("modes.csv");
     if !call.no_pictures

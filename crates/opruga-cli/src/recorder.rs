@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use opruga::blueprint::{BodyBlueprint, Recorded};
-use opruga::io::tables::NumberTable;
+use opruga::io::tables::{NumberTable, WarningSummary};
 use opruga::math::words::{counted, rounded};
 use opruga::pictures::{Moment, Scenery};
 use opruga::{World, draw};
@@ -21,6 +21,13 @@ const LOOKED_AT: u64 = 4_000_000;
 /// The most rows that plots are drawn from.
 const MOST_ROWS: u64 = 60_000;
 
+/// The most bytes of `diagnostics.csv` that nobody has asked for: two to three million numbers, which programs read in seconds. Frames
+/// of 1e-8 s wrote 330 MB (test: `diagnostics.rs`).
+const MOST_TABLE_BYTES: u64 = 64 << 20;
+
+/// The bytes of a number in the table: a sign, 17 digits, point, exponent and comma.
+const NUMBER_BYTES: u64 = 24;
+
 /// What shall be seen of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
@@ -33,6 +40,8 @@ pub(crate) struct Wanted {
     pub(crate) gif: bool,
     /// Whether notes are told to people.
     pub(crate) notes: bool,
+    /// Frames from one row of the table to the next, where the call says how many.
+    pub(crate) row_every: Option<u32>,
 }
 
 /// Pictures for each second of simulated time where the call does not say how many.
@@ -57,6 +66,39 @@ pub(crate) struct Recorder {
     pub(crate) frame: f64,
     arrows: bool,
     pub(crate) gif: bool,
+    rows: Rows,
+}
+
+/// Which frames have a row of the table.
+struct Rows {
+    /// Frames from one row to the next.
+    apart: u64,
+    /// What the table would have taken with a row for every frame, where that is more than is written unasked [bytes].
+    too_many: Option<u64>,
+    /// The last frame that has one.
+    last: Option<u64>,
+    left_out: u64,
+}
+
+impl Rows {
+    fn new(asked: Option<u32>, frames: u64, columns: u64) -> Rows {
+        let bytes = (frames + 1).saturating_mul(columns * NUMBER_BYTES);
+        let too_many = (asked.is_none() && bytes > MOST_TABLE_BYTES).then_some(bytes);
+        let apart = asked.map_or_else(|| bytes.div_ceil(MOST_TABLE_BYTES).max(1), u64::from);
+        Rows { apart, too_many, last: None, left_out: 0 }
+    }
+
+    /// Whether a frame has a row: the first one, and then by its number, so that a run that goes on has the rows of one that was not
+    /// interrupted.
+    fn take(&mut self, frame: u64) -> bool {
+        let wanted = self.last.is_none() || frame.is_multiple_of(self.apart);
+        if wanted {
+            self.last = Some(frame);
+        } else {
+            self.left_out += 1;
+        }
+        wanted
+    }
 }
 
 /// What the columns of the table mean.
@@ -77,7 +119,7 @@ pub(crate) struct Columns {
 impl Recorder {
     /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
     pub(crate) fn new<const D: usize>(world: &mut World<D>, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
-        let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes } = wanted;
+        let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes, row_every } = wanted;
         let fps = asked.unwrap_or(USUAL_RATE);
         let axes = &["x", "y", "z"][..D];
         let mut columns: Vec<String> =
@@ -144,7 +186,9 @@ impl Recorder {
         if drawn {
             world.keep_looks(looks);
         }
+        let rows = Rows::new(row_every, frames, columns.len() as u64);
         Ok(Recorder {
+            rows,
             table: NumberTable::new(columns.clone()),
             seen: NumberTable::new(columns),
             columns: Columns {
@@ -171,17 +215,44 @@ impl Recorder {
         let begin = Instant::now();
         let (bodies, seen) = (&self.bodies, &mut self.seen);
         world.look_within(|world| seen.push(&row(world, bodies)));
-        let row = row(world, bodies);
-        if self.scenery.is_some() {
-            seen.push(&row);
+        if self.rows.take(world.frames()) {
+            let row = row(world, bodies);
+            if self.scenery.is_some() {
+                seen.push(&row);
+            }
+            self.table.push(&row);
         }
-        self.table.push(&row);
         if let Some(scenery) = &self.scenery
             && world.frames().is_multiple_of(self.every)
         {
             self.moments.push(scenery.capture(world, self.arrows));
         }
         begin.elapsed()
+    }
+
+    /// Gives the last frame its row.
+    pub(crate) fn finish<const D: usize>(&mut self, world: &mut World<D>) {
+        if self.rows.last.is_some_and(|last| last != world.frames()) {
+            let row = row(world, &self.bodies);
+            self.table.push(&row);
+            if self.scenery.is_some() {
+                self.seen.push(&row);
+            }
+            self.rows.last = Some(world.frames());
+            self.rows.left_out = self.rows.left_out.saturating_sub(1);
+        }
+    }
+
+    /// That frames will have no row, and nobody has asked for that.
+    pub(crate) fn thinned(&self) -> Option<WarningSummary> {
+        let bytes = self.rows.too_many?;
+        let message = format!(
+            "diagnostics.csv would have about {} MB, and {} MB are written unasked: one frame of {} has a row; --diagnostics-every 1 writes all",
+            bytes / 1_000_000,
+            MOST_TABLE_BYTES / 1_000_000,
+            self.rows.apart
+        );
+        Some(WarningSummary { code: "diagnostics.thinned".into(), message, count: self.rows.left_out })
     }
 }
 
@@ -252,7 +323,23 @@ fn angular_axes<const D: usize>() -> &'static [&'static str] {
 
 #[cfg(test)]
 mod tests {
-    use super::{look_every, other_rate};
+    use super::{MOST_TABLE_BYTES, NUMBER_BYTES, Rows, look_every, other_rate};
+
+    /// However short frames are, the table keeps to its size, and every frame has a row or is counted.
+    #[test]
+    fn a_table_keeps_to_its_size_and_counts_what_it_leaves_out() {
+        for (frames, columns) in [(1_000_000, 18), (480, 18), (1_000_000_000, 40)] {
+            let mut rows = Rows::new(None, frames, columns);
+            let most = frames / rows.apart + 2;
+            assert!(most * columns * NUMBER_BYTES <= MOST_TABLE_BYTES + 2 * columns * NUMBER_BYTES, "{frames}");
+            assert_eq!(rows.too_many.is_some(), rows.apart > 1);
+            let shown = (0..1_000).filter(|frame| rows.take(*frame)).count() as u64;
+            assert_eq!(shown + rows.left_out, 1_000);
+        }
+        assert_eq!((Rows::new(None, 480, 18).apart, Rows::new(None, 1_000_000, 18).apart), (1, 7));
+        let asked = Rows::new(Some(1), 1_000_000_000, 18);
+        assert_eq!((asked.apart, asked.too_many), (1, None));
+    }
 
     /// Frames of 1/60 s show 12 pictures a second where 11.3 are asked for, and never more than 60.
     #[test]

@@ -61,6 +61,7 @@ pub(crate) fn open(path: &Path) -> Result<(Recording<File>, Source), Failure> {
     let header = recording.header();
     let file = format!("scene {} (in {})", header.name, path.display());
     let held = header.assets.iter().map(|asset| (asset.name.clone(), asset.bytes.as_slice().into()));
-    let source = Source { name: header.name.clone(), file, bytes: header.scene.clone(), files: Files::held(held) };
+    let source =
+        Source { name: header.name.clone(), file, path: None, bytes: header.scene.clone(), files: Files::held(held) };
     Ok((recording, source))
 }

@@ -9,6 +9,7 @@ use crate::recorder::Recorder;
 use crate::recordings;
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::Source;
+use crate::uses;
 use core::ops::RangeInclusive;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::output_folder::{Existing, OutputFolder};
@@ -21,6 +22,7 @@ use opruga::recordings::{Playback, TapeError};
 use opruga::{Options, World};
 use serde_json::{Value, json};
 use std::fs::File;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Replays a recording.
@@ -35,6 +37,11 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
     }
     let simd = simd_from_environment()?;
     let (recording, source) = recordings::open(&call.file)?;
+    if call.writes() || !call.verify {
+        let mut uses = uses::of_file("the recording", &call.file);
+        uses.folder(&folder_of(call, &source), uses::replay_writes);
+        uses::apart(&uses)?;
+    }
     let frames = wanted_frames(call, &recording)?;
     let told = oddities(&recording);
     if !call.json {
@@ -61,6 +68,11 @@ pub(crate) fn replay(call: &Replay) -> Result<u8, Failure> {
         AnyBlueprint::Plane(blueprint) => job.run(recording, blueprint),
         AnyBlueprint::Space(blueprint) => job.run(recording, blueprint),
     }
+}
+
+/// Where the output goes.
+fn folder_of(call: &Replay, source: &Source) -> PathBuf {
+    call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-replay", source.name)))
 }
 
 /// A recording that cannot be replayed as it was asked for.
@@ -332,6 +344,11 @@ impl Job<'_> {
         if let Some(tracks) = tracks {
             tracks.write(call, &folder, &self.source.name, &mut files)?;
         }
+        recorder.finish(world);
+        let thinned = recorder.thinned();
+        if !call.json {
+            thinned.iter().for_each(|thinned| eprintln!("warning[{}]: {}", thinned.code, thinned.message));
+        }
         folder.write("diagnostics.csv", false, |out| recorder.table.write(out))?;
         let outputs = Outputs {
             folder: &folder,
@@ -348,7 +365,8 @@ impl Job<'_> {
         }
         if call.json {
             let (from, to) = (self.time(first), self.time(last));
-            let mut row = json!({"schema": 1, "scene": self.source.name, "warnings": self.told, "files": files,
+            let warnings: Vec<&WarningSummary> = self.told.iter().chain(&thinned).collect();
+            let mut row = json!({"schema": 1, "scene": self.source.name, "warnings": warnings, "files": files,
                              "frames": {"first": first, "last": last, "from": from, "to": to},
                              "state_hash": format!("{:016x}", world.state_hash())});
             for (word, found) in verified.iter().flat_map(Value::as_object).flatten() {
@@ -362,10 +380,7 @@ impl Job<'_> {
     }
 
     fn folder(&self) -> Result<OutputFolder, Failure> {
-        let path = match &self.call.out {
-            Some(path) => path.clone(),
-            None => default_folder(&format!("{}-replay", self.source.name)),
-        };
+        let path = folder_of(self.call, self.source);
         let existing = if self.call.force { Existing::Replace } else { Existing::Refuse };
         Ok(OutputFolder::open(&path, existing)?)
     }

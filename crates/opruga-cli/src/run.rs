@@ -9,6 +9,7 @@ use crate::outputs::Outputs;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::source::{Source, Whole, overrides};
+use crate::uses;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::safe_write::WriteError;
@@ -61,12 +62,19 @@ pub(crate) fn run(call: &Run) -> Result<u8, Failure> {
     let most_bytes = Some(reading.limits.memory_bytes);
     let world = Options { threads: call.threads.into(), simd, allow_unstable, most_bytes, ..Options::default() };
     let Whole { blueprint, notices, files } = source.read(&reading, &world)?;
+    outputs_apart(call, &source, &reading, &files.keys().collect::<Vec<_>>())?;
     let mut told: Vec<WarningSummary> = notices
         .iter()
         .map(|n| WarningSummary { code: n.about.code.into(), message: n.about.message.clone(), count: n.count as u64 })
         .collect();
     if !call.json {
         notices.iter().for_each(|notice| eprintln!("{notice}"));
+    }
+    if let Some(other) = other_simd() {
+        if !call.json {
+            eprintln!("warning[{}]: {}", other.code, other.message);
+        }
+        told.push(other);
     }
     let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
     if world.threads > cores {
@@ -101,12 +109,33 @@ pub(crate) fn default_folder(name: &str) -> PathBuf {
     PathBuf::from("out").join(name)
 }
 
+/// Where the output goes.
+fn folder_of(call: &Run, source: &Source) -> PathBuf {
+    call.out.clone().unwrap_or_else(|| default_folder(&source.name))
+}
+
+/// Refuses a call whose output would replace what it reads, or one file another.
+fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &[&String]) -> Result<(), Failure> {
+    let folder = folder_of(call, source);
+    let mut uses = uses::of_scene(source, &reading.files, files.iter().copied());
+    uses.folder(&folder, uses::run_writes);
+    call.record.iter().for_each(|path| uses.output("--record", path));
+    uses::apart(&uses)?;
+    let Some(checkpoint) = &call.resume else { return Ok(()) };
+    // A run may go on in its own folder: its checkpoints follow each other there.
+    let own = [checkpoints::NAME, checkpoints::PREVIOUS].map(|name| folder.join(name).canonicalize().ok());
+    let own = checkpoint.canonicalize().is_ok_and(|path| own.contains(&Some(path)));
+    let mut uses = uses::of_file("the checkpoint of --resume", checkpoint);
+    uses.folder(&folder, move |name| {
+        uses::run_writes(name) && !(own && [checkpoints::NAME, checkpoints::PREVIOUS].contains(&name))
+    });
+    call.record.iter().for_each(|path| uses.output("--record", path));
+    uses::apart(&uses)
+}
+
 /// The folder for the output; it is locked, and known to be writable.
 fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
-    let folder = match &call.out {
-        Some(path) => path.clone(),
-        None => default_folder(&source.name),
-    };
+    let folder = folder_of(call, source);
     // A resumed run writes its own part only: it must not replace the part before it unasked.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     Ok(OutputFolder::open(&folder, existing)?)
@@ -118,9 +147,39 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
         Err(_) => Ok(None),
         Ok(name) => match Simd::named(&name) {
             Some(simd) => Ok(Some(simd)),
-            None => Err(Failure::call(format!("OPRUGA_SIMD={name}: allowed are sse2, avx2, avx512, scalar"))),
+            None => Err(Failure::call(format!(
+                "OPRUGA_SIMD={}: allowed are scalar, sse2, avx2, avx512",
+                opruga::io::problem::visible(&name)
+            ))),
         },
     }
+}
+
+/// That the kernels run with other vector instructions than `OPRUGA_SIMD` names.
+fn other_simd() -> Option<WarningSummary> {
+    let asked = std::env::var("OPRUGA_SIMD").ok()?;
+    let used = Simd::named(&asked)?.name();
+    let message = match asked.as_str() {
+        same if same == used => return None,
+        "scalar" => format!("OPRUGA_SIMD=scalar: the kernels run with {used}, which every processor of this kind has"),
+        _ => format!("OPRUGA_SIMD={asked}: this processor lacks them; the kernels run with {used}"),
+    };
+    Some(WarningSummary { code: "simd.other".into(), message, count: 1 })
+}
+
+/// That a run ends at another time than it was asked for, since frames are whole.
+fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<String> {
+    let reached = frames as f64 * frame;
+    // Rounding apart.
+    ((reached - seconds).abs() > 1e-6 * frame).then(|| {
+        format!(
+            "note: frames are whole: the run ends at t = {} s, not at {} s, after {} of {} s",
+            number(reached),
+            number(seconds),
+            counted(frames, "frame", "frames"),
+            rounded(frame, 4)
+        )
+    })
 }
 
 struct Job<'a> {
@@ -166,6 +225,10 @@ impl Job<'_> {
         let early = world.warnings();
         if !call.json {
             early.iter().for_each(tell);
+        }
+        if !call.json {
+            whole_frames(frames, frame, seconds).iter().for_each(|said| eprintln!("{said}"));
+            recorder.thinned().iter().for_each(|thinned| eprintln!("warning[{}]: {}", thinned.code, thinned.message));
         }
         let bar = progress_bar(frames);
         let mut forecast = Forecast::default();
@@ -214,6 +277,7 @@ impl Job<'_> {
                 }
             }
         }
+        recorder.finish(&mut world);
         let taped = tape.and_then(|tape| tape.finish(&mut world).err()).map(unrecorded);
         failure = failure.or(taped);
         let wall = (start.elapsed() - looking).as_secs_f64();
@@ -224,7 +288,7 @@ impl Job<'_> {
             wall,
             steps: (world.frames() - first) * u64::from(world.blueprint().time.substeps),
             resumed_at: self.resumed.as_ref().map(|saved| saved.time),
-            told: self.told.into_iter().chain(keeper.warning()).collect(),
+            told: self.told.into_iter().chain(keeper.warning()).chain(recorder.thinned()).collect(),
             stop,
             stress: call.stress,
         };

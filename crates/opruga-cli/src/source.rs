@@ -4,13 +4,13 @@ use crate::failure::Failure;
 use crate::run::simd_from_environment;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::core::spec::all_near;
-use opruga::io::problem::visible;
+use opruga::io::problem::{shown, visible};
 use opruga::io::refusals::{in_scene, of_command};
 use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::math::words::number;
 use opruga::{Options, World, WorldError};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A scene's text and where it came from.
@@ -19,6 +19,8 @@ pub(crate) struct Source {
     pub(crate) name: String,
     /// The place of errors.
     pub(crate) file: String,
+    /// The file of the scene; none where it comes with the program, or lies in another file.
+    pub(crate) path: Option<PathBuf>,
     /// As it was read; what is no UTF-8 is refused by the reader, with its place.
     pub(crate) bytes: Vec<u8>,
     /// Where the files are that it names.
@@ -39,6 +41,8 @@ pub(crate) struct Opened {
     pub(crate) reading: scene::Options,
     pub(crate) options: Options,
     pub(crate) blueprint: AnyBlueprint,
+    /// The names of the files that the scene names.
+    pub(crate) files: Vec<String>,
 }
 
 /// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
@@ -50,11 +54,11 @@ pub(crate) fn open(scene: &str, set: &[String], allow_outside: bool, quiet: bool
         ..scene::Options::default()
     };
     let options = Options { simd: simd_from_environment()?, ..Options::default() };
-    let Whole { blueprint, notices, .. } = source.read(&reading, &options)?;
+    let Whole { blueprint, notices, files } = source.read(&reading, &options)?;
     if !quiet {
         notices.iter().for_each(|notice| eprintln!("{notice}"));
     }
-    Ok(Opened { source, reading, options, blueprint })
+    Ok(Opened { source, reading, options, blueprint, files: files.into_keys().collect() })
 }
 
 impl Source {
@@ -69,7 +73,7 @@ impl Source {
         let built_in = opruga::scenes::find(name).filter(|_| !path.is_file());
         if let Some(text) = built_in {
             let (file, files) = (format!("scene {name} (built in)"), opruga::scenes::files());
-            return Ok(Source { name: name.into(), file, bytes: text.into(), files });
+            return Ok(Source { name: name.into(), file, path: None, bytes: text.into(), files });
         }
         let file = path.display().to_string();
         let bytes = scene::bytes_of(path, &scene::Limits::default()).map_err(|error| {
@@ -90,7 +94,7 @@ impl Source {
             return Err(Failure::Scene(vec![SceneError { file, ..error }]));
         }
         let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
-        Ok(Source { name, file, bytes, files: Files::beside(path) })
+        Ok(Source { name, file, path: Some(path.to_path_buf()), bytes, files: Files::beside(path) })
     }
 
     /// Reads the scene. All that is wrong with it comes at once: what the reader finds, and what a world of the rest would
@@ -118,7 +122,7 @@ impl Source {
         errors.extend(placed);
         // What is counted only comes last.
         errors.sort_by_key(|e| (e.code == "scene.more", e.line.unwrap_or(0), e.column.unwrap_or(0)));
-        Failure::Scene(errors)
+        Failure::Scene(shown(errors))
     }
 
     fn place(&self, error: &WorldError, options: &scene::Options) -> SceneError {

@@ -8,6 +8,7 @@ use crate::failure::{Failure, print_data};
 use crate::interrupt;
 use crate::run::{default_folder, simd_from_environment};
 use crate::source::{Source, argument};
+use crate::uses;
 use findings::Found;
 use opruga::io::SceneError;
 use opruga::io::output_folder::{Existing, OutputFolder};
@@ -30,14 +31,7 @@ pub(crate) fn sweep(call: &Call) -> Result<u8, Failure> {
     let simd = simd_from_environment()?;
     let (question, path) = match &call.resume {
         Some(path) => (asked(path)?.ok_or_else(|| no_sweep(path))?, path.clone()),
-        None => {
-            let question = question_of(call)?;
-            let path = match &call.out {
-                Some(path) => path.clone(),
-                None => default_folder(&format!("{}-sweep", question.name)),
-            };
-            (question, path)
-        }
+        None => question_of(call)?,
     };
     let sweep = question.sweep()?;
     let points = sweep.points()?;
@@ -113,8 +107,8 @@ fn no_sweep(path: &Path) -> Failure {
     Failure::Scene(vec![SceneError { file: shown, ..error }])
 }
 
-/// The question of a call, with all that the scene names.
-fn question_of(call: &Call) -> Result<Question, Failure> {
+/// The question of a call, with all that the scene names, and the folder for its answer.
+fn question_of(call: &Call) -> Result<(Question, PathBuf), Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
         return Err(Failure::range("--seconds", seconds, "0 to 1e9"));
     }
@@ -136,9 +130,13 @@ fn question_of(call: &Call) -> Result<Question, Failure> {
         return Err(Failure::Scene(reading.errors));
     }
     let named = reading.files;
+    let path = call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-sweep", source.name)));
+    let mut uses = uses::of_scene(&source, &options.files, named.keys());
+    uses.folder(&path, uses::sweep_writes);
+    uses::apart(&uses)?;
     let mut set = call.set.clone();
     set.extend(call.seconds.map(|seconds| format!("time.seconds={seconds}")));
-    Ok(Question {
+    let question = Question {
         schema: Question::SCHEMA,
         name: source.name,
         file: source.file,
@@ -152,7 +150,8 @@ fn question_of(call: &Call) -> Result<Question, Failure> {
         lenient: call.lenient,
         scene,
         files: named.into_iter().map(|(name, bytes)| (name, Question::to_digits(&bytes))).collect(),
-    })
+    };
+    Ok((question, path))
 }
 
 /// The question of the sweep in a folder; none where there is no sweep.
@@ -200,7 +199,7 @@ fn known_rows(folder: &OutputFolder, sweep: &Sweep, points: &[Point]) -> Result<
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(e) => return Err(refuse(SceneError::new("read.failed", format!("the file cannot be read: {e}")))),
     };
-    read_rows(sweep, points, &text, &shown).map_err(|error| Failure::Scene(vec![error]))
+    read_rows(sweep, points, &text, &shown).map_err(Failure::Scene)
 }
 
 struct Work<'a> {
@@ -251,7 +250,8 @@ impl Work<'_> {
                 if shared.failure.is_some() {
                     return;
                 }
-                let written = shared.table.write_all(line(&row).as_bytes()).and_then(|()| shared.table.sync_data());
+                let written =
+                    shared.table.write_all(line(self.sweep, &row).as_bytes()).and_then(|()| shared.table.sync_data());
                 if let Err(error) = written {
                     shared.failure = Some(self.lost(&path, &error));
                     return;
@@ -287,7 +287,7 @@ impl Work<'_> {
     fn write_table(&self, rows: &[Row]) -> Result<(), Failure> {
         self.folder.write(TABLE, true, |out| {
             out.write_all(head(self.sweep).as_bytes())?;
-            rows.iter().try_for_each(|row| out.write_all(line(row).as_bytes()))
+            rows.iter().try_for_each(|row| out.write_all(line(self.sweep, row).as_bytes()))
         })?;
         Ok(())
     }

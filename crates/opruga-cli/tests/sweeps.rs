@@ -49,7 +49,11 @@ fn any_number_of_threads_gives_the_same_table_and_the_same_plots() {
     swept(at, &["--threads=5", "--out=five"]);
     let one = table(&at.join("one"));
     assert_eq!(one.lines().count(), 13);
-    assert!(one.starts_with("point,collider.0.restitution,body.ball.mass,status,bounce_height,top.y.min,message\n"));
+    assert!(
+        one.starts_with(
+            "point,collider.0.restitution,body.ball.mass,status,bounce_height,top.y.min,message,checksum\n"
+        )
+    );
     for other in ["two", "five"] {
         assert_eq!(table(&at.join(other)), one);
         let plot = |folder: &str| std::fs::read(at.join(folder).join("plots.svg")).expect("a plot");
@@ -123,6 +127,30 @@ fn another_question_a_foreign_folder_and_a_damaged_table_are_refused_and_left_as
     assert_eq!(table(&at.join("done")), "point,what\n1,2\n");
     swept(at, &["--out=done", "--force"]);
     assert_eq!(table(&at.join("done")).lines().count(), 13);
+}
+
+#[test]
+fn a_row_that_was_changed_by_hand_is_no_result() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    swept(at, &["--out=o"]);
+    let whole = table(&at.join("o"));
+    let line = whole.lines().nth(4).expect("a row");
+    let cells: Vec<&str> = line.split(',').collect();
+    let changed = whole.replace(line, &line.replace(cells[4], "1.0000000000000000e0"));
+    assert_ne!(changed, whole);
+    std::fs::write(at.join("o/results.csv"), &changed).expect("a file");
+    for call in [&["sweep", "--resume=o"][..], &[&CALL[..], &["--out=o"]].concat()] {
+        let output = opruga(at, call);
+        assert_eq!(code(&output), 2, "{}", said(&output));
+        assert!(said(&output).contains("results.csv:5:1: error[sweep.changed_row]"), "{}", said(&output));
+        assert_eq!(table(&at.join("o")), changed, "it is left as it is");
+    }
+    // Without its line the point is computed anew.
+    std::fs::write(at.join("o/results.csv"), whole.replace(&format!("{line}\n"), "")).expect("a file");
+    let output = opruga(at, &["sweep", "--resume=o"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert_eq!(table(&at.join("o")), whole);
 }
 
 #[test]

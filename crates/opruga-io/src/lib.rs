@@ -3,6 +3,7 @@
 
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
+mod aside;
 pub mod base64;
 mod brackets;
 mod budget;
@@ -12,6 +13,7 @@ mod document;
 pub mod files;
 pub mod meshes;
 pub mod output_folder;
+pub mod outputs_apart;
 pub mod overrides;
 pub mod problem;
 pub mod recording;

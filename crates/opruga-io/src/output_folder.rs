@@ -1,7 +1,8 @@
 //! The folder that a run writes into: its lock, and files that get their names together.
 
+use crate::aside::{aside_name, is_the_file, remove_the_dead};
 use crate::safe_write::{
-    Aside, Fill, TRIAL, WriteError, aside_name, folder_of, is_aside, make_folders, safe_write, sync_folder, try_write,
+    Aside, Fill, TRIAL, WriteError, folder_of, make_folders, safe_write_through, sync_folder, try_write,
 };
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -58,7 +59,7 @@ impl Change {
 }
 
 /// The file that carries the lock.
-const LOCK: &str = ".opruga-lock";
+pub(crate) const LOCK: &str = ".opruga-lock";
 
 impl OutputFolder {
     /// Makes the folder and those around it, locks it, and tries whether it can be written: before the run, not after.
@@ -76,7 +77,6 @@ impl OutputFolder {
         if !path.exists() {
             make_folders(path).map_err(|e| cannot("made", &e))?;
         }
-        let locked_before = path.join(LOCK).exists();
         let open = || OpenOptions::new().create(true).truncate(false).write(true).open(path.join(LOCK));
         let mut lock = open().map_err(|e| cannot("written", &e))?;
         let mut locked = lock.try_lock();
@@ -98,9 +98,10 @@ impl OutputFolder {
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
             Err(fs::TryLockError::Error(e)) => return Err(cannot("locked", &e)),
         }
-        // Only the owner of the lock writes here: what was being written when an earlier one was killed is nobody's.
+        // What was being written when an earlier owner of the lock was killed.
+        remove_the_dead(path, None);
         for entry in fs::read_dir(path).map_err(|e| cannot("read", &e))?.flatten() {
-            if entry.file_name().to_str().is_some_and(|name| is_aside(name) || name.ends_with(TRIAL)) {
+            if entry.file_name().to_str().is_some_and(|name| name.ends_with(TRIAL)) {
                 let _ = fs::remove_file(entry.path());
             }
         }
@@ -112,10 +113,8 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
-                if !locked_before {
-                    // Nothing of ours is left in a folder that is somebody else's.
-                    let _ = fs::remove_file(path.join(LOCK));
-                }
+                // Nothing of ours is left in a folder that is somebody else's, nor the lock of a process that was killed here.
+                let _ = fs::remove_file(path.join(LOCK));
                 let message = format!(
                     "the folder already holds {} files, among them {}",
                     names.len(),
@@ -156,7 +155,8 @@ impl OutputFolder {
         force: bool,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<u64, WriteError> {
-        safe_write(&self.path(name), force || self.force, fill)
+        // What killed processes have left went when the folder was opened.
+        safe_write_through(&self.path(name), force || self.force, |file| file, fill)
     }
 
     /// Files that get their names and go together.
@@ -207,8 +207,12 @@ impl Together<'_> {
 
     fn ready(&mut self, name: &str, second: Option<PathBuf>, fill: Fill<'_>) -> Result<(), WriteError> {
         let file = Aside::write(&self.folder.path(name), true, Box::new(|file| Box::new(file)), fill)?;
-        // What was ready under this name was just written over.
-        self.waiting.retain(|other| !matches!(other, Change::Name { file: old, .. } if old.path == file.path));
+        // What was ready under this name counts no more.
+        let of_name = |other: &Change| matches!(other, Change::Name { file: old, .. } if old.path == file.path);
+        let (old, others): (Vec<Change>, Vec<Change>) =
+            std::mem::take(&mut self.waiting).into_iter().partition(of_name);
+        old.into_iter().for_each(Change::forget);
+        self.waiting = others;
         self.waiting.push(Change::Name { file, second });
         Ok(())
     }
@@ -269,16 +273,4 @@ impl Drop for OutputFolder {
             let _ = fs::remove_file(self.path(LOCK));
         }
     }
-}
-
-/// Whether an open file still has its name.
-#[cfg(unix)]
-fn is_the_file(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt as _;
-    let same = |a: fs::Metadata, b: fs::Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
-    file.metadata().is_ok_and(|own| fs::metadata(path).is_ok_and(|named| same(own, named)))
-}
-#[cfg(not(unix))]
-fn is_the_file(_: &File, path: &Path) -> bool {
-    path.exists()
 }

@@ -1,13 +1,14 @@
 //! Files that are never half written: written aside, synced, then renamed.
 
-use std::fs::{self, File, OpenOptions};
+use crate::aside::{make_aside, remove_the_dead};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that could not be written. What was there before is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriteError {
-    /// `write.failed`, `write.exists`, `write.locked` or `write.folder`.
+    /// `write.failed`, `write.exists`, `write.locked`, `write.folder`, `write.input` or `write.twice`.
     pub code: &'static str,
     /// What happened, in one sentence without a full stop.
     pub message: String,
@@ -68,12 +69,15 @@ impl std::error::Error for WriteError {}
 ///
 /// # Errors
 /// `write.exists` where the file is there and `force` is not given; `write.failed` with the number of bytes written so
-/// far. In both cases the old file is whole and nothing is left behind.
+/// far. In both cases the old file is whole and nothing is left behind; what a killed process has left of it goes.
 pub fn safe_write(
     path: &Path,
     force: bool,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<u64, WriteError> {
+    if let Some(name) = path.file_name() {
+        remove_the_dead(folder_of(path), Some(name));
+    }
     safe_write_through(path, force, |file| file, fill)
 }
 
@@ -96,7 +100,11 @@ pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
         return Err(of_path(WriteError::new("write.failed", path, "this is a folder")));
     }
     safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
-        .and_then(|_| fs::remove_file(&trial).map_err(|e| WriteError::failed(path, 7, &e)))
+        .and_then(|_| match fs::remove_file(&trial) {
+            // Somebody who has begun in this folder meanwhile has removed it.
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(WriteError::failed(path, 7, &e)),
+            _ => Ok(()),
+        })
         .map_err(of_path)
 }
 
@@ -144,6 +152,8 @@ pub(crate) struct Aside {
     pub(crate) path: PathBuf,
     aside: PathBuf,
     bytes: u64,
+    /// Held for its lock until the file has its name.
+    _lock: File,
 }
 
 impl Aside {
@@ -161,17 +171,13 @@ impl Aside {
         let Some(name) = path.file_name() else {
             return Err(WriteError::new("write.failed", path, "this is no name of a file"));
         };
-        let aside = folder_of(path).join(aside_name(name));
-
-        // What a killed process of the same number left behind is in nobody's use.
-        let _ = fs::remove_file(&aside);
-        let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| {
+        let (aside, file) = make_aside(folder_of(path), name).map_err(|e| {
             let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
             let hint = (e.kind() == io::ErrorKind::NotFound).then(|| "the folder around it is missing".into());
             WriteError { hint, ..WriteError::new("write.failed", path, message) }
         })?;
         match fill_and_sync(&file, wrap, fill) {
-            Ok(bytes) => Ok(Aside { path: path.to_path_buf(), aside, bytes }),
+            Ok(bytes) => Ok(Aside { path: path.to_path_buf(), aside, bytes, _lock: file }),
             Err((bytes, error)) => {
                 drop(file);
                 let _ = fs::remove_file(&aside);
@@ -225,23 +231,6 @@ fn fill_and_sync<'a>(file: &File, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<u64,
         Ok(()) => Ok(counted.bytes),
         Err(e) => Err((counted.bytes, e)),
     }
-}
-
-/// The ending of files that are being written.
-const WRITING: &str = ".writing";
-
-/// The name under which this process writes a file before it gets its own.
-pub(crate) fn aside_name(name: &std::ffi::OsStr) -> std::ffi::OsString {
-    let mut aside = std::ffi::OsString::from(".");
-    aside.push(name);
-    aside.push(format!(".{}{WRITING}", std::process::id()));
-    aside
-}
-
-/// Whether a name is one of [`aside_name`].
-pub(crate) fn is_aside(name: &str) -> bool {
-    let stem = name.strip_prefix('.').and_then(|n| n.strip_suffix(WRITING)).and_then(|n| n.rsplit_once('.'));
-    stem.is_some_and(|(_, process)| !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// Makes a folder, and those around it that are missing; where the last cannot be made, none is left behind.

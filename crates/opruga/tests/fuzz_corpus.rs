@@ -94,7 +94,7 @@ fn sweep_folder() -> Vec<u8> {
     let mut text = head(&sweep);
     for (number, point) in points.iter().enumerate() {
         let row = sweep.measure(number, point, None, &|| 0.0, &AtomicBool::new(false)).expect("nobody stops it");
-        text += &line(&row);
+        text += &line(&sweep, &row);
     }
     assert_eq!(read_rows(&sweep, &points, &text, "results.csv").expect("rows").len(), 2);
     [question().to_text().as_bytes(), b"\0", text.as_bytes()].concat()

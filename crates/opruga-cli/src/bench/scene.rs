@@ -15,7 +15,8 @@ use std::sync::Arc;
 
 /// Runs a scene without writing anything and prints how long its frames take.
 pub(crate) fn bench(call: &BenchScene) -> Result<u8, Failure> {
-    let Opened { source, reading, options, blueprint } = open(&call.scene, &call.set, call.allow_outside, call.json)?;
+    let Opened { source, reading, options, blueprint, .. } =
+        open(&call.scene, &call.set, call.allow_outside, call.json)?;
     match blueprint {
         AnyBlueprint::Plane(blueprint) => of_scene(call, &source, blueprint, &reading, &options),
         AnyBlueprint::Space(blueprint) => of_scene(call, &source, blueprint, &reading, &options),

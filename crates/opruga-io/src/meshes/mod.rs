@@ -26,7 +26,7 @@ mod write;
 pub use assemble::Mending;
 pub(crate) use found::{Found, Kind};
 pub(crate) use scanner::{MIDDLE_OF_LINE, middle_of_line};
-pub use write::{WRITTEN, Written, write};
+pub use write::{WRITTEN, Written, endings, write};
 
 use crate::problem::{SceneError, visible};
 use found::Numbers;

@@ -49,6 +49,14 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
     }
 }
 
+/// The endings of the files that a mesh of this ending is written to.
+pub fn endings(ending: &str) -> Vec<&str> {
+    match ending {
+        "node" | "ele" => vec!["node", "ele"],
+        one => vec![one],
+    }
+}
+
 /// The kind of a cell.
 fn kind(element: Element) -> Kind {
     match element {

@@ -2,8 +2,9 @@
 
 use super::format::Header;
 use super::writer::Writer;
-use crate::safe_write::{Target, WriteError, aside_name, make_folders, sync_folder};
-use std::fs::{self, File, OpenOptions};
+use crate::aside::{make_aside, remove_the_dead};
+use crate::safe_write::{Target, WriteError, make_folders, sync_folder};
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -65,9 +66,8 @@ impl RecordingFile {
             let message = format!("the folder around it cannot be made: {}", crate::scene::reason(&e));
             WriteError::new("write.failed", path, message)
         })?;
-        let aside = folder.join(aside_name(name));
-        let _ = fs::remove_file(&aside);
-        let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(|e| {
+        remove_the_dead(folder, Some(name));
+        let (aside, file) = make_aside(folder, name).map_err(|e| {
             let message = format!("the file cannot be made: {}", crate::scene::reason(&e));
             WriteError::new("write.failed", path, message)
         })?;

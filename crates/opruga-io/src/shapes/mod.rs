@@ -121,7 +121,8 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
     }
 }
 
-/// The body that a scene would make of a shape's file, outside of any scene; and what is odd about the file, counted.
+/// The body that a scene would make of a shape's file, outside of any scene; and what is odd about the file, counted. The names of
+/// the files that were read go to `named`.
 ///
 /// # Errors
 /// The first that is found, with its place in the file, or the field of the shape that it is about.
@@ -129,8 +130,12 @@ pub fn body<const D: usize>(
     shape: &Values,
     files: &Files,
     limits: &Limits,
+    named: &mut Vec<String>,
 ) -> Result<(Mesh<D>, Vec<SceneError>), Problem> {
-    let loaded = load(shape, D, &mut |name| files.read(name, limits.shape_bytes))?;
+    let loaded = load(shape, D, &mut |name| {
+        named.push(name.to_string());
+        files.read(name, limits.shape_bytes)
+    })?;
     let dense = if shape.get("spacing").is_some() { "spacing" } else { "file" };
     Cost::default().add::<D>(1.0, loaded.node_count(), 0.0, limits).map_err(|about| Problem::new(dense, about))?;
     let (mesh, made) =

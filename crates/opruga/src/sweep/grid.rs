@@ -173,11 +173,14 @@ impl Range {
         let mut range = Range { low, high, count: None, logarithmic: false, whole: false };
         for part in parts {
             match (part, part.parse::<usize>()) {
+                ("log", _) if range.logarithmic => return Err(refuse("`log` is said twice".into())),
+                ("whole", _) if range.whole => return Err(refuse("`whole` is said twice".into())),
+                (_, Ok(_)) if range.count.is_some() => {
+                    return Err(refuse("the number of values is said twice".into()));
+                }
                 ("log", _) => range.logarithmic = true,
                 ("whole", _) => range.whole = true,
-                (_, Ok(count)) if range.count.is_none() && (2..=MOST_POINTS).contains(&count) => {
-                    range.count = Some(count)
-                }
+                (_, Ok(count)) if (2..=MOST_POINTS).contains(&count) => range.count = Some(count),
                 (_, Ok(count)) => {
                     return Err(refuse(format!("{count} is no number of values; allowed: one, from 2 up")));
                 }
@@ -358,6 +361,8 @@ mod tests {
             ("a=0..1:log:3", "sweep.range"),
             ("a=0..1:1", "sweep.range"),
             ("a=0..1:3:4", "sweep.range"),
+            ("a=1..2:log:log:3", "sweep.range"),
+            ("a=1..2:3:whole:log:whole", "sweep.range"),
             ("a=0..1:cubic", "sweep.range"),
             ("a=1,,2", "sweep.values"),
             ("a=[1,\n2],[3]", "sweep.values"),

@@ -1,4 +1,8 @@
 //! The table of a sweep: one row for each point, written when the point is done and read again when a sweep goes on.
+//!
+//! Each row ends with a checksum of its cells. A sweep that goes on takes rows as its own results: one that was changed since,
+//! by hand or by a program that wrote its numbers anew, is refused with its line. It is not computed anew unasked, since that would
+//! replace what somebody has written there; who deletes the line asks for that.
 
 use super::Sweep;
 use super::grid::Point;
@@ -40,63 +44,106 @@ impl Status {
     }
 }
 
-/// The head of the table: `point`, the paths, `status`, the metrics, `message`.
+/// The name of the last column.
+const CHECKSUM: &str = "checksum";
+
+/// The head of the table: `point`, the paths, `status`, the metrics, `message`, `checksum`.
 pub fn head(sweep: &Sweep) -> String {
     let paths = sweep.axes.iter().map(|axis| cell(&axis.path));
     let metrics = sweep.metrics.iter().map(|metric| cell(&metric.name));
     let ends = |word: &str| std::iter::once(word.to_string());
-    let cells: Vec<String> =
-        ends("point").chain(paths).chain(ends("status")).chain(metrics).chain(ends("message")).collect();
+    let ending = ends("message").chain(ends(CHECKSUM));
+    let cells: Vec<String> = ends("point").chain(paths).chain(ends("status")).chain(metrics).chain(ending).collect();
     cells.join(",") + "\n"
 }
 
+/// The checksum of a row: FNV-1a of 64 bits over the head of its table, the end of that line, and the row up to the comma before the
+/// checksum; 16 hexadecimal digits.
+fn checksum(head: &str, cells: &str) -> String {
+    let bytes = head.trim_end().bytes().chain([b'\n']).chain(cells.bytes());
+    let hash =
+        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
+}
+
 /// A row as a line of the table; what is not known is empty. Numbers have 17 significant digits.
-pub fn line(row: &Row) -> String {
+pub fn line(sweep: &Sweep, row: &Row) -> String {
     let flat = |text: &str| cell(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut cells = vec![row.number.to_string()];
     cells.extend(row.values.iter().map(|value| value.as_deref().map_or(String::new(), cell)));
     cells.push(flat(row.status.word()));
     cells.extend(row.numbers.iter().map(|x| x.map_or(String::new(), |x| Digits(x).to_string())));
     cells.push(flat(&row.message));
-    cells.join(",") + "\n"
+    let cells = cells.join(",");
+    format!("{cells},{}\n", checksum(&head(sweep), &cells))
 }
 
 /// Reads the rows of a table of this sweep that was written as far as somebody or something let it; a last line without
 /// its end was being written then, and is left out. Rows are sorted by their points.
 ///
 /// # Errors
-/// `sweep.damaged` where the table is not one of this sweep.
-pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Result<Vec<Row>, SceneError> {
-    let damaged = |line: usize, what: &str, content: &str| SceneError {
+/// `sweep.damaged` where the table is not one of this sweep; `sweep.changed_row` for every row that is not as it was written.
+pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Result<Vec<Row>, Vec<SceneError>> {
+    let placed = |line: usize, error: SceneError| SceneError {
         file: file.to_string(),
         line: Some(line),
         column: Some(1),
-        ..SceneError::new("sweep.damaged", what)
-            .value(visible(content))
-            .hint("--force begins the sweep anew, --out takes another folder")
+        ..error
     };
+    let damaged = |line: usize, what: &str, content: &str| {
+        let error = SceneError::new("sweep.damaged", what).value(visible(content));
+        placed(line, error.hint("--force begins the sweep anew, --out takes another folder"))
+    };
+    let changed = |line: usize, content: &str| {
+        let error = SceneError::new(
+            "sweep.changed_row",
+            "the row was changed after the sweep wrote it: its checksum is another",
+        );
+        placed(
+            line,
+            error.value(visible(content)).allowed("the row as it was written").hint(
+                "without its line the point is computed anew; --force begins the whole sweep anew, --out takes another folder",
+            ),
+        )
+    };
+    let own = head(sweep);
     let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
     let mut lines = whole.lines();
     match lines.next() {
         None => return Ok(Vec::new()),
-        Some(first) if format!("{first}\n") == head(sweep) => {}
-        Some(first) => return Err(damaged(1, "the head of the table is not that of this sweep", first)),
+        Some(first) if first == own.trim_end() => {}
+        Some(first) if format!("{first},{CHECKSUM}") == own.trim_end() => {
+            let what = "the rows have no checksums: an earlier version of the program wrote the table";
+            return Err(vec![damaged(1, what, first)]);
+        }
+        Some(first) => return Err(vec![damaged(1, "the head of the table is not that of this sweep", first)]),
     }
     let mut rows: Vec<Option<Row>> = vec![None; points.len()];
+    let mut errors = Vec::new();
     for (number, content) in lines.enumerate() {
-        let row = read_row(sweep, points, content).map_err(|what| damaged(number + 2, what, content))?;
+        let row = match read_row(sweep, points, content) {
+            Ok(row) => row,
+            Err(what) => {
+                errors.push(damaged(number + 2, what, content));
+                continue;
+            }
+        };
+        if content.rsplit_once(',').is_none_or(|(cells, sum)| sum != checksum(&own, cells)) {
+            errors.push(changed(number + 2, content));
+            continue;
+        }
         let place = row.number;
         if rows[place].replace(row).is_some() {
-            return Err(damaged(number + 2, "this point has two rows", content));
+            errors.push(damaged(number + 2, "this point has two rows", content));
         }
     }
-    Ok(rows.into_iter().flatten().collect())
+    if errors.is_empty() { Ok(rows.into_iter().flatten().collect()) } else { Err(errors) }
 }
 
 fn read_row(sweep: &Sweep, points: &[Point], line: &str) -> Result<Row, &'static str> {
     let cells = split(line).ok_or("a quote is not closed")?;
     let (axes, metrics) = (sweep.axes.len(), sweep.metrics.len());
-    if cells.len() != axes + metrics + 3 {
+    if cells.len() != axes + metrics + 4 {
         return Err("the row has another number of cells than the head");
     }
     let number: usize = cells[0].parse().map_err(|_| "the number of the point is none")?;
@@ -187,9 +234,9 @@ mod tests {
         let sweep = sweep();
         let points = super::super::grid::points(&sweep.axes, sweep.design).expect("points");
         let rows = rows(&points);
-        let text = format!("{}{}{}", head(&sweep), line(&rows[1]), line(&rows[0]));
+        let text = format!("{}{}{}", head(&sweep), line(&sweep, &rows[1]), line(&sweep, &rows[0]));
         assert_eq!(read_rows(&sweep, &points, &text, "f").expect("a table"), rows, "sorted by their points");
-        for cut in text.len() - line(&rows[0]).len()..text.len() {
+        for cut in text.len() - line(&sweep, &rows[0]).len()..text.len() {
             assert_eq!(read_rows(&sweep, &points, &text[..cut], "f").expect("a table"), rows[1..], "{cut}");
         }
         assert_eq!(read_rows(&sweep, &points, "poi", "f"), Ok(Vec::new()));
@@ -199,7 +246,7 @@ mod tests {
     fn a_table_of_something_else_is_refused_with_its_line() {
         let sweep = sweep();
         let points = super::super::grid::points(&sweep.axes, sweep.design).expect("points");
-        let row = line(&rows(&points)[0]);
+        let row = line(&sweep, &rows(&points)[0]);
         for (text, at) in [
             ("a,b\n".to_string(), 1),
             (format!("{}7{}", head(&sweep), &row[1..]), 2),
@@ -208,8 +255,34 @@ mod tests {
             (format!("{}{}", head(&sweep), row.replace("done", "")), 2),
             (format!("{}{}", head(&sweep), row.replace("1.0", "one")), 2),
         ] {
-            let error = read_rows(&sweep, &points, &text, "f").expect_err(&text);
-            assert_eq!((error.code, error.line), ("sweep.damaged", Some(at)), "{text}");
+            let errors = read_rows(&sweep, &points, &text, "f").expect_err(&text);
+            assert_eq!((errors.len(), errors[0].code, errors[0].line), (1, "sweep.damaged", Some(at)), "{text}");
         }
+    }
+
+    /// Whatever character of a row is another one: the row is not taken.
+    #[test]
+    fn a_row_that_was_changed_by_hand_is_refused_with_its_line() {
+        let sweep = sweep();
+        let points = super::super::grid::points(&sweep.axes, sweep.design).expect("points");
+        let rows = rows(&points);
+        let (first, second) = (line(&sweep, &rows[0]), line(&sweep, &rows[1]));
+        let mut changed = 0;
+        for at in
+            (0..first.len() - 1).filter(|at| first.is_char_boundary(*at) && first.as_bytes()[*at].is_ascii_digit())
+        {
+            let digit = if &first[at..=at] == "7" { "8" } else { "7" };
+            let text = format!("{}{second}{}{digit}{}", head(&sweep), &first[..at], &first[at + 1..]);
+            let errors = read_rows(&sweep, &points, &text, "f").expect_err(&text);
+            assert_eq!((errors.len(), errors[0].line), (1, Some(3)), "{text}");
+            changed += usize::from(errors[0].code == "sweep.changed_row");
+        }
+        assert!(changed > 20, "numbers and checksums: {changed}");
+        // Every such row is told at once; a row that is gone is one that is computed anew.
+        let text =
+            format!("{}{}{}", head(&sweep), second.replace("a \"\"b", "a \"\"c"), first.replace("done", "run.x"));
+        let lines: Vec<_> = read_rows(&sweep, &points, &text, "f").expect_err(&text).iter().map(|e| e.line).collect();
+        assert_eq!(lines, [Some(2), Some(3)]);
+        assert_eq!(read_rows(&sweep, &points, &format!("{}{first}", head(&sweep)), "f"), Ok(rows[..1].to_vec()));
     }
 }

@@ -1,0 +1,71 @@
+//! What every command that writes reads and writes: no output replaces an input or another output.
+
+use crate::failure::Failure;
+use crate::source::Source;
+use opruga::io::Files;
+use opruga::io::outputs_apart::Uses;
+use std::path::Path;
+
+/// The scene and the files that it names, as inputs.
+pub(crate) fn of_scene<'n>(source: &Source, places: &Files, names: impl Iterator<Item = &'n String>) -> Uses {
+    let mut uses = Uses::default();
+    // The scene of a checkpoint or of a recording is inside.
+    if let Some(path) = &source.path {
+        uses.input(format!("the scene {}", path.display()), path);
+    }
+    for name in names {
+        if let Some(path) = places.path_of(name) {
+            uses.input(format!("`{name}`, which the scene names"), &path);
+        }
+    }
+    uses
+}
+
+/// A file that the call itself names, as an input.
+pub(crate) fn of_file(what: &str, path: &Path) -> Uses {
+    let mut uses = Uses::default();
+    uses.input(what, path);
+    uses
+}
+
+/// Refuses the call whose outputs are not files of their own.
+pub(crate) fn apart(uses: &Uses) -> Result<(), Failure> {
+    Ok(uses.check()?)
+}
+
+/// What `opruga run` writes into its folder.
+pub(crate) fn run_writes(name: &str) -> bool {
+    const NAMES: [&str; 10] = [
+        "diagnostics.csv",
+        "final.csv",
+        "summary.json",
+        "strip.png",
+        "plots.svg",
+        "video.mp4",
+        "video.gif",
+        crate::checkpoints::NAME,
+        crate::checkpoints::PREVIOUS,
+        "trial.opruga-trial",
+    ];
+    NAMES.contains(&name)
+}
+
+/// What `opruga replay` writes into its folder: `frame-000012.vtk`, a point cache for every body, …
+pub(crate) fn replay_writes(name: &str) -> bool {
+    let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    run_writes(name)
+        || name.starts_with("frame-") && ends(&[".vtk", ".vtu", ".obj", ".ply"])
+        || ["frames.vtk.series", "frames.pvd", "run.glb"].contains(&name)
+        || ends(&[".pc2", ".mdd"])
+}
+
+/// What `opruga sweep` writes into its folder.
+pub(crate) fn sweep_writes(name: &str) -> bool {
+    ["results.csv", "question.json", "summary.json"].contains(&name)
+        || name.starts_with("plots") && name.ends_with(".svg")
+}
+
+/// What `opruga modes` writes into its folder.
+pub(crate) fn modes_writes(name: &str) -> bool {
+    ["modes.csv", "modes.json", "modes.png"].contains(&name)
+}

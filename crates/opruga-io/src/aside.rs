@@ -1,0 +1,131 @@
+//! The files that are written before they get their names: who holds them, and which of them nobody does any more.
+//!
+//! A file is locked as long as its bytes come. The system frees the lock when the process ends, however it ends: a file of this kind that
+//! can be locked is what a killed process has left, and goes. Numbers of processes would not tell: they are given again, and folders are
+//! shared by machines.
+
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The ending of files that are being written.
+const WRITING: &str = ".writing";
+
+/// The name under which the writer of this number writes a file before it gets its own.
+fn name_of(name: &OsStr, writer: u64) -> OsString {
+    let mut aside = OsString::from(".");
+    aside.push(name);
+    aside.push(format!(".{writer}{WRITING}"));
+    aside
+}
+
+/// The name under which this process writes a file before it gets its own.
+pub(crate) fn aside_name(name: &OsStr) -> OsString {
+    name_of(name, std::process::id().into())
+}
+
+/// The name that a file of [`aside_name`] shall get; none for other files.
+fn name_within(aside: &str) -> Option<&str> {
+    let (name, process) = aside.strip_prefix('.')?.strip_suffix(WRITING)?.rsplit_once('.')?;
+    (!process.is_empty() && process.bytes().all(|b| b.is_ascii_digit())).then_some(name)
+}
+
+/// Whether a name is one of [`aside_name`].
+pub(crate) fn is_aside(name: &str) -> bool {
+    name_within(name).is_some()
+}
+
+/// Makes a file that shall get a name in a folder, locked as long as it is open.
+pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
+    let mut writer = u64::from(std::process::id());
+    loop {
+        let aside = folder.join(name_of(name, writer));
+        match OpenOptions::new().write(true).create_new(true).open(&aside) {
+            Ok(file) => {
+                match file.lock() {
+                    Err(e) if e.kind() != io::ErrorKind::Unsupported => {
+                        let _ = fs::remove_file(&aside);
+                        return Err(e);
+                    }
+                    _ => {}
+                }
+                // Somebody may have taken it for one of the dead in the moment before it was locked.
+                if is_the_file(&file, &aside) {
+                    return Ok((aside, file));
+                }
+            }
+            // Another writer of this number: another thread, or a process in another container.
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && !remove_if_dead(&aside) => writer += 1,
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(e) => return Err(e),
+        }
+    }
+}
+
+/// Removes what killed processes have left of a file of this name in a folder; without a name, of all files.
+pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for found in entries.filter_map(|entry| entry.file_name().into_string().ok()) {
+        let own = name_within(&found).is_some_and(|of| name.is_none_or(|name| name == of));
+        if own {
+            remove_if_dead(&folder.join(found));
+        }
+    }
+}
+
+/// Removes a file that nobody holds; whether it is gone. Where the file system knows no locks, nobody knows, and it stays.
+fn remove_if_dead(aside: &Path) -> bool {
+    match File::open(aside) {
+        Ok(file) => match file.try_lock() {
+            // While it is locked: its name may mean another file afterwards.
+            Ok(()) => is_the_file(&file, aside) && fs::remove_file(aside).is_ok(),
+            Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
+        },
+        Err(e) => e.kind() == io::ErrorKind::NotFound,
+    }
+}
+
+/// Whether an open file still has its name.
+#[cfg(unix)]
+pub(crate) fn is_the_file(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let same = |a: fs::Metadata, b: fs::Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
+    file.metadata().is_ok_and(|own| fs::metadata(path).is_ok_and(|named| same(own, named)))
+}
+#[cfg(not(unix))]
+pub(crate) fn is_the_file(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_dead_process_left_goes_and_what_a_living_one_holds_stays() {
+        let folder = std::env::temp_dir().join(format!("opruga-aside-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder");
+        let name = OsStr::new("q.msh");
+        let (living, held) = make_aside(&folder, name).expect("a file");
+        let (other, _held) = make_aside(&folder, name).expect("another writer of the same name");
+        assert_ne!(living, other);
+        for dead in [".q.msh.1.writing", ".other.2.writing"] {
+            fs::write(folder.join(dead), "half").expect("a file");
+        }
+        for alien in [".q.msh.x.writing", "q.msh", ".q.msh.writing"] {
+            fs::write(folder.join(alien), "not ours").expect("a file");
+        }
+        remove_the_dead(&folder, Some(name));
+        let there = |name: &str| folder.join(name).exists();
+        assert!(living.exists() && other.exists() && there(".other.2.writing") && !there(".q.msh.1.writing"));
+        remove_the_dead(&folder, None);
+        assert!(living.exists() && other.exists() && !there(".other.2.writing"));
+        assert!(there(".q.msh.x.writing") && there("q.msh") && there(".q.msh.writing"));
+        drop(held);
+        remove_the_dead(&folder, None);
+        assert!(!living.exists() && other.exists());
+        fs::remove_dir_all(&folder).expect("it goes");
+    }
+}

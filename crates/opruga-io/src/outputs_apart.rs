@@ -1,0 +1,287 @@
+//! Outputs that would destroy an input, or one another: found before anything is computed, and refused whatever `--force` says.
+//!
+//! `--force` lets a call replace what an earlier one has written. It is no leave to replace what the call reads: the file that is lost
+//! may be a drawing or a scene that nobody can compute again.
+
+use crate::aside::is_aside;
+use crate::safe_write::WriteError;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+use unicode_normalization::UnicodeNormalization as _;
+
+/// The files that a call reads and those that it will write.
+#[derive(Default)]
+#[allow(missing_debug_implementations, reason = "it holds functions")]
+pub struct Uses {
+    inputs: Vec<Used>,
+    outputs: Vec<Used>,
+    folders: Vec<Folder>,
+}
+
+/// A file of a call.
+struct Used {
+    /// What it is to the call, such as `the scene`.
+    what: String,
+    named: PathBuf,
+    file: Found,
+}
+
+/// Whether a command writes a file of this name into its folder.
+type Writes = Box<dyn Fn(&str) -> bool>;
+
+/// A folder that a command writes into.
+struct Folder {
+    named: PathBuf,
+    real: PathBuf,
+    writes: Writes,
+}
+
+/// A file by what it is, whatever it is called.
+#[derive(Clone, Debug, PartialEq)]
+struct Found {
+    /// Its path without links, `.` and `..`, as far as it is there.
+    real: PathBuf,
+    /// The number of the file and of its device, which hard links share; none where it is not there.
+    number: Option<(u64, u64)>,
+}
+
+impl Uses {
+    /// Adds a file that the call reads.
+    pub fn input(&mut self, what: impl Into<String>, path: &Path) {
+        self.inputs.push(Used { what: what.into(), named: path.to_path_buf(), file: Found::of(path) });
+    }
+
+    /// Adds a file that the call will write, by what the call names it.
+    pub fn output(&mut self, what: impl Into<String>, path: &Path) {
+        self.outputs.push(Used { what: what.into(), named: path.to_path_buf(), file: Found::of(path) });
+    }
+
+    /// Adds a folder that the call will write into, and which names its files may have.
+    pub fn folder(&mut self, path: &Path, writes: impl Fn(&str) -> bool + 'static) {
+        let writes: Writes = Box::new(move |name| name == crate::output_folder::LOCK || is_aside(name) || writes(name));
+        self.folders.push(Folder { named: path.to_path_buf(), real: Found::of(path).real, writes });
+    }
+
+    /// Looks whether every output is a file of its own.
+    ///
+    /// # Errors
+    /// `write.input` for an output that is an input, `write.twice` for two outputs that are one file.
+    pub fn check(&self) -> Result<(), WriteError> {
+        for (place, output) in self.outputs.iter().enumerate() {
+            if let Some(input) = self.inputs.iter().find(|input| input.file.is(&output.file)) {
+                return Err(replaces(&output.named, &output.what, &input.what));
+            }
+            if let Some(other) = self.outputs[..place].iter().find(|other| other.file.would_be(&output.file)) {
+                return Err(twice(&output.named, &other.what, &output.what));
+            }
+        }
+        for folder in &self.folders {
+            for input in &self.inputs {
+                if let Some(path) = folder.goal(&input.file) {
+                    return Err(replaces(&path, "a file of the output", &input.what));
+                }
+            }
+            for output in &self.outputs {
+                if let Some(path) = folder.goal(&output.file) {
+                    return Err(twice(&path, &output.what, "a file of the folder of the output"));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn replaces(path: &Path, output: &str, input: &str) -> WriteError {
+    let message = format!("{output} would replace {input}, which is an input of this call");
+    let error = WriteError::new("write.input", path, message);
+    WriteError { hint: Some("choose another name; --force replaces outputs only, never an input".into()), ..error }
+}
+
+fn twice(path: &Path, one: &str, other: &str) -> WriteError {
+    let message = format!("{one} and {other} are one file: only the last would be left");
+    let error = WriteError::new("write.twice", path, message);
+    WriteError { hint: Some("choose another name for one of them".into()), ..error }
+}
+
+impl Folder {
+    /// The path under which the command would write this very file, if it would.
+    fn goal(&self, file: &Found) -> Option<PathBuf> {
+        if let (Some(folder), Some(name)) = (file.real.parent(), file.real.file_name().and_then(|name| name.to_str()))
+            && folder == self.real
+        {
+            // Where case says nothing, a name in capitals is one that is written in small letters.
+            let small = name.to_lowercase();
+            let same = || file.number.is_none() || Found::of(&self.real.join(&small)).is(file);
+            if (self.writes)(name) || (self.writes)(&small) && same() {
+                return Some(self.named.join(name));
+            }
+        }
+        // A link in the folder may lead to the file.
+        let number = file.number?;
+        let entries = fs::read_dir(&self.real).into_iter().flatten().flatten();
+        let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut written = names.filter(|name| (self.writes)(name));
+        let name = written.find(|name| number_of(&self.real.join(name)) == Some(number))?;
+        Some(self.named.join(name))
+    }
+}
+
+impl Found {
+    fn of(path: &Path) -> Found {
+        let real = real(path, &mut 0);
+        let number = number_of(&real);
+        Found { real, number }
+    }
+
+    /// Whether two names mean one file.
+    fn is(&self, other: &Found) -> bool {
+        self.real == other.real || self.number.is_some() && self.number == other.number
+    }
+
+    /// Whether two names mean one file, or will once they are written. Names that are not there yet and differ by case or by the form of
+    /// their letters alone are one file on many systems: which kind this one is shows only when it is too late.
+    fn would_be(&self, other: &Found) -> bool {
+        let form = |found: &Found| found.real.to_string_lossy().to_lowercase().nfc().collect::<String>();
+        self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)
+    }
+}
+
+/// Links that are followed before they count as a circle.
+const MOST_LINKS: u32 = 40;
+
+/// A path without links, `.` and `..`; what is not there stays as it is named.
+fn real(path: &Path, links: &mut u32) -> PathBuf {
+    let whole = match path.is_absolute() {
+        true => path.to_path_buf(),
+        false => std::env::current_dir().unwrap_or_default().join(path),
+    };
+    let mut out = PathBuf::new();
+    for part in whole.components() {
+        match part {
+            Component::Prefix(_) | Component::RootDir => out.push(part),
+            Component::CurDir => {}
+            Component::ParentDir => drop(out.pop()),
+            Component::Normal(name) => {
+                let here = out.join(name);
+                out = match (here.canonicalize(), fs::read_link(&here)) {
+                    (Ok(there), _) => there,
+                    // A link to what is not there yet: who writes it, writes that.
+                    (Err(_), Ok(goal)) if *links < MOST_LINKS => {
+                        *links += 1;
+                        real(&out.join(goal), links)
+                    }
+                    _ => here,
+                };
+            }
+        }
+    }
+    out
+}
+
+#[cfg(unix)]
+fn number_of(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt as _;
+    fs::metadata(path).ok().map(|about| (about.dev(), about.ino()))
+}
+// Without numbers of files, hard links stay unknown; everything else shows in paths without links.
+#[cfg(not(unix))]
+fn number_of(_: &Path) -> Option<(u64, u64)> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("opruga-apart-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(path.join("a/b")).expect("a folder");
+        path
+    }
+
+    fn code(fill: impl FnOnce(&mut Uses)) -> &'static str {
+        let mut uses = Uses::default();
+        fill(&mut uses);
+        uses.check().map_or_else(|error| error.code, |()| "")
+    }
+
+    #[test]
+    fn an_output_that_is_an_input_is_found_by_every_name_of_the_file() {
+        let at = folder("input");
+        let scene = at.join("a/s.toml");
+        fs::write(&scene, "scene").expect("a file");
+        let mut names = vec![scene.clone(), at.join("a/./s.toml"), at.join("a/b/../s.toml"), at.join("a/no/../s.toml")];
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("../s.toml", at.join("a/b/link")).expect("a link");
+            std::os::unix::fs::symlink("a", at.join("c")).expect("a link");
+            fs::hard_link(&scene, at.join("hard")).expect("a link");
+            names.extend([at.join("a/b/link"), at.join("c/s.toml"), at.join("hard")]);
+        }
+        for name in names {
+            let found = code(|uses| {
+                uses.input("the scene", &scene);
+                uses.output("--record", &name);
+            });
+            assert_eq!(found, "write.input", "{}", name.display());
+        }
+        for other in ["a/S2.toml", "s.toml", "a/b/s.toml"] {
+            let found = code(|uses| {
+                uses.input("the scene", &scene);
+                uses.output("--record", &at.join(other));
+            });
+            assert_eq!(found, "", "{other}");
+        }
+        // In a folder, by the names that are written into it.
+        let into = |path: &Path| {
+            code(|uses| {
+                uses.input("a file of the scene", &at.join("a/s.toml"));
+                uses.folder(path, |name| name.ends_with(".toml"));
+            })
+        };
+        assert_eq!((into(&at.join("a/b/..")), into(&at.join("a/b"))), ("write.input", ""));
+        #[cfg(unix)]
+        {
+            fs::hard_link(&scene, at.join("a/b/other.toml")).expect("a link");
+            assert_eq!((into(&at.join("c")), into(&at.join("a/b"))), ("write.input", "write.input"));
+        }
+        fs::remove_dir_all(&at).expect("it goes");
+    }
+
+    #[test]
+    fn two_outputs_of_one_file_are_found_before_it_is_there() {
+        let at = folder("twice");
+        let two = |one: &str, other: &str| {
+            code(|uses| {
+                uses.output("-o", &at.join(one));
+                uses.output("--picture", &at.join(other));
+            })
+        };
+        for other in ["q.msh", "./q.msh", "a/../q.msh", "a/b/../../q.msh", "Q.MSH", "q.Msh"] {
+            assert_eq!(two("q.msh", other), "write.twice", "{other}");
+        }
+        assert_eq!(two("caf\u{e9}.msh", "cafe\u{301}.msh"), "write.twice");
+        assert_eq!(two("q.msh", "q.png"), "");
+        assert_eq!(two("q.msh", "a/q.msh"), "");
+        #[cfg(unix)]
+        {
+            // A link to a file that is not there yet.
+            std::os::unix::fs::symlink("q.msh", at.join("link")).expect("a link");
+            assert_eq!((two("q.msh", "link"), two("link", "a/../link")), ("write.twice", "write.twice"));
+            std::os::unix::fs::symlink("circle", at.join("circle")).expect("a link");
+            assert_eq!(two("q.msh", "circle"), "");
+        }
+        let recorded = |name: &str| {
+            code(|uses| {
+                uses.output("--record", &at.join(name));
+                uses.folder(&at.join("a/b/.."), |name| name == "final.csv");
+            })
+        };
+        for name in ["a/final.csv", "a/.opruga-lock", "a/FINAL.csv"] {
+            assert_eq!(recorded(name), "write.twice", "{name}");
+        }
+        assert_eq!(recorded("a/run.rec"), "");
+        fs::remove_dir_all(&at).expect("it goes");
+    }
+}
