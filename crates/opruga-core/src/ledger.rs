@@ -85,6 +85,10 @@ pub struct SolverWork {
     pub blurred: u64,
     /// By how much at most it would [m].
     pub blur: f64,
+    /// Steps in which forces that rounding of positions makes were larger than the loads.
+    pub conditioned: u64,
+    /// How many times at most they were as large.
+    pub conditioning: f64,
     /// How often a body that stood still flat, inside out or folded was disturbed.
     pub disturbed: u64,
     /// How often that was in vain.
@@ -105,6 +109,8 @@ impl SolverWork {
         self.left = other.left.larger(self.left);
         self.blurred += other.blurred;
         self.blur = other.blur.larger(self.blur);
+        self.conditioned += other.conditioned;
+        self.conditioning = other.conditioning.larger(self.conditioning);
         self.disturbed += other.disturbed;
         self.odd_rests += other.odd_rests;
     }

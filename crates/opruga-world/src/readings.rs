@@ -367,6 +367,16 @@ impl<const D: usize> World<D> {
             solver.blurred,
         );
         count(
+            "conditioning",
+            &format!(
+                "a step of a body so stiff for its mass that rounding of its positions, which have sixteen digits, makes forces of up to {} \
+                 times the load of a node: its motion as a whole is balanced apart and is right, its nodes are where they belong but for the last \
+                 digit of positions, and its stresses are chance; hint: a scene nearer to the origin, larger cells, or a body that is less stiff",
+                number(solver.conditioning)
+            ),
+            solver.conditioned,
+        );
+        count(
             "step.disturbed",
             "a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a \
              hundredth and by a tenth; hint: what has left such a shape swings on until something damps it, soonest under `backward_euler` \

@@ -84,12 +84,13 @@ impl<const D: usize> World<D> {
         let s = &f.solver;
         let counts =
             [s.steps, s.iterations, s.linear_iterations, s.accepted, s.halved, s.deepest, s.cut_off, s.disturbed];
-        for n in counts.into_iter().chain([s.odd_rests, s.blurred]) {
+        for n in counts.into_iter().chain([s.odd_rests, s.blurred, s.conditioned]) {
             out.count(n);
         }
         out.number(s.residual);
         out.number(s.left);
         out.number(s.blur);
+        out.number(s.conditioning);
     }
 
     pub(crate) fn restore_here(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
@@ -218,18 +219,32 @@ impl<const D: usize> World<D> {
         for n in &mut counts {
             *n = reader.count()?;
         }
-        let mut solver = [0; 10];
+        let mut solver = [0; 11];
         for n in &mut solver {
             *n = reader.count()?;
         }
-        let (residual, left, blur) = (reader.number()?, reader.number()?, reader.number()?);
+        let [mut residual, mut left, mut blur, mut conditioning] = [0.0; 4];
+        for number in [&mut residual, &mut left, &mut blur, &mut conditioning] {
+            *number = reader.number()?;
+        }
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
         let [user, gas, damping, friction, contact, correction, start, changed, largest] = numbers;
         let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
-        let [steps, iterations, linear_iterations, accepted, halved, deepest, cut_off, disturbed, odd_rests, blurred] =
-            solver;
+        let [
+            steps,
+            iterations,
+            linear_iterations,
+            accepted,
+            halved,
+            deepest,
+            cut_off,
+            disturbed,
+            odd_rests,
+            blurred,
+            conditioned,
+        ] = solver;
         rest.flows = Flows {
             user,
             gas,
@@ -259,6 +274,8 @@ impl<const D: usize> World<D> {
                 odd_rests,
                 blurred,
                 blur,
+                conditioned,
+                conditioning,
             },
         };
         Ok(rest)

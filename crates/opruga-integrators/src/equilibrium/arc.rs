@@ -9,8 +9,9 @@
 
 use super::{COMPLETE, Equilibrium, Reached, SPEC};
 use crate::implicit::contact_derivatives::Sight;
+use crate::implicit::direction::wanted_forces;
 use crate::implicit::linear::Filter;
-use crate::implicit::newton::{Balance, Solved, evaluate, judge, look, mixture, wanted_forces};
+use crate::implicit::newton::{Balance, Solved, evaluate, judge, look, mixture};
 use crate::implicit::room::Room;
 use crate::implicit::step::report;
 use opruga_core::error::StepError;

@@ -31,7 +31,7 @@
 //! Source: Riks 1979; Crisfield 1981; for the direction on the curve Feng, Perić, Owen 1996.
 
 mod arc;
-mod pieces;
+pub(crate) mod pieces;
 mod restraint;
 pub mod rigid;
 mod slack;

@@ -13,7 +13,7 @@ pub(super) fn whole<const D: usize>(system: &System<D>) -> Vec<usize> {
 
 /// The pieces of a body, each by its nodes in their order, by their first nodes. A body of which a model has no meaning where
 /// it is counts as one.
-pub(super) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
+pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     let mut ties = Ties { tied_to: whole(system) };
     let rest = Columns::zeros(system.places());
     let mut view = system.view(opruga_core::system::Stage::Current, system.time);

@@ -13,9 +13,12 @@
 //! | `step` | a step of a rule from start to ledger, halved or accepted where it does not converge |
 //! | `theta` | the θ-method, which rules that damp nothing turn to in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
+//! | `direction` | one direction of it |
 //! | `beginning` | where that begins |
 //! | `line_search` | how far a step is gone |
 //! | `rounding` | balances whose forces are as small as their rounding |
+//! | `rigid` | the motions of a body as a whole, whose balance rounding does not hide |
+//! | `whole` | whether that holds where an iteration ends |
 //! | `mixing` | what the matrix leaves out, from the iterations before |
 //! | `real_time` | the iteration with a fixed budget |
 //! | `kept` | the matrix that it keeps from step to step |
@@ -46,6 +49,7 @@ pub(crate) mod approach;
 mod beginning;
 pub(crate) mod contact;
 pub(crate) mod contact_derivatives;
+pub(crate) mod direction;
 mod falling;
 mod growth;
 pub(crate) mod holding;
@@ -57,6 +61,7 @@ pub(crate) mod memory;
 mod mixing;
 pub(crate) mod newton;
 mod real_time;
+mod rigid;
 pub(crate) mod room;
 mod rounding;
 pub(crate) mod settings;
@@ -64,3 +69,4 @@ mod slenderness;
 pub(crate) mod standstill;
 pub(crate) mod step;
 pub(crate) mod theta;
+mod whole;

@@ -2,20 +2,21 @@
 
 use super::approach::part_without_inertia;
 use super::beginning::begin;
-use super::contact::{Contacting, Verdict};
+use super::contact::Verdict;
 use super::contact_derivatives::Sight;
+use super::direction::{Keep, find_direction};
 use super::falling::Falling;
 use super::line_search::{Stretches, line_search, slope_along};
-use super::linear::{Filter, Linear, Mixture, is_matrix_free};
+use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
 use super::rounding::{at_rounding, carries, chance, in_doubt, settle, visible};
 use super::settings::Settings;
+use super::whole;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_core::threads::each_block;
 use opruga_math::Lane;
-use opruga_solve::dot;
 
 /// The balance of a stage: σ M (u − y) = F(x₀ + u, β (u − z)) at a time after the start of the step.
 #[derive(Clone, Copy, Debug)]
@@ -48,32 +49,10 @@ pub(crate) struct Solved {
     pub(crate) converged: bool,
     /// What is left of the forces would still move a node by [m], where it is rounding and that is much.
     pub(crate) blur: f64,
+    /// The forces that rounding of positions makes, over the loads, where they matter.
+    pub(crate) conditioning: f64,
     /// Whether what is left may have made energy.
     pub(crate) doubtful: bool,
-}
-
-/// Which derivatives a direction is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Keep {
-    /// The exact ones.
-    Exact,
-    /// Each element's without its negative eigenvalues.
-    Clamped,
-    /// The same with the diagonal raised by a part of itself: for directions without any stiffness.
-    Raised(f64),
-}
-
-impl Keep {
-    fn definiteness(self) -> Definiteness {
-        if self == Keep::Exact { Definiteness::Exact } else { Definiteness::Clamped }
-    }
-    fn next(self) -> Option<Keep> {
-        match self {
-            Keep::Exact => Some(Keep::Clamped),
-            Keep::Clamped => Some(Keep::Raised(1e-8)),
-            Keep::Raised(part) => (part < 1e-2).then_some(Keep::Raised(100.0 * part)),
-        }
-    }
 }
 
 /// Corrections that fall by less than this in an iteration fall slowly.
@@ -82,17 +61,8 @@ const SLOW: f64 = 0.03;
 /// From this iteration on contacts stay as they are: those that still change differ by little.
 const MOST_DECISIONS: u32 = 30;
 
-/// The part of the residual that the linear solver may leave, in the first iteration.
-pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
-
 /// From this iteration on forces that are as small as their rounding are a balance, whether it carries the loads or not.
 const MOST_AT_ROUNDING: u32 = 50;
-
-/// How often a direction is corrected for the friction that it changes, at most.
-const MOST_ROUNDS: u32 = 12;
-
-/// The part of the force of friction that may be left, in the first iteration.
-const FRICTION_TOLERANCE: f64 = 1e-3;
 
 /// Looks for the stage from the displacement in `room.u` on; on success forces and residual belong to what is found.
 pub(crate) fn solve<const D: usize>(
@@ -109,6 +79,7 @@ pub(crate) fn solve<const D: usize>(
     }
     let torn = begin(system, room, balance)?;
     room.linear.begin();
+    room.rigid.begin();
     room.mixing.begin(room.u.len());
     room.friction.begin(if system.contacts.is_some() { system.nodes } else { 0 });
     let mut first_norm = 0.0;
@@ -197,7 +168,9 @@ pub(crate) fn solve<const D: usize>(
         }
         let stuck = length == 0.0 && !changed;
         if stuck {
-            if at_rounding(system, room, balance, settings, size) {
+            if at_rounding(system, room, balance, settings, size)
+                && whole::accepts(system, room, balance, settings, size, true)?
+            {
                 solved.converged = true;
                 solved.blur = settle(system, room, balance, settings)?;
                 break;
@@ -222,19 +195,24 @@ pub(crate) fn solve<const D: usize>(
             changed |= verdict.anew || verdict.unsettled;
         }
         let ends = !changed && !stuck;
-        if ends && plain <= goal {
+        if ends && plain <= goal && whole::accepts(system, room, balance, settings, size, false)? {
             solved.converged = true;
             break;
         }
         let last = solved.iterations >= MOST_AT_ROUNDING.min(settings.iterations);
         let may_end = ends && (last || !nears);
-        if may_end && at_rounding(system, room, balance, settings, size) && (last || carries(system, room, balance)) {
+        if may_end
+            && at_rounding(system, room, balance, settings, size)
+            && (last || carries(system, room, balance))
+            && whole::accepts(system, room, balance, settings, size, true)?
+        {
             solved.converged = true;
             solved.blur = settle(system, room, balance, settings)?;
             break;
         }
     }
     if solved.converged {
+        solved.conditioning = room.rigid.conditioning;
         let doubt = in_doubt(system, room, balance, settings, size);
         let suspected = doubt.way.larger(solved.blur);
         if suspected > 0.0 {
@@ -337,114 +315,6 @@ pub(crate) fn mixture<'a, const D: usize>(
         time: balance.time,
         keep,
         matrix_free: is_matrix_free(settings.solver),
-    }
-}
-
-/// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
-pub(crate) fn wanted_forces<const D: usize>(
-    threads: usize,
-    mixture: &Mixture<D>,
-    linear: &Linear<D>,
-    contacting: &Contacting<D>,
-    residual: &[f64],
-    prescribed: Option<&[f64]>,
-    [trial, right]: [&mut [f64]; 2],
-) {
-    each_block(threads, D, [&mut *trial], |first, [trial]| trial.copy_from_slice(&residual[first..][..trial.len()]));
-    contacting.subtract_friction(trial);
-    if let Some(prescribed) = prescribed {
-        linear.multiply(mixture, prescribed, right);
-        for (t, r) in trial.iter_mut().zip(&*right) {
-            *t += r;
-        }
-    }
-    each_block(threads, D, [right], |first, [right]| {
-        for (r, t) in right.iter_mut().zip(&trial[first..]) {
-            *r = -t;
-        }
-    });
-}
-
-/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
-/// it. Gives the number of products, and the slope along the step of the incremental potential less the work of friction and
-/// of the constraints.
-fn find_direction<const D: usize>(
-    system: &System<D>,
-    room: &mut Room<D>,
-    balance: &Balance,
-    settings: &Settings,
-    keep: Keep,
-    moves: bool,
-    first_norm: &mut f64,
-) -> Result<(u32, f64), u32> {
-    let Room {
-        linear,
-        mass,
-        free,
-        projectors,
-        residual,
-        reaction,
-        right,
-        trial,
-        step,
-        prescribed,
-        contacting,
-        friction,
-        u,
-        x0,
-        extent,
-        ..
-    } = room;
-    let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
-    linear.assemble(&mixture);
-    let sight = Sight::new(system, balance, x0, u, *extent);
-    contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
-    if let Keep::Raised(part) = keep {
-        linear.raise(part);
-    }
-    let ways = moves.then_some(&**prescribed);
-    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [&mut *trial, &mut *right]);
-    let filter = Filter { free, projectors };
-    filter.apply(right);
-    let norm = dot(right, right).sqrt();
-    *first_norm = norm.larger(*first_norm);
-    // Far from the solution a rough direction does (Eisenstat and Walker 1996).
-    let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
-    let tolerance = LINEAR_TOLERANCE * share;
-    let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
-    filter.apply(step);
-    let mut slope = -dot(right, step);
-    if moves {
-        for (s, p) in step.iter_mut().zip(&*prescribed) {
-            *s += p;
-        }
-    }
-    if !moves && !contacting.any() {
-        reaction.fill(0.0);
-        return Ok((products, slope));
-    }
-    // What is out of balance after the step in the directions that are held: r + A Δ. Friction follows it, and the step
-    // follows friction: its force depends on that along the normal.
-    friction.forget();
-    let mut rounds = 0;
-    loop {
-        linear.multiply(&mixture, step, reaction);
-        slope = if moves || rounds > 0 { -dot(reaction, step) } else { slope };
-        for (r, residual) in reaction.iter_mut().zip(&*residual) {
-            *r += residual;
-        }
-        if rounds == MOST_ROUNDS || !contacting.follow(reaction, friction, FRICTION_TOLERANCE * share, right) {
-            return Ok((products, slope));
-        }
-        rounds += 1;
-        // `right` is what the force of friction has changed by, and `trial` the change of the step.
-        filter.apply(right);
-        products +=
-            linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, trial).map_err(|_| 0u32)?;
-        filter.apply(trial);
-        for (s, t) in step.iter_mut().zip(&*trial) {
-            *s += t;
-        }
     }
 }
 

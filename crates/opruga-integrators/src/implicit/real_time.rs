@@ -6,11 +6,13 @@
 //!
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
+use super::direction::wanted_forces;
 use super::line_search::potential;
 use super::linear::{Filter, Mixture};
-use super::newton::{self, Balance, Solved, evaluate, judge, look, wanted_forces};
+use super::newton::{self, Balance, Solved, evaluate, judge, look};
 use super::room::Room;
 use super::settings::Settings;
+use super::whole::settles;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
@@ -328,6 +330,7 @@ fn iterate<const D: usize>(
     };
     room.direct = Some((settings.solver, direct));
     let task = Task { balance, direct };
+    room.rigid.begin();
     let number = room.own.numbers;
     let mut solved = Solved { converged: true, ..Solved::default() };
     // Whether the matrix is of this step.
@@ -376,6 +379,10 @@ fn iterate<const D: usize>(
                 (false, true) if !remade && short => Trust::Whole,
                 _ => Trust::IfDownhill,
             };
+            // What moves no node against the stiffness of the others may move them all together.
+            let parts = [if size <= floor { NOTHING } else { 0.0 }, LOOSE * LOOSE];
+            let trust = if settles(system, room, balance, settings, parts)? { trust } else { Trust::None };
+            solved.conditioning = room.rigid.conditioning;
             return Ok((solved, trust));
         }
         if solved.iterations > 0 && (is_loose(system) || size > WORN * first) {

@@ -5,6 +5,7 @@ use super::impact::Struck;
 use super::kept::Kept;
 use super::linear::Linear;
 use super::mixing::Mixing;
+use super::rigid::Rigid;
 use super::settings::Solver;
 use opruga_core::integrator::HistorySize;
 use opruga_core::state::Columns;
@@ -63,6 +64,8 @@ pub(crate) struct Room<const D: usize> {
     /// Where the history of the real-time setting begins, behind that of the rule.
     pub(crate) own: HistorySize,
     pub(crate) contacting: Contacting<D>,
+    /// The motions of the whole that are free.
+    pub(crate) rigid: Rigid<D>,
     /// The last iterations, for what the matrix leaves out.
     pub(crate) mixing: Mixing,
     /// The same for the forces that friction goes by, within a direction.
@@ -103,6 +106,7 @@ impl<const D: usize> Default for Room<D> {
             kept: Kept::default(),
             own: HistorySize::default(),
             contacting: Contacting::default(),
+            rigid: Rigid::default(),
             mixing: Mixing::default(),
             friction: Mixing::default(),
             extent: 1.0,

@@ -1,7 +1,8 @@
 //! Balances whose forces are as small as their rounding.
 
+use super::direction::LINEAR_TOLERANCE;
 use super::linear::{Filter, Linear, Mixture};
-use super::newton::{Balance, LINEAR_TOLERANCE, evaluate, longest, mixture};
+use super::newton::{Balance, evaluate, longest, mixture};
 use super::room::Room;
 use super::settings::Settings;
 use opruga_core::error::StepError;
@@ -155,6 +156,11 @@ pub(super) fn chance<const D: usize>(
     correction(system, room, balance, settings).unwrap_or(f64::INFINITY)
 }
 
+/// How far a force that is all rounding would move a node that is stiffer than its mass by a factor, against its inertia [m].
+pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
+    ROUNDING * contrast * size
+}
+
 /// The largest rounding of the force of a node [N], in a body so far from the origin.
 fn floor<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>, node: usize, size: f64) -> f64 {
     ROUNDING * linear.size_at(mixture, node) * size
@@ -167,7 +173,7 @@ fn loads<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &B
 }
 
 /// What is out of balance in the free directions, into `room.right`.
-fn take_residual<const D: usize>(room: &mut Room<D>) {
+pub(super) fn take_residual<const D: usize>(room: &mut Room<D>) {
     room.right.copy_from_slice(&room.residual);
     room.contacting.subtract_friction(&mut room.right);
     Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);

@@ -372,6 +372,8 @@ fn count<const D: usize>(system: &mut System<D>, solved: &Solved) {
     work.linear_iterations += u64::from(solved.products);
     work.blurred += u64::from(solved.blur > 0.0);
     work.blur = solved.blur.larger(work.blur);
+    work.conditioned += u64::from(solved.conditioning > 1.0);
+    work.conditioning = solved.conditioning.larger(work.conditioning);
 }
 
 fn finish<const D: usize>(system: &mut System<D>, room: &Room<D>) {

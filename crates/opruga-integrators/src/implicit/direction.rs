@@ -1,0 +1,160 @@
+//! The direction of an iteration of Newton's method.
+
+use super::contact::Contacting;
+use super::contact_derivatives::Sight;
+use super::linear::{Filter, Linear, Mixture};
+use super::newton::{Balance, mixture};
+use super::rigid::Stage;
+use super::room::Room;
+use super::settings::Settings;
+use super::whole::is_unsure;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_core::threads::each_block;
+use opruga_math::Lane;
+use opruga_solve::dot;
+
+/// Which derivatives a direction is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Keep {
+    /// The exact ones.
+    Exact,
+    /// Each element's without its negative eigenvalues.
+    Clamped,
+    /// The same with the diagonal raised by a part of itself: for directions without any stiffness.
+    Raised(f64),
+}
+
+impl Keep {
+    pub(super) fn definiteness(self) -> Definiteness {
+        if self == Keep::Exact { Definiteness::Exact } else { Definiteness::Clamped }
+    }
+    pub(super) fn next(self) -> Option<Keep> {
+        match self {
+            Keep::Exact => Some(Keep::Clamped),
+            Keep::Clamped => Some(Keep::Raised(1e-8)),
+            Keep::Raised(part) => (part < 1e-2).then_some(Keep::Raised(100.0 * part)),
+        }
+    }
+}
+
+/// The part of the residual that the linear solver may leave, in the first iteration.
+pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
+
+/// How often a direction is corrected for the friction that it changes, at most.
+const MOST_ROUNDS: u32 = 12;
+
+/// The part of the force of friction that may be left, in the first iteration.
+const FRICTION_TOLERANCE: f64 = 1e-3;
+
+/// b = −(r − friction) − A d for what is out of balance and for nodes that have `prescribed` ways d to go; `trial` is room.
+pub(crate) fn wanted_forces<const D: usize>(
+    threads: usize,
+    mixture: &Mixture<D>,
+    linear: &Linear<D>,
+    contacting: &Contacting<D>,
+    residual: &[f64],
+    prescribed: Option<&[f64]>,
+    [trial, right]: [&mut [f64]; 2],
+) {
+    each_block(threads, D, [&mut *trial], |first, [trial]| trial.copy_from_slice(&residual[first..][..trial.len()]));
+    contacting.subtract_friction(trial);
+    if let Some(prescribed) = prescribed {
+        linear.multiply(mixture, prescribed, right);
+        for (t, r) in trial.iter_mut().zip(&*right) {
+            *t += r;
+        }
+    }
+    each_block(threads, D, [right], |first, [right]| {
+        for (r, t) in right.iter_mut().zip(&trial[first..]) {
+            *r = -t;
+        }
+    });
+}
+
+/// Solves for `room.step`, what is prescribed included; `room.reaction` is then what the constraints take, and friction goes by
+/// it. Gives the number of products, and the slope along the step of the incremental potential less the work of friction and
+/// of the constraints.
+pub(super) fn find_direction<const D: usize>(
+    system: &System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    keep: Keep,
+    moves: bool,
+    first_norm: &mut f64,
+) -> Result<(u32, f64), u32> {
+    let Room {
+        linear,
+        mass,
+        free,
+        projectors,
+        residual,
+        reaction,
+        right,
+        trial,
+        step,
+        prescribed,
+        contacting,
+        friction,
+        u,
+        x0,
+        extent,
+        rigid,
+        ..
+    } = room;
+    let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
+    linear.assemble(&mixture);
+    let sight = Sight::new(system, balance, x0, u, *extent);
+    contacting.derivatives(&sight, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
+    if let Keep::Raised(part) = keep {
+        linear.raise(part);
+    }
+    let ways = moves.then_some(&**prescribed);
+    wanted_forces(system.threads, &mixture, linear, contacting, residual, ways, [&mut *trial, &mut *right]);
+    let filter = Filter { free, projectors };
+    filter.apply(right);
+    let norm = dot(right, right).sqrt();
+    *first_norm = norm.larger(*first_norm);
+    // Far from the solution a rough direction does (Eisenstat and Walker 1996).
+    let share = if *first_norm > 0.0 { (norm / *first_norm).larger(1e-9) } else { 1.0 };
+    let tolerance = LINEAR_TOLERANCE * share;
+    let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
+    filter.apply(step);
+    if is_unsure(linear, &mixture) {
+        rigid.correct(&Stage { mixture, x0, u, filter }, right, step);
+    }
+    let mut slope = -dot(right, step);
+    if moves {
+        for (s, p) in step.iter_mut().zip(&*prescribed) {
+            *s += p;
+        }
+    }
+    if !moves && !contacting.any() {
+        reaction.fill(0.0);
+        return Ok((products, slope));
+    }
+    // What is out of balance after the step in the directions that are held: r + A Δ. Friction follows it, and the step
+    // follows friction: its force depends on that along the normal.
+    friction.forget();
+    let mut rounds = 0;
+    loop {
+        linear.multiply(&mixture, step, reaction);
+        slope = if moves || rounds > 0 { -dot(reaction, step) } else { slope };
+        for (r, residual) in reaction.iter_mut().zip(&*residual) {
+            *r += residual;
+        }
+        if rounds == MOST_ROUNDS || !contacting.follow(reaction, friction, FRICTION_TOLERANCE * share, right) {
+            return Ok((products, slope));
+        }
+        rounds += 1;
+        // `right` is what the force of friction has changed by, and `trial` the change of the step.
+        filter.apply(right);
+        products +=
+            linear.solve_again(&mixture, &filter, settings, LINEAR_TOLERANCE, right, trial).map_err(|_| 0u32)?;
+        filter.apply(trial);
+        for (s, t) in step.iter_mut().zip(&*trial) {
+            *s += t;
+        }
+    }
+}

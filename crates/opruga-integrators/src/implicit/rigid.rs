@@ -1,0 +1,454 @@
+//! The balance of a stage in the motions of a body as a whole that nothing holds.
+//!
+//! Positions have sixteen digits. Rounding them makes forces of about ε |x| times the stiffness of a node, which may be a multiple of
+//! its weight: E ε |x|/(ρ g ℓ²) of it in a body of cells of size ℓ. What is out of balance on a node then says nothing. But whatever the
+//! positions are, the forces between nodes and their moments sum to zero over a piece of a body, to the rounding of that sum, which is
+//! smaller by another ε. So the sum of what is out of balance is known where its parts are not: it is what weight, loads and inertia
+//! leave. A matrix says as little of these motions where its stiffness is 1/ε of its mass, since the sums of its rows are rounding too.
+//!
+//! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles hold, orthonormal in the masses. Then
+//!
+//! (σ + φᵀ(K + βC)φ) a = −φᵀ r
+//!
+//! is the motion that balances the piece. K and C are those of the models, as far as they are more than the rounding of their own sum:
+//! whatever ties nodes to space, whoever made it, resists. A piece goes on a circle in a finite turn (Cayley's rotation), which leaves
+//! its shape alone.
+
+use super::linear::{Filter, Mixture};
+use crate::equilibrium::pieces::pieces;
+use opruga_core::inertia::Inertia;
+use opruga_core::potential::{Definiteness, Sink};
+use opruga_solve::blocks::{Block, times};
+use opruga_solve::dense::inverse;
+
+/// Resistance of the whole below this part of what it is the sum of is rounding, as of sums over many cells.
+const NO_RESISTANCE: f64 = 1e-13;
+
+/// Held directions that are this near to others that are held are the same.
+const SAME: f64 = 1e-8;
+
+/// Motions of the whole in space.
+const MOST: usize = 6;
+
+/// x moves by t + ω × (x − c); in the plane ω is along the third axis.
+#[derive(Clone, Copy, Debug)]
+struct Motion<const D: usize> {
+    translation: [f64; D],
+    rotation: [f64; 3],
+}
+
+/// A part of a body that its models hold together.
+#[derive(Debug)]
+struct Piece<const D: usize> {
+    center: [f64; D],
+    motions: Vec<Motion<D>>,
+    /// The inverse of their matrix.
+    inverse: Vec<f64>,
+}
+
+/// The motions of the whole that are free in an iteration.
+#[derive(Debug, Default)]
+pub(crate) struct Rigid<const D: usize> {
+    /// The nodes of each piece; none: not asked for yet.
+    nodes: Vec<Vec<usize>>,
+    pieces: Vec<Piece<D>>,
+    /// The forces that rounding of positions makes, over the loads; zero where that is not of interest.
+    pub(super) conditioning: f64,
+}
+
+/// ω × r.
+fn cross<const D: usize>(rotation: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
+    let mut out = [0.0; D];
+    if D == 2 {
+        out[0] = -rotation[2] * arm[1];
+        out[1] = rotation[2] * arm[0];
+    } else {
+        for d in 0..D {
+            let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+            out[d] = rotation[e] * arm[f] - rotation[f] * arm[e];
+        }
+    }
+    out
+}
+
+impl<const D: usize> Motion<D> {
+    const NONE: Motion<D> = Motion { translation: [0.0; D], rotation: [0.0; 3] };
+
+    /// What it moves a node by that is so far from the centre.
+    fn way(&self, arm: &[f64; D]) -> [f64; D] {
+        let turned = cross(&self.rotation, arm);
+        core::array::from_fn(|d| self.translation[d] + turned[d])
+    }
+    /// The same of a finite turn: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in place, and
+    /// straight on along that.
+    fn finite_way(&self, arm: &[f64; D]) -> [f64; D] {
+        let (way, turn) = (self.way(arm), &self.rotation);
+        let again = cross(turn, &way);
+        let square: f64 = turn.iter().map(|w| w * w).sum();
+        let along: f64 = if D == 2 { 0.0 } else { (0..D).map(|d| turn[d] * self.translation[d]).sum() };
+        let alpha = 1.0 / (1.0 + 0.25 * square);
+        core::array::from_fn(|d| {
+            let screw = if D == 2 { 0.0 } else { 0.25 * along * turn[d] };
+            alpha * (way[d] + 0.5 * again[d] + screw)
+        })
+    }
+    fn add(&mut self, share: f64, other: &Motion<D>) {
+        for d in 0..D {
+            self.translation[d] += share * other.translation[d];
+        }
+        for (own, w) in self.rotation.iter_mut().zip(&other.rotation) {
+            *own += share * w;
+        }
+    }
+    fn sum(motions: &[Motion<D>], shares: &[f64]) -> Motion<D> {
+        let mut out = Motion::NONE;
+        for (motion, share) in motions.iter().zip(shares) {
+            out.add(*share, motion);
+        }
+        out
+    }
+}
+
+/// A sum that loses nothing but its last digit (Neumaier 1974).
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    sum: f64,
+    lost: f64,
+}
+
+impl Sum {
+    fn add(&mut self, x: f64) {
+        let next = self.sum + x;
+        self.lost += if self.sum.abs() >= x.abs() { (self.sum - next) + x } else { (x - next) + self.sum };
+        self.sum = next;
+    }
+    fn value(self) -> f64 {
+        self.sum + self.lost
+    }
+}
+
+/// Where a node is, from the centre of its piece.
+fn arm<const D: usize>(x0: &[f64], u: &[f64], node: usize, center: &[f64; D]) -> [f64; D] {
+    core::array::from_fn(|d| x0[node * D + d] + u[node * D + d] - center[d])
+}
+
+fn along<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    (0..D).map(|d| a[d] * b[d]).sum()
+}
+
+/// What a stage needs to know to find the motions of the whole.
+pub(super) struct Stage<'a, const D: usize> {
+    pub(super) mixture: Mixture<'a, D>,
+    pub(super) x0: &'a [f64],
+    pub(super) u: &'a [f64],
+    pub(super) filter: Filter<'a, D>,
+}
+
+impl<const D: usize> Rigid<D> {
+    /// Forgets the pieces of an earlier step.
+    pub(super) fn begin(&mut self) {
+        self.nodes.clear();
+        self.conditioning = 0.0;
+    }
+
+    /// Finds the motions of every piece that nothing holds, and their matrix; after the forces were evaluated.
+    pub(super) fn find(&mut self, stage: &Stage<'_, D>) {
+        let Stage { mixture, x0, u, filter } = stage;
+        if self.nodes.is_empty() {
+            self.nodes = pieces(mixture.system);
+        }
+        self.pieces.clear();
+        let mut ways = vec![[0.0; D]; mixture.mass.len() * MOST];
+        let mut owner = vec![0; mixture.mass.len()];
+        for (number, nodes) in self.nodes.iter().enumerate() {
+            let piece = Piece::free(nodes, mixture, x0, u, filter);
+            for node in nodes {
+                owner[*node] = number;
+                for (p, motion) in piece.motions.iter().enumerate() {
+                    let way = motion.way(&arm(x0, u, *node, &piece.center));
+                    ways[node * MOST + p] =
+                        if filter.free[*node] { way } else { times(&filter.projectors[*node], &way) };
+                }
+            }
+            self.pieces.push(piece);
+        }
+        let mut sink = Resistance {
+            factor: 1.0,
+            owner: &owner,
+            ways: &ways,
+            of: vec![[[[0.0; 2]; MOST]; MOST]; self.pieces.len()],
+        };
+        mixture.system.hessian(mixture.stage, mixture.time, Definiteness::Exact, &mut sink);
+        if mixture.beta != 0.0 {
+            sink.factor = mixture.beta;
+            mixture.system.damping_matrix(mixture.stage, mixture.time, &mut sink);
+        }
+        for (piece, resistance) in self.pieces.iter_mut().zip(&sink.of) {
+            let n = piece.motions.len();
+            let mut matrix = vec![0.0; n * n];
+            for p in 0..n {
+                for q in 0..n {
+                    let [found, parts] = resistance[p][q];
+                    let found = if found.abs() > NO_RESISTANCE * parts { found } else { 0.0 };
+                    matrix[p * n + q] = found + if p == q { mixture.sigma } else { 0.0 };
+                }
+            }
+            piece.inverse = inverse(&matrix, n).unwrap_or_else(|| {
+                (0..n * n).map(|k| if k / n == k % n { 1.0 / mixture.sigma } else { 0.0 }).collect()
+            });
+        }
+    }
+
+    /// φᵀ f of forces in the free directions, piece by piece.
+    pub(super) fn sums(&self, x0: &[f64], u: &[f64], force: &[f64]) -> Vec<f64> {
+        let mut out = Vec::new();
+        for (piece, nodes) in self.pieces.iter().zip(&self.nodes) {
+            for motion in &piece.motions {
+                let mut sum = Sum::default();
+                for node in nodes {
+                    let way = motion.way(&arm(x0, u, *node, &piece.center));
+                    (0..D).for_each(|d| sum.add(way[d] * force[node * D + d]));
+                }
+                out.push(sum.value());
+            }
+        }
+        out
+    }
+
+    /// The shares of the motions that forces lead to.
+    pub(super) fn shares(&self, sums: &[f64]) -> Vec<f64> {
+        let (mut out, mut first) = (Vec::new(), 0);
+        for piece in &self.pieces {
+            let n = piece.motions.len();
+            for p in 0..n {
+                out.push((0..n).map(|q| piece.inverse[p * n + q] * sums[first + q]).sum());
+            }
+            first += n;
+        }
+        out
+    }
+
+    /// The motion of every piece by the shares of its motions.
+    fn motions(&self, shares: &[f64]) -> Vec<Motion<D>> {
+        let mut first = 0;
+        let motion = |piece: &Piece<D>| {
+            let n = piece.motions.len();
+            first += n;
+            Motion::sum(&piece.motions, &shares[first - n..first])
+        };
+        self.pieces.iter().map(motion).collect()
+    }
+
+    /// The finite ways of all nodes by shares of the motions.
+    pub(super) fn finite_ways(&self, x0: &[f64], u: &[f64], shares: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for ((motion, piece), nodes) in self.motions(shares).iter().zip(&self.pieces).zip(&self.nodes) {
+            for node in nodes {
+                let way = motion.finite_way(&arm(x0, u, *node, &piece.center));
+                out[node * D..][..D].copy_from_slice(&way);
+            }
+        }
+    }
+
+    /// Puts motions of the whole that balance the forces in `right` in place of those that a direction was found with.
+    pub(super) fn correct(&mut self, stage: &Stage<'_, D>, right: &[f64], step: &mut [f64]) {
+        self.find(stage);
+        let Stage { mixture, x0, u, filter } = stage;
+        let moved = momenta::<D>(mixture.mass, mixture.system.inertia.as_ref(), step);
+        let there = self.sums(x0, u, &moved);
+        let wanted = self.shares(&self.sums(x0, u, right));
+        let missing: Vec<f64> = wanted.iter().zip(&there).map(|(wanted, there)| wanted - there).collect();
+        for ((motion, piece), nodes) in self.motions(&missing).iter().zip(&self.pieces).zip(&self.nodes) {
+            for node in nodes {
+                let way = motion.way(&arm(x0, u, *node, &piece.center));
+                let way = if filter.free[*node] { way } else { times(&filter.projectors[*node], &way) };
+                (0..D).for_each(|d| step[node * D + d] += way[d]);
+            }
+        }
+    }
+}
+
+/// M s.
+fn momenta<const D: usize>(mass: &[f64], inertia: Option<&Inertia>, s: &[f64]) -> Vec<f64> {
+    let mut out: Vec<f64> = s.iter().enumerate().map(|(k, s)| mass[k / D] * s).collect();
+    if let Some(inertia) = inertia {
+        for node in 0..mass.len() {
+            let coupled = inertia.product::<D>(node, s);
+            (0..D).for_each(|d| out[node * D + d] += coupled[d]);
+        }
+    }
+    out
+}
+
+impl<const D: usize> Piece<D> {
+    /// The motions of some nodes that nothing holds, orthonormal in the masses.
+    fn free(nodes: &[usize], mixture: &Mixture<D>, x0: &[f64], u: &[f64], filter: &Filter<D>) -> Piece<D> {
+        let mass = mixture.mass;
+        let total: f64 = nodes.iter().map(|node| mass[*node]).sum();
+        // From a node on, so that nothing is lost far from the origin.
+        let first: [f64; D] = arm(x0, u, nodes[0], &[0.0; D]);
+        let mut center = first;
+        let mut spread = 0.0;
+        for node in nodes {
+            let arm = arm(x0, u, *node, &first);
+            (0..D).for_each(|d| center[d] += arm[d] * mass[*node] / total);
+        }
+        for node in nodes {
+            let arm = arm(x0, u, *node, &center);
+            spread += mass[*node] / total * along(&arm, &arm);
+        }
+        let radius = spread.sqrt();
+        let mut all = Vec::new();
+        for d in 0..D {
+            let mut motion = Motion::NONE;
+            motion.translation[d] = 1.0;
+            all.push(motion);
+        }
+        for axis in if D == 2 { 2..3 } else { 0..3 } {
+            let mut motion = Motion::NONE;
+            motion.rotation[axis] = 1.0 / radius;
+            all.push(motion);
+        }
+        if !(radius > 0.0 && radius.is_finite()) {
+            all.truncate(D);
+        }
+        let arms = |node: usize| arm(x0, u, node, &center);
+        let kept = unheld(&all, nodes, filter, arms);
+        // Gram and Schmidt in the masses; a turn about the line on which all nodes lie moves nothing.
+        let mut motions: Vec<Motion<D>> = Vec::new();
+        let inertia = mixture.system.inertia.as_ref();
+        let product = |a: &Motion<D>, b: &Motion<D>| {
+            let mut sum = Sum::default();
+            for node in nodes {
+                let (way, mut moved) = (a.way(&arms(*node)), b.way(&arms(*node)).map(|way| mass[*node] * way));
+                for (other, mass) in inertia.iter().flat_map(|inertia| inertia.row(*node)) {
+                    let beside = b.way(&arms(other));
+                    (0..D).for_each(|d| moved[d] += mass * beside[d]);
+                }
+                (0..D).for_each(|d| sum.add(way[d] * moved[d]));
+            }
+            sum.value()
+        };
+        for mut motion in kept {
+            for _ in 0..2 {
+                for known in &motions {
+                    let share = product(known, &motion);
+                    motion.add(-share, known);
+                }
+            }
+            let size = product(&motion, &motion);
+            if size > 1e-12 * total {
+                let mut unit = Motion::NONE;
+                unit.add(1.0 / size.sqrt(), &motion);
+                motions.push(unit);
+            }
+        }
+        Piece { center, motions, inverse: Vec::new() }
+    }
+}
+
+/// The sums of motions that move no node along what holds it.
+fn unheld<const D: usize>(
+    all: &[Motion<D>],
+    nodes: &[usize],
+    filter: &Filter<D>,
+    arm: impl Fn(usize) -> [f64; D],
+) -> Vec<Motion<D>> {
+    let n = all.len();
+    // What each held direction makes of the motions, orthonormal: at most as many rows as motions.
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let reduced = |row: &[f64], rows: &[Vec<f64>]| {
+        let mut rest = row.to_vec();
+        for _ in 0..2 {
+            for known in rows {
+                let share: f64 = rest.iter().zip(known).map(|(a, b)| a * b).sum();
+                rest.iter_mut().zip(known).for_each(|(r, k)| *r -= share * k);
+            }
+        }
+        let size = rest.iter().map(|x| x * x).sum::<f64>().sqrt();
+        (rest, size)
+    };
+    for node in nodes.iter().filter(|node| !filter.free[**node]) {
+        let ways: Vec<[f64; D]> = all
+            .iter()
+            .map(|motion| {
+                let way = motion.way(&arm(*node));
+                let free = times(&filter.projectors[*node], &way);
+                core::array::from_fn(|d| way[d] - free[d])
+            })
+            .collect();
+        for d in 0..D {
+            let row: Vec<f64> = ways.iter().map(|way| way[d]).collect();
+            let whole = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let (rest, size) = reduced(&row, &rows);
+            if size > SAME && size > SAME * whole && rows.len() < n {
+                rows.push(rest.iter().map(|x| x / size).collect());
+            }
+        }
+    }
+    if rows.is_empty() {
+        return all.to_vec();
+    }
+    // What is left beside the rows, the longest first.
+    let mut out = Vec::new();
+    while rows.len() < n {
+        let mut best: (Vec<f64>, f64) = (Vec::new(), 0.0);
+        for k in 0..n {
+            let mut unit = vec![0.0; n];
+            unit[k] = 1.0;
+            let (rest, size) = reduced(&unit, &rows);
+            if size > best.1 {
+                best = (rest, size);
+            }
+        }
+        if best.1 == 0.0 {
+            break;
+        }
+        let unit: Vec<f64> = best.0.iter().map(|x| x / best.1).collect();
+        out.push(Motion::sum(all, &unit));
+        rows.push(unit);
+    }
+    out
+}
+
+/// Adds up φᵀ K φ of every piece, and the sizes of its parts.
+struct Resistance<'a, const D: usize> {
+    factor: f64,
+    owner: &'a [usize],
+    ways: &'a [[f64; D]],
+    of: Vec<[[[f64; 2]; MOST]; MOST]>,
+}
+
+impl<const D: usize> Sink<D> for Resistance<'_, D> {
+    fn block(&mut self, a: usize, b: usize, value: Block<D>) {
+        let out = &mut self.of[self.owner[a]];
+        for q in 0..MOST {
+            let way = &self.ways[b * MOST + q];
+            let pulled = times(&value, way);
+            let most: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| (value[i][j] * way[j]).abs()).sum());
+            for p in 0..MOST {
+                let way = &self.ways[a * MOST + p];
+                out[p][q][0] += self.factor * along(way, &pulled);
+                out[p][q][1] += self.factor * (0..D).map(|i| way[i].abs() * most[i]).sum::<f64>();
+            }
+        }
+    }
+    fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]) {
+        let Some((first, _)) = u.first() else { return };
+        let out = &mut self.of[self.owner[*first]];
+        let (mut sums, mut sizes) = ([0.0; MOST], [0.0; MOST]);
+        for (place, entry) in u {
+            for p in 0..MOST {
+                let part = along(entry, &self.ways[place * MOST + p]);
+                sums[p] += part;
+                sizes[p] += part.abs();
+            }
+        }
+        for p in 0..MOST {
+            for q in 0..MOST {
+                out[p][q][0] += self.factor * c * sums[p] * sums[q];
+                out[p][q][1] += self.factor * (c * sizes[p] * sizes[q]).abs();
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Whether what an iteration ended with balances a body as a whole, and how it is made to (`rigid`).
+
+use super::linear::{Filter, Linear, Mixture};
+use super::newton::{Balance, evaluate, longest, mixture};
+use super::rigid::{Rigid, Stage};
+use super::room::Room;
+use super::rounding::{at_rounding, roundings_of, take_residual};
+use super::settings::Settings;
+use opruga_core::error::StepError;
+use opruga_core::potential::Definiteness;
+use opruga_core::system::System;
+use opruga_math::Lane;
+
+/// The rounding of a number as a part of itself.
+const EPSILON: f64 = 0.5 * f64::EPSILON;
+
+/// A solution with a matrix whose stiffness is q times its mass knows the motions of the whole to about q ε of themselves. Above this they
+/// are solved for apart. Larger, and a fall by a rule's closed form is off by as much in every step that the iteration ends with
+/// (`tests/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
+const UNSURE: f64 = 1e-6;
+
+/// How often the whole is moved at most; two are enough but where turns are large.
+const MOST_MOVES: usize = 8;
+
+/// By how much a matrix is stiffer than its masses at most.
+fn contrast<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> f64 {
+    let mut most: f64 = 0.0;
+    for (node, mass) in mixture.mass.iter().enumerate() {
+        most = (linear.size_at(mixture, node) / (mixture.sigma * mass)).larger(most);
+    }
+    most
+}
+
+/// Whether a solution with a matrix says too little of the motions of the whole.
+pub(super) fn is_unsure<const D: usize>(linear: &Linear<D>, mixture: &Mixture<D>) -> bool {
+    mixture.sigma != 0.0 && EPSILON * contrast(linear, mixture) > UNSURE
+}
+
+/// Whether what Newton's method ended with may count, as far as the motions of the whole go: where these may be lost, by a matrix that
+/// knows them too little or in what was taken for rounding, they are balanced first. With the size of coordinates [m].
+pub(super) fn accepts<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+    by_rounding: bool,
+) -> Result<bool, StepError> {
+    if balance.sigma == 0.0 {
+        return Ok(true);
+    }
+    let goal = settings.tolerance * room.extent;
+    let stiff = {
+        let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+        contrast(&room.linear, &mixture)
+    };
+    // How far what counts as rounding on every node would move the whole.
+    let hidden = by_rounding && roundings_of(stiff, size) > goal;
+    if !hidden && EPSILON * stiff <= UNSURE {
+        return Ok(true);
+    }
+    let Some(moved) = balance_whole(system, room, balance, settings, size, 0.0)? else { return Ok(false) };
+    Ok(moved <= goal || at_rounding(system, room, balance, settings, size))
+}
+
+/// Moves the pieces of a body until what is out of balance as a whole does not halve any more, which is its rounding; those that would
+/// not move by more than `least` [m] stay. Gives how far they went [m]; none where nothing brought them nearer to a balance.
+pub(super) fn balance_whole<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+    least: f64,
+) -> Result<Option<f64>, StepError> {
+    let mut rigid = core::mem::take(&mut room.rigid);
+    let outcome = balance_with(&mut rigid, system, room, balance, settings, size, least);
+    room.rigid = rigid;
+    outcome
+}
+
+fn balance_with<const D: usize>(
+    rigid: &mut Rigid<D>,
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+    least: f64,
+) -> Result<Option<f64>, StepError> {
+    rigid.find(&Stage {
+        mixture: mixture(system, &room.mass, balance, Definiteness::Exact, settings),
+        x0: &room.x0,
+        u: &room.u,
+        filter: Filter { free: &room.free, projectors: &room.projectors },
+    });
+    take_residual(room);
+    let mut left = rigid.sums(&room.x0, &room.u, &room.right);
+    let mut moved: f64 = 0.0;
+    for _ in 0..MOST_MOVES {
+        let shares: Vec<f64> = rigid.shares(&left).iter().map(|share| -share).collect();
+        rigid.finite_ways(&room.x0, &room.u, &shares, &mut room.step);
+        Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
+        let way = longest(&room.step, D);
+        // A part of the last digit of positions is no way.
+        if !(way > (1e-3 * EPSILON * size).larger(least)) {
+            break;
+        }
+        room.trial.copy_from_slice(&room.u);
+        for (u, step) in room.u.iter_mut().zip(&room.step) {
+            *u += step;
+        }
+        evaluate(system, room, balance, false)?;
+        take_residual(room);
+        let next = rigid.sums(&room.x0, &room.u, &room.right);
+        let [before, now] = [&left, &next].map(|sums| sums.iter().map(|x| x * x).sum::<f64>());
+        if !(now < before) {
+            room.u.copy_from_slice(&room.trial);
+            evaluate(system, room, balance, false)?;
+            if moved == 0.0 && way > (EPSILON * size).larger(least) {
+                return Ok(None);
+            }
+            break;
+        }
+        moved += way;
+        left = next;
+        if now > 0.25 * before {
+            break;
+        }
+    }
+    note(rigid, system, room, balance, settings, size);
+    Ok(Some(moved))
+}
+
+/// Notes the forces that rounding of positions makes over the loads, or over what holds a body together that turns.
+fn note<const D: usize>(
+    rigid: &mut Rigid<D>,
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) {
+    system.outer_forces(Room::<D>::STAGE, balance.time, &mut room.outer);
+    let mut mean = [0.0; D];
+    let total: f64 = room.mass.iter().sum();
+    for (node, mass) in room.mass.iter().enumerate() {
+        (0..D).for_each(|d| mean[d] += mass / total * room.v0[node * D + d]);
+    }
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    let (mut rounding, mut load): (f64, f64) = (0.0, 0.0);
+    for (node, mass) in room.mass.iter().enumerate() {
+        rounding = (EPSILON * size * room.linear.size_at(&mixture, node) / D as f64).larger(rounding);
+        let force: f64 = room.outer.at(node).iter().map(|f| f * f).sum();
+        load = force.sqrt().larger(load);
+        let apart = |d: usize| room.v0[node * D + d] - mean[d];
+        let square: f64 = (0..D).map(|d| apart(d) * apart(d)).sum();
+        load = (mass * square / room.extent).larger(load);
+    }
+    if load > 0.0 {
+        rigid.conditioning = rounding / load;
+    }
+}
+
+/// The same for the real-time setting: a body whose forces were as small as nothing, or whose matrix says too little. Gives whether the
+/// whole is in balance.
+pub(super) fn settles<const D: usize>(
+    system: &mut System<D>,
+    room: &mut Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    [nothing, little]: [f64; 2],
+) -> Result<bool, StepError> {
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    let stiff = contrast(&room.linear, &mixture);
+    if EPSILON * stiff <= UNSURE && nothing * stiff <= little {
+        return Ok(true);
+    }
+    let size = room.x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));
+    Ok(balance_whole(system, room, balance, settings, size, 0.0)?.is_some())
+}
