@@ -48,7 +48,7 @@ impl From<&WorldError> for SceneError {
             WorldError::NotConverged { body, message, hint } => {
                 let said = split(say(format!("body `{body}`: {message}")));
                 let message = format!("{}; the world is at its last good frame", said.message);
-                SceneError { message, hint: Some((*hint).into()), ..said }
+                SceneError { message, hint: Some(hint.clone()), ..said }
             }
             WorldError::Step { body, message } => {
                 let said = split(say(format!("body `{body}`: {message}")));

@@ -82,7 +82,7 @@ pub enum WorldError {
         /// What the integrator says.
         message: String,
         /// What helps under the settings of the integrator.
-        hint: &'static str,
+        hint: String,
     },
     /// The frame was broken off from outside ([`crate::Options::break_off`]).
     #[error("the frame was broken off; the world is at its last good frame")]

@@ -32,7 +32,7 @@
 
 mod arc;
 pub(crate) mod pieces;
-mod restraint;
+pub(crate) mod restraint;
 pub mod rigid;
 mod slack;
 #[cfg(test)]
@@ -192,7 +192,9 @@ impl Equilibrium {
             }
             StepError::NotConverged { beyond, hint, .. } => {
                 *beyond = from.map(|from| format!("{} of the load", number(from.load)));
-                *hint = helps;
+                if hint == self.settings.hint() {
+                    *hint = helps.into();
+                }
             }
             _ => {}
         }

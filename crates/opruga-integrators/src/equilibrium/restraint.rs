@@ -10,8 +10,9 @@
 //! holds the body. In some poses a dead load has no second-order work though it has some in others (a pendulum that stands
 //! out sideways), so the body is looked at in several.
 
-use super::rigid::{Motion, Projection, center, displacement, of_weights, shape_at, unpinned_motions};
-use opruga_core::potential::{Account, Definiteness};
+use super::pieces::whole;
+use super::rigid::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
+use opruga_core::potential::{Account, Definiteness, Sink};
 use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_core::tile::Tile;
@@ -44,10 +45,11 @@ pub(super) fn free_motions<const D: usize>(
     let center = center(x, piece);
     // The others and the weight, which may hold what only turns.
     let mut restraint = Restraint::new(&free, piece, center);
-    let times = if outer(system).next().is_some() { &TIMES[..] } else { &TIMES[..1] };
+    let outer = outer(system);
+    let times = if outer.is_empty() { &TIMES[..1] } else { &TIMES[..] };
     for x in poses(x, piece, &free, &center) {
         for time in times {
-            restraint.add(system, &x, Source::Dead, system.time + time);
+            restraint.add(system, &x, Source::Dead(&outer), system.time + time);
         }
     }
     restraint.left()
@@ -73,16 +75,129 @@ pub(super) fn unstiffened_motions<const D: usize>(
     free
 }
 
-/// The loads.
-fn outer<const D: usize>(system: &System<D>) -> impl Iterator<Item = &Member<D>> {
-    system.members.iter().filter(|member| member.potential.account() == Account::User)
+/// What acts from outside, by what it does and not by the account on which it is entered: loads, and every model that ties nodes to
+/// space.
+pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
+    let acts = |member: &&Member<D>| member.potential.account() == Account::User || ties_to_space(system, member);
+    system.members.iter().filter(acts).collect()
+}
+
+/// The stiffness of a model against motions of the whole below which it has none, as a part of its largest; forces of a body that was
+/// turned, and those that were turned with it, are the same if they differ by less than this part.
+const NO_TIE: f64 = 1e-9;
+const ALIKE: f64 = 1e-6;
+
+/// Whether a model resists motions of a body as a whole: forces between nodes do not, since they move and turn with these. A turn is
+/// looked at twice: the forces of a linear law do not follow a large one, and derivatives that leave something out resist a small one.
+fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
+    if !member.potential.views().hessian {
+        return false;
+    }
+    let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
+    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
+    let Some(scratch) = prepared(system, member, &view) else { return false };
+    let all = whole(system);
+    let (motions, center) = (all_motions(x, &all), center(x, &all));
+    let shapes: Vec<Vec<f64>> = motions.iter().map(|motion| shape_at(x, system.nodes, &all, motion, &center)).collect();
+    let mut projection = Projection::of(&shapes);
+    member.potential.hessian(&view, &scratch, Definiteness::Exact, &mut projection);
+    if projection.largest == 0.0 {
+        return false;
+    }
+    let mut force = vec![[0.0; D]; system.nodes];
+    add_forces_of(system, member, &scratch, &view, &mut force);
+    motions.iter().enumerate().any(|(p, motion)| {
+        let mut found = projection.out[p * motions.len() + p];
+        for (node, force) in force.iter().enumerate() {
+            let turned = turned(motion, force);
+            found += (0..D).map(|d| shapes[p][node * D + d] * turned[d]).sum::<f64>();
+        }
+        found.abs() > NO_TIE * projection.largest && (!motion.turns() || is_left_behind(system, member, motion, &force))
+    })
+}
+
+/// Whether a model only pushes nodes against one another, at rest and in motion: then its forces and their moments sum to zero over a
+/// body, since its energy does not change where that moves or turns as a whole.
+pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
+    if member.potential.account() == Account::User || !member.potential.views().hessian || ties_to_space(system, member)
+    {
+        return false;
+    }
+    let (x, rest) = (&system.state.x, Columns::zeros(system.places()));
+    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
+    let Some(scratch) = prepared(system, member, &view) else { return false };
+    let all = whole(system);
+    let center = center(x, &all);
+    let shape = |motion: &Motion<D>| shape_at(x, system.nodes, &all, motion, &center);
+    let shapes: Vec<Vec<f64>> = all_motions(x, &all).iter().map(shape).collect();
+    let mut stiffness = Projection::of(&shapes);
+    member.potential.hessian(&view, &scratch, Definiteness::Exact, &mut stiffness);
+    let mut damping = Projection::of(&shapes);
+    if member.potential.views().damping {
+        member.potential.damping_matrix(&view, &scratch, &mut damping);
+    }
+    let brakes = |p: usize| damping.out[p * (shapes.len() + 1)].abs() > NO_TIE * damping.largest;
+    let mut force = vec![[0.0; D]; system.nodes];
+    add_forces_of(system, member, &scratch, &view, &mut force);
+    let pushes = |d: usize| {
+        let (sum, sizes) = force.iter().fold((0.0, 0.0), |(sum, sizes), f| (sum + f[d], sizes + f[d].abs()));
+        f64::abs(sum) > NO_TIE * sizes
+    };
+    // What does not change with positions knows no places of nodes.
+    stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
+}
+
+/// Whether the forces of a model do not turn with a body that is turned by a motion.
+fn is_left_behind<const D: usize>(
+    system: &System<D>,
+    member: &Member<D>,
+    motion: &Motion<D>,
+    force: &[[f64; D]],
+) -> bool {
+    let (all, rest) = (whole(system), Columns::zeros(system.places()));
+    let x = pose(&system.state.x, &all, motion, &center(&system.state.x, &all));
+    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
+    let Some(scratch) = prepared(system, member, &view) else { return false };
+    let mut there = vec![[0.0; D]; system.nodes];
+    add_forces_of(system, member, &scratch, &view, &mut there);
+    let speed = motion.rotation.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let unit = Motion { translation: [0.0; D], rotation: motion.rotation.iter().map(|r| r / speed).collect() };
+    let (mut apart, mut size) = (0.0, 0.0);
+    for (force, there) in force.iter().zip(&there) {
+        let first = turned(&unit, force);
+        let second = turned(&unit, &first);
+        for d in 0..D {
+            let carried = force[d] + SINE * first[d] + (1.0 - COSINE) * second[d];
+            apart += (there[d] - carried).abs();
+            size += there[d].abs() + carried.abs();
+        }
+    }
+    apart > ALIKE * size
+}
+
+/// What a model works out in a state before it is asked; none where it has no meaning there.
+fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>) -> Option<Column> {
+    let mut scratch = Column::zeros(member.potential.scratch_len());
+    member.potential.prepare(system.simd, view, &member.memory, &mut scratch).ok()?;
+    Some(scratch)
+}
+
+/// Delivers the second derivatives of what acts from outside, at rest.
+pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
+    let rest = Columns::zeros(system.places());
+    let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
+    for member in outer(system).into_iter().filter(|member| member.potential.views().hessian) {
+        if let Some(scratch) = prepared(system, member, &view) {
+            member.potential.hessian(&view, &scratch, Definiteness::Exact, sink);
+        }
+    }
 }
 
 /// The forces that are looked at: those of a load if it has a stiffness, or the weight with those of all loads that have none.
 #[derive(Clone, Copy, Debug)]
 enum Source<'a, const D: usize> {
     Stiff(&'a Member<D>),
-    Dead,
+    Dead(&'a [&'a Member<D>]),
 }
 
 /// The sum of PᵀP over poses, times and loads, each P relative to the size of its parts.
@@ -113,23 +228,25 @@ impl<'a, const D: usize> Restraint<'a, D> {
         match source {
             Source::Stiff(member) => {
                 let mut projection = Projection::of(&shapes);
-                member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut projection);
+                let Some(scratch) = prepared(system, member, &view) else { return };
+                member.potential.hessian(&view, &scratch, Definiteness::Exact, &mut projection);
                 if projection.largest == 0.0 {
                     return;
                 }
-                add_forces(system, member, &view, &mut force);
+                add_forces_of(system, member, &scratch, &view, &mut force);
                 part.copy_from_slice(&projection.out);
                 size = projection.largest;
             }
-            Source::Dead => {
+            Source::Dead(outer) => {
                 for (node, force) in force.iter_mut().enumerate() {
                     *force = system.gravity.map(|g| system.mass.at(node) * g);
                 }
-                for member in outer(system) {
+                for member in outer {
                     let mut projection = Projection::of(&shapes);
-                    member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut projection);
+                    let Some(scratch) = prepared(system, member, &view) else { continue };
+                    member.potential.hessian(&view, &scratch, Definiteness::Exact, &mut projection);
                     if projection.largest == 0.0 {
-                        add_forces(system, member, &view, &mut force);
+                        add_forces_of(system, member, &scratch, &view, &mut force);
                     }
                 }
             }
@@ -175,13 +292,8 @@ impl<'a, const D: usize> Restraint<'a, D> {
     }
 }
 
-/// Adds the forces of a load in a state.
-fn add_forces<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>, out: &mut [[f64; D]]) {
-    add_forces_of(system, member, &member.scratch, view, out);
-}
-
 /// Adds the forces of a member in a state for which it has worked out the given numbers.
-pub(super) fn add_forces_of<const D: usize>(
+pub(crate) fn add_forces_of<const D: usize>(
     system: &System<D>,
     member: &Member<D>,
     scratch: &[f64],

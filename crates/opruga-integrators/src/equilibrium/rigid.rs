@@ -1,12 +1,12 @@
 //! The motions of a body as a whole, or of each of its pieces, that nothing holds.
 
 use super::pieces::{pieces, whole};
-use super::restraint::free_motions;
+use super::restraint::{deliver_outer, free_motions};
 use super::slack::endless_turns;
 use opruga_core::error::{BuildError, StepError};
-use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::potential::Sink;
 use opruga_core::state::Columns;
-use opruga_core::system::{Stage, System};
+use opruga_core::system::System;
 use opruga_math::words::number;
 use opruga_solve::blocks::Block;
 use opruga_solve::dense::symmetric_eigen;
@@ -221,7 +221,7 @@ pub(super) fn unpinned_motions<const D: usize>(
 }
 
 /// All motions of a piece: translations, then rotations about its centre, each scaled to a mean displacement of one.
-fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
+pub(super) fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let center = center(x, piece);
     let turns = if D == 2 { 1 } else { 3 };
     let mut size: f64 = 0.0;
@@ -278,7 +278,7 @@ fn loose_motions<const D: usize>(
     }
     if by_stiffness {
         let mut projection = Projection::of(&shapes);
-        system.outer_hessian(Stage::Current, 0.0, Definiteness::Exact, &mut projection);
+        deliver_outer(system, x, &mut projection);
         if projection.largest > 0.0 {
             for (held, strained) in held.iter_mut().zip(&projection.out) {
                 *held += strained / projection.largest;

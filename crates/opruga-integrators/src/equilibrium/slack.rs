@@ -4,11 +4,10 @@
 //! turn is the motion ω × r, straight on: its forces do not change along that way, and what turns the body at its start turns it
 //! without end.
 
-use super::restraint::{TURN, add_forces_of, pose, unstiffened_motions};
+use super::restraint::{TURN, add_forces_of, outer, pose, unstiffened_motions};
 use super::rigid::{Motion, center, shape_at};
-use opruga_core::potential::Account;
 use opruga_core::state::{Columns, View};
-use opruga_core::system::{Stage, System};
+use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;
 
 /// Forces below this part of those of a stretch of the same length are rounding.
@@ -51,7 +50,9 @@ fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<
     let rest = Columns::zeros(system.places());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
     let mut force = vec![[0.0; D]; system.nodes];
-    for member in system.members.iter().filter(|member| member.potential.account() != Account::User) {
+    let outer = outer(system);
+    let own = |member: &&Member<D>| !outer.iter().any(|load| core::ptr::eq(*load, *member));
+    for member in system.members.iter().filter(own) {
         let mut scratch = Column::zeros(member.potential.scratch_len());
         member.potential.prepare(system.simd, &view, &member.memory, &mut scratch).ok()?;
         add_forces_of(system, member, &scratch, &view, &mut force);

@@ -1,7 +1,7 @@
 //! Hanging bars, a truss that snaps, bodies that nothing holds.
 
 use super::{COMPLETE, Equilibrium, LOAD, SPEC};
-use crate::testing::problems::Springs;
+use crate::testing::problems::{Anchors, Springs};
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
@@ -194,4 +194,26 @@ fn what_is_out_of_balance_is_told_of_nodes_that_are_held_along_some_axes_too() {
     };
     // The spring takes as much as its part of the way: along the free axis alone something is left.
     assert!(residual > 1.0 && residual < 5.0 * 9.81, "{residual}");
+}
+
+/// A model of a user's that ties nodes to space holds a body whatever account its energy is entered on; forces between nodes do not.
+#[test]
+fn models_that_tie_nodes_to_space_hold_a_body_by_what_they_do() {
+    let rule = rule(&[]);
+    let triangle = || {
+        body(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.866_025_403_784_438_6]], vec![[0, 1], [1, 2], [2, 0]], 1e6, vec![1.0; 3])
+    };
+    let mut free = triangle();
+    free.equip(&rule);
+    let refused = Integrator::<2>::check(&rule, &free, false).unwrap_err();
+    assert_eq!(refused.code, "static.rigid_modes");
+    let mut tied = triangle();
+    tied.gravity = [0.0, -9.81];
+    tied.add(Box::new(Anchors { stiffness: 100.0, damping: 0.0 }));
+    tied.equip(&rule);
+    Integrator::<2>::check(&rule, &tied, false).unwrap();
+    rule.step(&mut tied, 1.0).unwrap();
+    // Three springs to the origin carry the weight of three nodes, about their mean.
+    let mean = (0..3).map(|node| tied.state.x.at(node)[1]).sum::<f64>() / 3.0;
+    assert!((mean + 9.81 / 100.0).abs() < 1e-9, "{mean}");
 }

@@ -101,6 +101,7 @@ pub(super) fn find_direction<const D: usize>(
         x0,
         extent,
         rigid,
+        y,
         ..
     } = room;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
@@ -122,7 +123,7 @@ pub(super) fn find_direction<const D: usize>(
     let mut products = linear.solve(&mixture, &filter, settings, tolerance, right, step).map_err(|_| 0u32)?;
     filter.apply(step);
     if is_unsure(linear, &mixture) {
-        rigid.correct(&Stage { mixture, x0, u, filter }, right, step);
+        rigid.correct(&Stage { mixture, x0, u, y, filter, contacting }, step);
     }
     let mut slope = -dot(right, step);
     if moves {

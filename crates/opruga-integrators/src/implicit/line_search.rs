@@ -28,6 +28,10 @@ pub(super) enum Stretches {
     UpTo(f64),
 }
 
+/// The rounding of an energy as a part of the terms whose difference it is in its models: of a law that takes the energy at rest away,
+/// a stiff body has more of it than energy.
+const CANCELLATION: f64 = 1e-15;
+
 /// The most halvings, or thereabouts, of a step.
 const MOST_TRIALS: usize = 14;
 
@@ -43,6 +47,7 @@ pub(super) fn line_search<const D: usize>(
     // Damping has no potential; friction and constraints are taken as the forces that they are expected to be.
     let before = if system.is_damped() { None } else { potential(system, room, balance, false) };
     let given = given_along(room);
+    let cancelled = rounding_of_models(system);
     let mut length = 1.0;
     for _ in 0..MOST_TRIALS {
         for k in 0..room.u.len() {
@@ -54,7 +59,7 @@ pub(super) fn line_search<const D: usize>(
         let risen = match before {
             Some((energy, magnitude)) if allowed => {
                 potential(system, room, balance, true).is_none_or(|(after, size)| {
-                    let rounding = ROUNDING * (magnitude + size + (length * given).abs());
+                    let rounding = ROUNDING * (magnitude + size + (length * given).abs()) + cancelled;
                     let risen = after - length * given - energy;
                     risen.is_nan() || risen > rounding
                 })
@@ -141,6 +146,11 @@ fn given_along<const D: usize>(room: &mut Room<D>) -> f64 {
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)
+}
+
+/// The rounding of the energies of the models [J].
+pub(super) fn rounding_of_models<const D: usize>(system: &System<D>) -> f64 {
+    CANCELLATION * system.members.iter().map(|member| member.potential.energy_parts()).sum::<f64>()
 }
 
 /// The incremental potential and the size of its parts [J].

@@ -9,7 +9,7 @@ use super::falling::Falling;
 use super::line_search::{Stretches, line_search, slope_along};
 use super::linear::{Filter, Mixture, is_matrix_free};
 use super::room::Room;
-use super::rounding::{at_rounding, carries, chance, in_doubt, settle, visible};
+use super::rounding::{at_rounding, carries, chance, in_doubt, most_rounding, settle, visible};
 use super::settings::Settings;
 use super::whole;
 use opruga_core::error::StepError;
@@ -51,6 +51,8 @@ pub(crate) struct Solved {
     pub(crate) blur: f64,
     /// The forces that rounding of positions makes, over the loads, where they matter.
     pub(crate) conditioning: f64,
+    /// The rounding of positions [m], the largest of a force [N] and what that would move a node by [m], where it did not converge.
+    pub(crate) floor: [f64; 3],
     /// Whether what is left may have made energy.
     pub(crate) doubtful: bool,
 }
@@ -210,6 +212,9 @@ pub(crate) fn solve<const D: usize>(
             solved.blur = settle(system, room, balance, settings)?;
             break;
         }
+    }
+    if !solved.converged {
+        solved.floor = most_rounding(system, room, balance, settings, size);
     }
     if solved.converged {
         solved.conditioning = room.rigid.conditioning;

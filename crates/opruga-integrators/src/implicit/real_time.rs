@@ -7,7 +7,7 @@
 //! Sizes of what is out of balance are taken in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
 use super::direction::wanted_forces;
-use super::line_search::potential;
+use super::line_search::{potential, rounding_of_models};
 use super::linear::{Filter, Mixture};
 use super::newton::{self, Balance, Solved, evaluate, judge, look};
 use super::room::Room;
@@ -301,7 +301,7 @@ fn has_risen<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance
         Err(_) => None,
     };
     evaluate(system, room, balance, false)?;
-    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts)))
+    Ok(!before.is_some_and(|(before, parts)| after - before <= RISE * (size + parts) + rounding_of_models(system)))
 }
 
 /// Whether what few iterations lead to may count.
@@ -380,8 +380,8 @@ fn iterate<const D: usize>(
                 _ => Trust::IfDownhill,
             };
             // What moves no node against the stiffness of the others may move them all together.
-            let parts = [if size <= floor { NOTHING } else { 0.0 }, LOOSE * LOOSE];
-            let trust = if settles(system, room, balance, settings, parts)? { trust } else { Trust::None };
+            let trust =
+                if settles(system, room, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
             solved.conditioning = room.rigid.conditioning;
             return Ok((solved, trust));
         }

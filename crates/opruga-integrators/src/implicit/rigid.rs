@@ -10,14 +10,17 @@
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
-//! is the motion that balances the piece. K and C are those of the models, as far as they are more than the rounding of their own sum:
-//! whatever ties nodes to space, whoever made it, resists. A piece goes on a circle in a finite turn (Cayley's rotation), which leaves
-//! its shape alone.
+//! is the motion that balances the piece. Models that only push nodes against one another are left out of r and of K: their sums are zero,
+//! but a law rounds its moments as it does its forces. Whatever ties nodes to space, whoever made it, resists, as far as that is more
+//! than rounding. A piece goes on a circle in a finite turn (Cayley's rotation), which leaves its shape alone.
 
+use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
 use crate::equilibrium::pieces::pieces;
+use crate::equilibrium::restraint::{acts_between_nodes, add_forces_of};
 use opruga_core::inertia::Inertia;
 use opruga_core::potential::{Definiteness, Sink};
+use opruga_core::system::{Member, System};
 use opruga_solve::blocks::{Block, times};
 use opruga_solve::dense::inverse;
 
@@ -51,6 +54,8 @@ struct Piece<const D: usize> {
 pub(crate) struct Rigid<const D: usize> {
     /// The nodes of each piece; none: not asked for yet.
     nodes: Vec<Vec<usize>>,
+    /// The models that only push nodes against one another.
+    inner: Vec<usize>,
     pieces: Vec<Piece<D>>,
     /// The forces that rounding of positions makes, over the loads; zero where that is not of interest.
     pub(super) conditioning: f64,
@@ -141,7 +146,9 @@ pub(super) struct Stage<'a, const D: usize> {
     pub(super) mixture: Mixture<'a, D>,
     pub(super) x0: &'a [f64],
     pub(super) u: &'a [f64],
+    pub(super) y: &'a [f64],
     pub(super) filter: Filter<'a, D>,
+    pub(super) contacting: &'a Contacting<D>,
 }
 
 impl<const D: usize> Rigid<D> {
@@ -153,9 +160,14 @@ impl<const D: usize> Rigid<D> {
 
     /// Finds the motions of every piece that nothing holds, and their matrix; after the forces were evaluated.
     pub(super) fn find(&mut self, stage: &Stage<'_, D>) {
-        let Stage { mixture, x0, u, filter } = stage;
+        let Stage { mixture, x0, u, filter, .. } = stage;
         if self.nodes.is_empty() {
-            self.nodes = pieces(mixture.system);
+            let system = mixture.system;
+            self.nodes = pieces(system);
+            self.inner.clear();
+            self.inner.extend(
+                (0..system.members.len()).filter(|number| acts_between_nodes(system, &system.members[*number])),
+            );
         }
         self.pieces.clear();
         let mut ways = vec![[0.0; D]; mixture.mass.len() * MOST];
@@ -178,10 +190,16 @@ impl<const D: usize> Rigid<D> {
             ways: &ways,
             of: vec![[[[0.0; 2]; MOST]; MOST]; self.pieces.len()],
         };
-        mixture.system.hessian(mixture.stage, mixture.time, Definiteness::Exact, &mut sink);
-        if mixture.beta != 0.0 {
-            sink.factor = mixture.beta;
-            mixture.system.damping_matrix(mixture.stage, mixture.time, &mut sink);
+        let (system, view) = (mixture.system, mixture.system.view(mixture.stage, mixture.system.time + mixture.time));
+        for (_, member) in self.outer(system) {
+            if member.potential.views().hessian {
+                sink.factor = 1.0;
+                member.potential.hessian(&view, &member.scratch, Definiteness::Exact, &mut sink);
+            }
+            if member.potential.views().damping && mixture.beta != 0.0 {
+                sink.factor = mixture.beta;
+                member.potential.damping_matrix(&view, &member.scratch, &mut sink);
+            }
         }
         for (piece, resistance) in self.pieces.iter_mut().zip(&sink.of) {
             let n = piece.motions.len();
@@ -197,6 +215,34 @@ impl<const D: usize> Rigid<D> {
                 (0..n * n).map(|k| if k / n == k % n { 1.0 / mixture.sigma } else { 0.0 }).collect()
             });
         }
+    }
+
+    /// What is out of balance in the free directions but for the forces between nodes: inertia, the weight, friction and all models that
+    /// act from outside. It is added up without those forces, in whose rounding it may be lost.
+    pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
+        let Stage { mixture, u, y, filter, contacting, .. } = stage;
+        let system = mixture.system;
+        let way: Vec<f64> = u.iter().zip(*y).map(|(u, y)| u - y).collect();
+        let mut out = momenta::<D>(mixture.mass, system.inertia.as_ref(), &way);
+        let view = system.view(mixture.stage, system.time + mixture.time);
+        let mut force = vec![[0.0; D]; mixture.mass.len()];
+        for (node, force) in force.iter_mut().enumerate() {
+            *force = system.gravity.map(|g| system.weighing().at(node) * g);
+        }
+        for (_, member) in self.outer(system) {
+            add_forces_of(system, member, &member.scratch, &view, &mut force);
+        }
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = mixture.sigma * *out - force[k / D][k % D];
+        }
+        contacting.subtract_friction(&mut out);
+        filter.apply(&mut out);
+        out
+    }
+
+    /// The models that act from outside.
+    fn outer<'a>(&'a self, system: &'a System<D>) -> impl Iterator<Item = (usize, &'a Member<D>)> {
+        system.members.iter().enumerate().filter(|(number, _)| !self.inner.contains(number))
     }
 
     /// φᵀ f of forces in the free directions, piece by piece.
@@ -250,17 +296,21 @@ impl<const D: usize> Rigid<D> {
         }
     }
 
-    /// Puts motions of the whole that balance the forces in `right` in place of those that a direction was found with.
-    pub(super) fn correct(&mut self, stage: &Stage<'_, D>, right: &[f64], step: &mut [f64]) {
+    /// Puts motions of the whole that balance the body in place of those that a direction was found with.
+    pub(super) fn correct(&mut self, stage: &Stage<'_, D>, step: &mut [f64]) {
         self.find(stage);
-        let Stage { mixture, x0, u, filter } = stage;
+        let Stage { mixture, x0, u, filter, .. } = stage;
         let moved = momenta::<D>(mixture.mass, mixture.system.inertia.as_ref(), step);
         let there = self.sums(x0, u, &moved);
-        let wanted = self.shares(&self.sums(x0, u, right));
-        let missing: Vec<f64> = wanted.iter().zip(&there).map(|(wanted, there)| wanted - there).collect();
-        for ((motion, piece), nodes) in self.motions(&missing).iter().zip(&self.pieces).zip(&self.nodes) {
+        let wanted: Vec<f64> =
+            self.shares(&self.sums(x0, u, &self.residual(stage))).iter().map(|share| -share).collect();
+        // What there is of them goes, and what is wanted comes as a finite turn: along a straight way a stiff body resists its stretch.
+        let motions = self.motions(&there).into_iter().zip(self.motions(&wanted));
+        for (((found, wanted), piece), nodes) in motions.zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
-                let way = motion.way(&arm(x0, u, *node, &piece.center));
+                let arm = arm(x0, u, *node, &piece.center);
+                let (from, to) = (found.way(&arm), wanted.finite_way(&arm));
+                let way = core::array::from_fn(|d| to[d] - from[d]);
                 let way = if filter.free[*node] { way } else { times(&filter.projectors[*node], &way) };
                 (0..D).for_each(|d| step[node * D + d] += way[d]);
             }

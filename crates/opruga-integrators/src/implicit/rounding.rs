@@ -131,11 +131,27 @@ pub(super) fn in_doubt<const D: usize>(
     if loads == 0.0 {
         return Doubt::default();
     }
-    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
-    let floors = (0..room.mass.len()).map(|node| floor(&room.linear, &mixture, node, size));
-    let floor = floors.fold(0.0, |most: f64, floor| floor.larger(most));
-    let lost = loads < LOST * floor;
+    let lost = loads < LOST * most_rounding(system, room, balance, settings, size)[1];
     if lost || leaves(room, loads) { Doubt { way, lost } } else { Doubt::default() }
+}
+
+/// The rounding of positions [m], the largest of the force of a node [N] and how far that would move one against its inertia [m], in a body
+/// so far from the origin.
+pub(super) fn most_rounding<const D: usize>(
+    system: &System<D>,
+    room: &Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+    size: f64,
+) -> [f64; 3] {
+    let mixture = mixture(system, &room.mass, balance, Definiteness::Exact, settings);
+    let (mut force, mut way): (f64, f64) = (0.0, 0.0);
+    for (node, mass) in room.mass.iter().enumerate() {
+        let floor = floor(&room.linear, &mixture, node, size);
+        force = floor.larger(force);
+        way = (floor / (balance.sigma * mass)).larger(way);
+    }
+    [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { way }]
 }
 
 /// How far rounding may move a node by the matrix of what was found [m]: forces of about its size, of either sign.
@@ -173,7 +189,7 @@ fn loads<const D: usize>(system: &mut System<D>, room: &mut Room<D>, balance: &B
 }
 
 /// What is out of balance in the free directions, into `room.right`.
-pub(super) fn take_residual<const D: usize>(room: &mut Room<D>) {
+fn take_residual<const D: usize>(room: &mut Room<D>) {
     room.right.copy_from_slice(&room.residual);
     room.contacting.subtract_friction(&mut room.right);
     Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.right);

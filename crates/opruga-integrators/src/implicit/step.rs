@@ -17,6 +17,7 @@ use opruga_core::potential::{Account, Views};
 use opruga_core::spec::Values;
 use opruga_core::system::{Pin, Stage, System, Work8};
 use opruga_core::threads::each_block;
+use opruga_math::words::number;
 use opruga_math::{Lane, WIDTH};
 use opruga_solve::blocks::nodes;
 
@@ -407,17 +408,36 @@ fn refusal<const D: usize>(
     (time, flat_cells): (f64, Option<[usize; 2]>),
     hint: &'static str,
 ) -> StepError {
+    let (residual, tolerance) = (room.largest_residual(), settings.tolerance * room.extent);
+    let [of_positions, of_forces, way] = solved.floor;
+    // Iterations that were too few say nothing of rounding.
+    let is_stuck = solved.iterations < settings.iterations;
+    let is_lost = solved.correction <= LOST * of_positions || residual <= LOST * of_forces || way > room.extent;
+    let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {
         integrator,
         iterations: solved.iterations,
-        residual: room.largest_residual(),
+        residual,
         correction: solved.correction,
-        tolerance: settings.tolerance * room.extent,
+        tolerance,
         time,
         beyond: None,
         flat_cells,
-        hint,
+        hint: if is_rounding { hint_of_rounding(solved.floor) } else { hint.into() },
     }
+}
+
+/// Forces and corrections within so many roundings were lost in these, as is a body that its rounding would throw farther than its extent.
+const LOST: f64 = 10.0;
+
+/// What helps where a step was lost in the rounding of positions and forces.
+fn hint_of_rounding([of_positions, of_forces, _]: [f64; 3]) -> String {
+    format!(
+        "positions have sixteen digits here, which leave {} m and forces of {} N open: a larger `tolerance`, a scene nearer to the \
+         origin, larger cells, or a body that is less stiff",
+        number(of_positions),
+        number(of_forces)
+    )
 }
 
 /// Writes the end of the step into the state.

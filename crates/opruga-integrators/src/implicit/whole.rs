@@ -4,7 +4,7 @@ use super::linear::{Filter, Linear, Mixture};
 use super::newton::{Balance, evaluate, longest, mixture};
 use super::rigid::{Rigid, Stage};
 use super::room::Room;
-use super::rounding::{at_rounding, roundings_of, take_residual};
+use super::rounding::{at_rounding, roundings_of};
 use super::settings::Settings;
 use opruga_core::error::StepError;
 use opruga_core::potential::Definiteness;
@@ -88,14 +88,8 @@ fn balance_with<const D: usize>(
     size: f64,
     least: f64,
 ) -> Result<Option<f64>, StepError> {
-    rigid.find(&Stage {
-        mixture: mixture(system, &room.mass, balance, Definiteness::Exact, settings),
-        x0: &room.x0,
-        u: &room.u,
-        filter: Filter { free: &room.free, projectors: &room.projectors },
-    });
-    take_residual(room);
-    let mut left = rigid.sums(&room.x0, &room.u, &room.right);
+    rigid.find(&stage(system, room, balance, settings));
+    let mut left = sums(rigid, system, room, balance, settings);
     let mut moved: f64 = 0.0;
     for _ in 0..MOST_MOVES {
         let shares: Vec<f64> = rigid.shares(&left).iter().map(|share| -share).collect();
@@ -111,8 +105,7 @@ fn balance_with<const D: usize>(
             *u += step;
         }
         evaluate(system, room, balance, false)?;
-        take_residual(room);
-        let next = rigid.sums(&room.x0, &room.u, &room.right);
+        let next = sums(rigid, system, room, balance, settings);
         let [before, now] = [&left, &next].map(|sums| sums.iter().map(|x| x * x).sum::<f64>());
         if !(now < before) {
             room.u.copy_from_slice(&room.trial);
@@ -130,6 +123,29 @@ fn balance_with<const D: usize>(
     }
     note(rigid, system, room, balance, settings, size);
     Ok(Some(moved))
+}
+
+/// The stage that was evaluated last.
+fn stage<'a, const D: usize>(
+    system: &'a System<D>,
+    room: &'a Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Stage<'a, D> {
+    let Room { mass, x0, u, y, free, projectors, contacting, .. } = room;
+    let mixture = mixture(system, mass, balance, Definiteness::Exact, settings);
+    Stage { mixture, x0, u, y, filter: Filter { free, projectors }, contacting }
+}
+
+/// What is out of balance as a whole in it.
+fn sums<const D: usize>(
+    rigid: &Rigid<D>,
+    system: &System<D>,
+    room: &Room<D>,
+    balance: &Balance,
+    settings: &Settings,
+) -> Vec<f64> {
+    rigid.sums(&room.x0, &room.u, &rigid.residual(&stage(system, room, balance, settings)))
 }
 
 /// Notes the forces that rounding of positions makes over the loads, or over what holds a body together that turns.

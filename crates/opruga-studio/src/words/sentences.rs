@@ -232,6 +232,12 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
         "more substeps, more `iterations`, or `when_not_converged = \"halve\"`",
         "više podkoraka, više `iterations`, ili `when_not_converged = \"halve\"`",
     ),
+    (
+        "positions have sixteen digits here, which leave {} m and forces of {} N open: a larger `tolerance`, a scene nearer to the \
+         origin, larger cells, or a body that is less stiff",
+        "položaji ovdje imaju šesnaest znamenki, koje ostavljaju otvorenim {} m i sile od {} N: veći `tolerance`, prizor bliže \
+         ishodištu, veće ćelije, ili manje kruto tijelo",
+    ),
     ("a shorter `arc_length`, or more `iterations`", "kraći `arc_length`, ili više `iterations`"),
     (
         "more `iterations`; the load was already halved down to 1/256: where a body gives way, `arc_length` follows it through its snap",
@@ -458,6 +464,14 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          položaji imaju šesnaest znamenki, a tijelo je tako vitko, ćelije tako tanke ili ishodište tako daleko da je to ono što \
          one ostavljaju otvorenim; što je u rezultatu manje, slučajno je; savjet: ćelije manje duge prema debljini, ili prizor u \
          ishodištu",
+    ),
+    (
+        "a step of a body so stiff for its mass that rounding of its positions, which have sixteen digits, makes forces of up to {} times \
+         the load of a node: its motion as a whole is balanced apart and is right, its nodes are where they belong but for the last digit of \
+         positions, and its stresses are chance; hint: a scene nearer to the origin, larger cells, or a body that is less stiff",
+        "korak tijela tako krutog za svoju masu da zaokruživanje njegovih položaja, koji imaju šesnaest znamenki, stvara sile do {} puta \
+         veće od tereta čvora: njegovo gibanje kao cjeline uravnoteženo je zasebno i točno je, čvorovi su gdje pripadaju osim zadnje \
+         znamenke položaja, a naprezanja su slučajna; savjet: prizor bliže ishodištu, veće ćelije, ili manje kruto tijelo",
     ),
     (
         "a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of \
