@@ -269,17 +269,27 @@ impl<const D: usize> Part<D> {
     }
 }
 
+/// Vectors shorter than this have lost digits of their direction: squares of their numbers are no normal floating-point numbers.
+const SHORTEST: f64 = 1e-150;
+
 /// Form, parts and centre of a shape.
 type Built<const D: usize> = (Form<D>, Vec<Part<D>>, [f64; D]);
 
 fn half_space<const D: usize>(values: &Values, refuse: &Refusal) -> Result<Built<D>, BuildError> {
     let (point, normal) = (values.vector::<D>("point"), values.vector::<D>("normal"));
-    let size = length(&normal);
-    if !(size > 1e-150 && size.is_finite()) {
-        let message = format!("`normal` is {}; allowed: a vector of a length above 0", refuse.shown("normal"));
+    let mut unit = normal;
+    let mut size = length(&unit);
+    if !size.is_finite() {
+        // The squares of such numbers have no place, their direction has.
+        let most = normal.iter().fold(0.0, |most: f64, n| if n.abs() > most { n.abs() } else { most });
+        unit = normal.map(|n| n / most);
+        size = length(&unit);
+    }
+    if !(size > SHORTEST && size.is_finite()) {
+        let shown = refuse.shown("normal");
+        let message = format!("`normal` is {shown}; allowed: a vector of a length above {SHORTEST:e}");
         return Err(refuse.error("collider.no_direction", message));
     }
-    let mut unit = normal;
     for n in &mut unit {
         *n /= size;
     }

@@ -330,7 +330,7 @@ fn refusals_name_collider_and_value() {
     // A direction of zeros is no value of the field; one whose length is lost has none either.
     let e = refused::<2>(values::<2>("half_space", &[("normal", vector(&[1e-200, 0.0]))]));
     assert_eq!((e.kind.as_str(), e.code), ("collider 1 (half_space)", "collider.no_direction"));
-    assert_eq!(e.message, "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 0");
+    assert_eq!(e.message, "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");
     let e = refused::<2>(values::<2>("box", &[("min", vector(&[0.0, 0.0]))]));
     assert_eq!(e.code, "collider.box_fields");
     let e = refused::<3>(values::<3>("box", &[("min", vector(&[0.0; 3])), ("max", vector(&[1.0, -1.0, 1.0]))]));

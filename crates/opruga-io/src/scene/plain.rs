@@ -98,7 +98,7 @@ impl Reader<'_> {
                 None
             }
             Data::Number(x, _) => Some(*x + 0.0),
-            Data::Integer(..) => self.whole(node, path).map(|x| x as f64),
+            Data::Integer(..) => self.whole_for_real(node, path).map(|x| x as f64),
             _ => self.refuse_type(node, path, range),
         }
     }
@@ -106,13 +106,20 @@ impl Reader<'_> {
     fn integer(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<i64> {
         match &node.data {
             Data::Integer(Some(x), _) if x.abs() <= LARGEST_WHOLE => Some(*x),
-            Data::Integer(..) => self.whole(node, path),
+            // A decimal point would make it another type, and no number of the range.
+            Data::Integer(..) => self.whole(node, path, range.describe(self.dimension), None),
             _ => self.refuse_type(node, path, range),
         }
     }
 
+    /// A whole number where any number may stand.
+    fn whole_for_real(&mut self, node: &Node, path: &str) -> Option<i64> {
+        let allowed = "whole numbers between -9007199254740992 and 9007199254740992 (2^53)".into();
+        self.whole(node, path, allowed, Some("write a larger number with a decimal point"))
+    }
+
     /// A whole number that a 64-bit float holds exactly.
-    fn whole(&mut self, node: &Node, path: &str) -> Option<i64> {
+    fn whole(&mut self, node: &Node, path: &str, allowed: String, hint: Option<&str>) -> Option<i64> {
         match &node.data {
             Data::Integer(Some(x), _) if x.unsigned_abs() <= LARGEST_WHOLE as u64 => Some(*x),
             _ => {
@@ -120,9 +127,8 @@ impl Reader<'_> {
                 let error = SceneError::new("scene.range", format!("`{name}` is {}", node.shown()))
                     .path(path)
                     .value(node.shown())
-                    .allowed("whole numbers between -9007199254740992 and 9007199254740992 (2^53)")
-                    .hint("write a larger number with a decimal point");
-                self.report(node.place, error);
+                    .allowed(allowed);
+                self.report(node.place, SceneError { hint: hint.map(Into::into), ..error });
                 None
             }
         }
@@ -253,7 +259,7 @@ impl Reader<'_> {
     /// The value of a `set` command: any plain value, to be checked against the parameter that it is for.
     pub(crate) fn any_value(&mut self, node: &Node, path: &str) -> Option<Value> {
         match &node.data {
-            Data::Integer(..) => self.whole(node, path).map(Value::Integer),
+            Data::Integer(..) => self.whole_for_real(node, path).map(Value::Integer),
             Data::Number(..) => self.number(node, path, &Allowed::ANY).map(Value::Number),
             Data::Boolean(x) => Some(Value::Boolean(*x)),
             Data::Text(text) => Some(Value::Text(text.clone())),
