@@ -112,6 +112,7 @@ impl Outputs<'_> {
                 loss_damping: e.loss_damping,
                 loss_friction: e.loss_friction,
                 loss_contact: e.loss_contact,
+                loss_numerical: e.loss_numerical,
                 loss_integrator: e.loss_integrator,
                 closure: e.closure,
             },
@@ -240,9 +241,14 @@ impl Outputs<'_> {
             None if self.steps == 0 => ", no steps".into(),
             None => format!(" in {:.2} s", self.wall),
         };
+        let by_the_rule = match e.loss_numerical {
+            0.0 => String::new(),
+            made if made < 0.0 => format!(", {} J made by the damping of its rule", number(-made)),
+            taken => format!(", {} J taken by the damping of its rule", number(taken)),
+        };
         eprintln!(
             "{}: {from}{:.3} s of {}{speed}\n  energy {} J; the ledger closes to {} % of the most that was in motion ({} J {} by the \
-             integrator's error)",
+             integrator's error{})",
             world.blueprint().name,
             world.time(),
             counted(nodes as u64, "node", "nodes"),
@@ -250,6 +256,7 @@ impl Outputs<'_> {
             rounded(100.0 * e.closure, 2),
             number(e.loss_integrator.abs()),
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
+            by_the_rule,
         );
         world
             .warnings_at_the_end()

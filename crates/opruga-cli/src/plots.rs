@@ -36,6 +36,7 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
                 "loss_damping",
                 "loss_friction",
                 "loss_contact",
+                "loss_numerical",
                 "loss_integrator",
             ]),
         ),

@@ -125,7 +125,14 @@ impl Recorder {
         let mut columns: Vec<String> =
             ["time", "kinetic", "elastic", "gas", "gravity", "work_user", "work_gas", "work_correction"]
                 .into_iter()
-                .chain(["loss_damping", "loss_friction", "loss_contact", "loss_integrator", "closure"])
+                .chain([
+                    "loss_damping",
+                    "loss_friction",
+                    "loss_contact",
+                    "loss_numerical",
+                    "loss_integrator",
+                    "closure",
+                ])
                 .map(String::from)
                 .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
@@ -298,6 +305,7 @@ fn row<const D: usize>(world: &mut World<D>, bodies: &[(String, usize)]) -> Vec<
         e.loss_damping,
         e.loss_friction,
         e.loss_contact,
+        e.loss_numerical,
         e.loss_integrator,
         e.closure,
     ];

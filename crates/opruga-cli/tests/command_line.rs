@@ -49,6 +49,7 @@ fn a_run_writes_every_file_and_its_summary_keeps_the_contract() {
         "loss_damping",
         "loss_friction",
         "loss_contact",
+        "loss_numerical",
         "loss_integrator",
         "closure",
     ] {

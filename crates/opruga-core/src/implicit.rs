@@ -51,11 +51,17 @@ impl<const D: usize> System<D> {
     /// The potential energy of all models and of the weight in a state [J], after [`System::evaluate`] of the same state;
     /// none where a model that pushes has no energy.
     pub fn potential_energy(&self, stage: Stage, time: f64) -> Option<f64> {
-        let silent = |member: &Member<D>| {
+        let silent =
+            |member: &Member<D>| member.potential.account() == Account::User && !member.potential.views().energy;
+        (self.has_energy() && !self.members.iter().any(silent)).then(|| self.stored_energy(stage, time))
+    }
+
+    /// Whether every model says what its forces do: it has an energy, or its power is entered as that of damping or of loads.
+    pub fn has_energy(&self) -> bool {
+        self.members.iter().all(|member| {
             let views = member.potential.views();
-            !views.energy && (member.potential.account() == Account::User || !views.damping)
-        };
-        (!self.members.iter().any(silent)).then(|| self.stored_energy(stage, time))
+            views.energy || views.damping || member.potential.account() == Account::User
+        })
     }
 
     /// The energy of all models that have one, and of the weight, in a state [J], after [`System::evaluate`] of the same state.

@@ -53,9 +53,9 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn is_static(&self) -> bool {
         false
     }
-    /// Whether it takes energy out of fast motion by itself, as implicit rules do: what then is lost is no sign of a step that is
-    /// too long.
-    fn damps_by_itself(&self) -> bool {
+    /// Whether it enters what it dissipates by itself into [`crate::system::Work8::numerical`], from its own formula. What a rule
+    /// does not enter there is left unexplained.
+    fn measures_its_damping(&self) -> bool {
         false
     }
     /// Whether its steps spread the work on one system over [`System::threads`].

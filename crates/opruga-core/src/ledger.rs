@@ -17,6 +17,11 @@ pub struct Work8 {
     pub contact: [f64; WIDTH],
     /// Energy given by obstacles that put nodes back on their surface.
     pub correction: [f64; WIDTH],
+    /// What a rule takes by itself, but for what the potential energy U gave: loads less damping as they were entered, less the
+    /// work of the impulses of the rule. With U₀ − U₁ over the same steps, and what the gas was given and obstacles corrected, it is
+    /// the energy that the rule dissipates ([`crate::integrator::Integrator::measures_its_damping`]). U falls out of the sum over steps,
+    /// so nobody needs to know it between them.
+    pub numerical: [f64; WIDTH],
     /// How often a force was limited.
     pub limited_forces: u64,
     /// How often a velocity was limited.

@@ -117,7 +117,7 @@ fn path_of(error: &WorldError) -> String {
             Some(body) if place.starts_with("integrator of ") => format!("{body}.integrator"),
             // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
             Some(body) if is_field_of_body(&source.kind) => format!("{body}.{}", source.kind),
-            Some(body) if ["stability", "modes", "memory"].contains(&source.kind.as_str()) => body,
+            Some(body) if ["stability", "modes", "memory", "mass"].contains(&source.kind.as_str()) => body,
             Some(body) if source.code.starts_with("static.") => body,
             Some(body) => format!("{body}.models.{}", source.kind),
             None if place == "collider" => {
@@ -131,7 +131,7 @@ fn path_of(error: &WorldError) -> String {
             format!("body.{}", body.split('[').next().unwrap_or(body))
         }
         WorldError::Path { path, .. } => body(path).unwrap_or_default(),
-        WorldError::Snapshot(_) | WorldError::BrokenOff => String::new(),
+        WorldError::Snapshot(_) | WorldError::Overflow { .. } | WorldError::BrokenOff => String::new(),
     }
 }
 

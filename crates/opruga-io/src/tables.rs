@@ -195,6 +195,7 @@ pub struct EnergySummary {
     pub loss_damping: f64,
     pub loss_friction: f64,
     pub loss_contact: f64,
+    pub loss_numerical: f64,
     pub loss_integrator: f64,
     pub closure: f64,
 }

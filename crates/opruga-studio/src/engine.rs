@@ -425,6 +425,7 @@ impl<const D: usize> Engine for Living<D> {
                 gravity: e.gravity,
                 work: e.work_user,
                 losses: e.loss_damping + e.loss_friction + e.loss_contact,
+                numerical: e.loss_numerical,
                 error: e.loss_integrator,
             },
             momentum: three(m.linear.0),
@@ -448,7 +449,7 @@ impl<const D: usize> Engine for Living<D> {
         Sample {
             frame: self.world.frames(),
             time: self.world.time(),
-            energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work_user, losses, e.loss_integrator],
+            energy: [e.kinetic, e.elastic, e.gas, e.gravity, e.work_user, losses, e.loss_numerical, e.loss_integrator],
             momentum: three(m.linear.0),
             readings,
             ..Sample::default()
@@ -467,6 +468,7 @@ impl<const D: usize> Engine for Living<D> {
             ("loss_damping", e.loss_damping),
             ("loss_friction", e.loss_friction),
             ("loss_contact", e.loss_contact),
+            ("loss_numerical", e.loss_numerical),
             ("loss_integrator", e.loss_integrator),
         ]
         .map(|(name, x)| (name.to_string(), x))

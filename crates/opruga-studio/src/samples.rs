@@ -16,8 +16,8 @@ pub struct Sample {
     pub frame: u64,
     /// The time [s].
     pub time: f64,
-    /// Kinetic, elastic, of the gas, of the weight; work put in, losses, error of the integrator [J].
-    pub energy: [f64; 7],
+    /// Kinetic, elastic, of the gas, of the weight; work put in, losses, damping by the rule, error of the integrator [J].
+    pub energy: [f64; 8],
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
     /// What a frame took of late to compute [ms].

@@ -67,6 +67,8 @@ pub struct EnergyShown {
     pub work: f64,
     /// Damping, friction and impacts together.
     pub losses: f64,
+    /// What implicit rules take by themselves.
+    pub numerical: f64,
     /// The error of the integrator.
     pub error: f64,
 }

@@ -203,6 +203,7 @@ words! {
     of_gravity: "gravity", "gravitacijska";
     work: "work put in", "uloženi rad";
     losses: "losses", "gubici";
+    numerical_damping: "damping by the integrator", "prigušenje integratora";
     integration_error: "error of integration", "pogreška integracije";
     drag_me: "drag me", "povuci me";
     away: "the bodies are this way: show them (F)", "tijela su onamo: prikaži ih (F)";

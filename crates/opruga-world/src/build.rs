@@ -207,6 +207,10 @@ impl<const D: usize> Builder<'_, D> {
         }
         let (mut x, mut v) = (Columns::zeros(places), Columns::zeros(places));
         let masses: Vec<Vec<f64>> = blueprints.iter().map(|b| node_masses(b)).collect();
+        for (body, masses) in blueprints.iter().zip(&masses) {
+            plausible::check_masses(body, masses)
+                .map_err(|source| WorldError::Build { place: format!("body `{}`", body.name), source })?;
+        }
         // Unused lanes repeat the first body.
         let lane = |l: usize| if l < bodies.len() { l } else { 0 };
         for node in 0..nodes {

@@ -84,6 +84,16 @@ pub enum WorldError {
         /// What helps under the settings of the integrator.
         hint: String,
     },
+    /// The sums over all bodies left the finite numbers.
+    #[error(
+        "the energy or the momentum of all bodies together left the finite numbers in the frame from t = {} s; the world is at its \
+         last good frame; hint: are masses, stiffnesses and speeds in units that go together (metres, kilograms, seconds)?",
+        number(*last)
+    )]
+    Overflow {
+        /// The time of the last good frame [s].
+        last: f64,
+    },
     /// The frame was broken off from outside ([`crate::Options::break_off`]).
     #[error("the frame was broken off; the world is at its last good frame")]
     BrokenOff,
@@ -109,6 +119,7 @@ impl WorldError {
             WorldError::Diverged { .. } => "run.diverged",
             WorldError::Step { .. } => "run.model",
             WorldError::NotConverged { .. } => "run.not_converged",
+            WorldError::Overflow { .. } => "run.overflow",
             WorldError::BrokenOff => "run.broken_off",
             WorldError::Path { .. } => "path.unknown",
             WorldError::Snapshot(_) => "snapshot.damaged",

@@ -1,6 +1,6 @@
 //! Bodies that are stepped together, and the frame that they step through on their own.
 
-use crate::ledger::{Stock, Survey, survey, take_stock};
+use crate::ledger::{Stock, Survey, survey, take_stock, total_of};
 use opruga_collide::Colliders;
 use opruga_core::error::StepError;
 use opruga_core::integrator::Integrator;
@@ -25,6 +25,8 @@ pub(crate) struct Island<const D: usize> {
     /// How far from the origin along an axis its positions keep their digits [m].
     pub(crate) range: f64,
     pub(crate) work: Work8,
+    /// The potential energy at the start of the last frame [J].
+    potential_before: f64,
     /// How the last frame ended.
     pub(crate) outcome: Result<(), StepError>,
     last: Option<Saved<D>>,
@@ -113,6 +115,7 @@ impl<const D: usize> Island<D> {
             survey,
             range,
             work: Work8::default(),
+            potential_before: 0.0,
             outcome: Ok(()),
             last: None,
             looks: Vec::new(),
@@ -133,6 +136,22 @@ impl<const D: usize> Island<D> {
     pub(crate) fn refresh(&mut self) {
         self.survey = survey(&self.system);
         self.stock = take_stock(&mut self.system);
+    }
+
+    /// The potential energy of the present state [J].
+    fn potential(&self) -> f64 {
+        self.stock.elastic + self.stock.gas + self.survey.gravity
+    }
+
+    /// What the rule has taken by itself since the start of the last frame [J], if it says so, and if every model says what its
+    /// forces do; `work` is what entered and left since then.
+    pub(crate) fn numerical_loss(&self, work: &Work8) -> f64 {
+        if !self.integrator.measures_its_damping() || !self.system.has_energy() {
+            return 0.0;
+        }
+        let [entered, gas, correction] =
+            [&work.numerical, &work.gas, &work.correction].map(|parts| total_of(&self.system, parts));
+        entered + gas + correction + (self.potential_before - self.potential())
     }
 
     /// What models say of one of the bodies.
@@ -180,6 +199,7 @@ impl<const D: usize> Island<D> {
 
     fn step_through(&mut self, plan: &FramePlan<D>) -> Result<(), StepError> {
         self.save(plan.start);
+        self.potential_before = self.potential();
         let swept = self.swept_bounds(plan);
         let near = self.reaches(plan, &swept);
         let mut outcome = self.attempt(plan, near);

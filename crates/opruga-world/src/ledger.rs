@@ -1,5 +1,6 @@
 //! Where the energy is and where it went.
 
+use crate::island::Island;
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
 use opruga_core::system::{SolverWork, System, Work8};
@@ -30,17 +31,43 @@ pub struct Energy {
     /// Energy that obstacles gave by putting nodes back on their surface: the work against the forces on those nodes, to
     /// the first order of the depth.
     pub work_correction: f64,
-    /// What the other channels do not explain: the error of the integrator, and what an implicit one damps by itself.
+    /// Energy that implicit rules take by themselves, from the formula of each rule; negative where a rule has made energy.
+    pub loss_numerical: f64,
+    /// What the other channels do not explain: the error of explicit rules, and of implicit ones what their equations were left out
+    /// of balance.
     pub loss_integrator: f64,
-    /// |loss_integrator| relative to the largest energy that was in motion, or to what rounding alone may make of a body at
-    /// rest where that is more.
+    /// |loss_integrator| relative to `in_motion`.
     pub closure: f64,
+    /// The largest energy that was in motion so far, or what rounding alone may make of a body at rest where that is more.
+    pub in_motion: f64,
 }
 
 impl Energy {
     /// Kinetic, elastic, gas and gravity together [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.gas + self.gravity
+    }
+
+    /// What was lost or made neither by a model nor by an obstacle, relative to `in_motion`: by the rule itself, and unexplained.
+    pub fn drift(&self) -> f64 {
+        self.part_in_motion(self.loss_numerical + self.loss_integrator)
+    }
+
+    /// Whether rules have taken, or made, so much by themselves that it is warned of.
+    pub(crate) fn is_damped_by_rules(&self) -> bool {
+        self.part_in_motion(self.loss_numerical) > LARGEST_DAMPING
+    }
+
+    /// Whether every number is one.
+    pub(crate) fn is_finite(&self) -> bool {
+        let works = self.work_user + self.work_gas + self.work_correction;
+        let losses = self.loss_damping + self.loss_friction + self.loss_contact + self.loss_numerical;
+        (self.total() + works + losses + self.loss_integrator + self.closure + self.in_motion).is_finite()
+    }
+
+    /// A part of the energy in motion, without its sign; zero where there is none.
+    pub(crate) fn part_in_motion(&self, energy: f64) -> f64 {
+        if self.in_motion > 0.0 { energy.abs() / self.in_motion } else { 0.0 }
     }
 }
 
@@ -51,6 +78,13 @@ pub struct Momentum<const D: usize> {
     pub linear: Vector<D>,
     /// Σ m x × v about the origin; in the plane only the last number is used.
     pub angular: [f64; 3],
+}
+
+impl<const D: usize> Momentum<D> {
+    /// Whether every number is one.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.linear.0.iter().chain(&self.angular).all(|x| x.is_finite())
+    }
 }
 
 /// A vector with a default.
@@ -262,6 +296,10 @@ impl<const D: usize> Work for Look<'_, D> {
 /// The unexplained part of the energy in motion above which a frame is counted and warned of.
 pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
 
+/// The part of it that rules may take by themselves before a frame is counted: half of what may be unexplained, since it says what
+/// it is, and does so from step to step in one direction.
+pub(crate) const LARGEST_DAMPING: f64 = 0.05;
+
 /// What rounding does to a number, many times over, relative to it.
 const ROUNDING: f64 = 1e-13;
 
@@ -289,6 +327,8 @@ pub(crate) struct Flows {
     pub(crate) friction: f64,
     pub(crate) contact: f64,
     pub(crate) correction: f64,
+    /// What rules have taken by themselves.
+    pub(crate) numerical: f64,
     /// The energy at the start, moved by what changes of the scene put in or took out.
     pub(crate) start: f64,
     /// What changes of the scene put in so far, less what they took out.
@@ -304,10 +344,15 @@ pub(crate) struct Flows {
     pub(crate) solver: SolverWork,
     /// Frames that ended with a larger part of the energy unexplained than [`LARGEST_CLOSURE`].
     pub(crate) open_frames: u64,
+    /// Frames at the end of which rules had taken a larger part by themselves than [`LARGEST_DAMPING`].
+    pub(crate) damped_frames: u64,
 }
 
 impl Flows {
-    pub(crate) fn add<const D: usize>(&mut self, system: &System<D>, work: &Work8) {
+    /// Adds what entered and left an island since the start of the last frame until now.
+    pub(crate) fn add<const D: usize>(&mut self, island: &Island<D>, work: &Work8) {
+        let system = &island.system;
+        self.numerical += island.numerical_loss(work);
         self.user += total_of(system, &work.user);
         self.gas += total_of(system, &work.gas);
         self.damping += total_of(system, &work.damping);
@@ -317,6 +362,11 @@ impl Flows {
         self.limited_forces += work.limited_forces;
         self.limited_velocities += work.limited_velocities;
         self.solver.add(&work.solver);
+    }
+    /// Counts a frame that ended with this ledger, where it is one to warn of.
+    pub(crate) fn count_frame(&mut self, energy: &Energy) {
+        self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE);
+        self.damped_frames += u64::from(energy.is_damped_by_rules());
     }
     /// The ledger for the present stock, after steps of h [s].
     pub(crate) fn ledger<'a, const D: usize>(
@@ -331,6 +381,7 @@ impl Flows {
             loss_friction: self.friction,
             loss_contact: self.contact,
             work_correction: self.correction,
+            loss_numerical: self.numerical,
             ..Energy::default()
         };
         let mut momentum = Momentum::default();
@@ -349,14 +400,14 @@ impl Flows {
             }
         }
         let given = self.start + self.user + self.gas + self.correction;
-        let taken = self.damping + self.friction + self.contact;
+        let taken = self.damping + self.friction + self.contact + self.numerical;
         energy.loss_integrator = given - taken - energy.total();
         let moved = energy.kinetic + energy.elastic.abs() + (energy.gas + energy.gravity - self.start).abs();
         self.largest = self.largest.larger(moved);
         // Where nothing moves, what is left is rounding, and no part of anything.
         rounding += ROUNDING * (energy.gas.abs() + energy.gravity.abs() + self.start.abs());
-        let most = self.largest.larger(rounding);
-        energy.closure = if most > 0.0 { energy.loss_integrator.abs() / most } else { 0.0 };
+        energy.in_motion = self.largest.larger(rounding);
+        energy.closure = energy.part_in_motion(energy.loss_integrator);
         (energy, momentum)
     }
 }

@@ -41,11 +41,12 @@ impl<const D: usize> World<D> {
             let mut complete = true;
             for island in &mut self.islands {
                 // Islands that were built since then have no looks.
-                match island.swap_look(number as usize) {
-                    Some(work) => flows.add(&island.system, &work),
+                let work = island.swap_look(number as usize);
+                island.refresh();
+                match work {
+                    Some(work) => flows.add(island, &work),
                     None => complete = false,
                 }
-                island.refresh();
             }
             if complete {
                 self.flows = flows;

@@ -1,13 +1,15 @@
 //! What a scene may well say, but hardly means: units that do not go together, bodies that begin inside an obstacle.
 
-use crate::blueprint::BodyBlueprint;
+use crate::blueprint::{BodyBlueprint, Mass};
 use crate::build::node_masses;
+use crate::error::WorldError;
+use crate::island::Island;
 use crate::selection::{extent, longest_side};
 use crate::world::{Warning, World};
 use opruga_core::error::BuildError;
 use opruga_core::stability::Spectrum;
 use opruga_math::words::{counted, number, rounded};
-use opruga_mesh::{Measure, Mesh};
+use opruga_mesh::{Measure, Mesh, Share};
 
 /// The code of the warning of [`sag`].
 pub(crate) const SAG: &str = "units.sag";
@@ -96,6 +98,90 @@ pub(crate) fn check_speed<const D: usize>(v: &[[f64; D]], range: f64, h: f64) ->
         rounded(range / h, 3),
     );
     Err(BuildError::new("velocity", "scene.range", message))
+}
+
+/// The largest number whose square has a place among the finite numbers.
+const LARGEST: f64 = 1e154;
+
+/// The words of a scene that the masses of a body come from, with their numbers; the one that is farthest from 1 first.
+fn words_of_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<(&'static str, f64)> {
+    let thickness = ("thickness", body.thickness);
+    let mut words = match &body.mass {
+        Mass::Node(mass) => vec![("node_mass", *mass)],
+        Mass::Total(mass) => vec![("mass", *mass)],
+        Mass::Density(density) => vec![("density", *density), thickness],
+        Mass::DensityOfCells(densities) => {
+            let least = densities.iter().copied().fold(f64::INFINITY, |least, x| if x < least { x } else { least });
+            vec![("density_of_cells", least), thickness]
+        }
+    };
+    words.sort_by(|(_, a), (_, b)| libm::log(*b).abs().total_cmp(&libm::log(*a).abs()));
+    words
+}
+
+/// Refuses a body with a node that has a part of its mass and none that a number can hold: it would stand still for ever.
+pub(crate) fn check_masses<const D: usize>(body: &BodyBlueprint<D>, masses: &[f64]) -> Result<(), BuildError> {
+    // Below that numbers lose digits, and 1/m has no place.
+    let weighs = |mass: &f64| *mass >= f64::MIN_POSITIVE && mass.is_finite();
+    if masses.iter().all(weighs) {
+        return Ok(());
+    }
+    // A node that belongs to no element has no part.
+    let shares = body.mesh.lumped_measures(Share::Proportional).unwrap_or_else(|_| vec![1.0; masses.len()]);
+    let Some(node) = (0..masses.len()).find(|node| shares[*node] > 0.0 && !weighs(&masses[*node])) else {
+        return Ok(());
+    };
+    let (word, value) = words_of_masses(body)[0];
+    let message = format!(
+        "`{word}` is {value:?}, with which node {node} has a mass of {} kg; allowed: such that every node has at least {} kg and at most \
+         {} kg; hint: are its units mixed (metres, kilograms)?",
+        number(masses[node]),
+        number(f64::MIN_POSITIVE),
+        number(f64::MAX),
+    );
+    Err(BuildError::new("mass", "scene.range", message))
+}
+
+impl<const D: usize> World<D> {
+    /// Refuses a scene whose energy or momentum is beyond the finite numbers before its first step, at what makes it so.
+    pub(crate) fn check_sums(&self) -> Result<(), WorldError> {
+        if self.energy.is_finite() && self.momentum.is_finite() {
+            return Ok(());
+        }
+        let most =
+            |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+        let refuse = |place: String, kind: &str, message: String| {
+            Err(WorldError::Build { place, source: BuildError::new(kind, "scene.range", message) })
+        };
+        let g = most(&self.blueprint.surroundings.gravity);
+        if g > LARGEST {
+            let message = format!(
+                "a weight of {} m/s² takes the energy of the bodies beyond the finite numbers; allowed: at most {} m/s² along an axis",
+                number(g),
+                number(LARGEST),
+            );
+            return refuse("world.gravity".into(), "gravity", message);
+        }
+        let finite = |island: &&Island<D>| {
+            let (survey, stock) = (&island.survey, &island.stock);
+            let energy = survey.kinetic + survey.gravity + stock.elastic + stock.gas;
+            survey.mass.is_finite() && energy.is_finite() && survey.momentum.is_finite()
+        };
+        let island = self.islands.iter().find(|island| !finite(island)).or(self.islands.first());
+        let Some(body) = island.map(|island| &self.blueprint.bodies[island.bodies[0]]) else { return Ok(()) };
+        let (word, value) = words_of_masses(body)[0];
+        let message = match value > LARGEST {
+            true => format!(
+                "`{word}` is {value:?}, which takes the energy or the momentum of the body beyond the finite numbers; allowed: numbers \
+                 whose squares are finite, up to {}",
+                number(LARGEST),
+            ),
+            false => "its energy or its momentum is beyond the finite numbers; hint: are its units mixed (metres, kilograms, \
+                      seconds)?"
+                .into(),
+        };
+        refuse(format!("body `{}`", body.name), "mass", message)
+    }
 }
 
 /// The code of the warning of bodies that begin inside an obstacle.

@@ -304,7 +304,9 @@ impl<const D: usize> World<D> {
             lost => (lost, "lost"),
         };
         // Contact begins and ends within steps, whatever the order of a rule.
-        let help = if self.energy.loss_contact + self.energy.loss_friction > 0.0 {
+        let help = if self.islands.iter().all(|island| island.integrator.measures_its_damping()) {
+            "implicit rules leave unexplained what their equations are left out of balance: a smaller `tolerance`, or `accuracy = \"exact\"`"
+        } else if self.energy.loss_contact + self.energy.loss_friction > 0.0 {
             match self.islands.iter().all(|island| island.integrator.name() == "verlet") {
                 true => {
                     "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps"
@@ -316,6 +318,26 @@ impl<const D: usize> World<D> {
         } else {
             "more substeps make it smaller, and rules of higher order make less of it"
         };
+        let (by_rules, way_of_rules, help_with_rules) = match self.energy.loss_numerical {
+            made if made < 0.0 => {
+                (-made, "made", "more substeps make it smaller, and `backward_euler` damps what would grow")
+            }
+            taken => (
+                taken,
+                "taken",
+                "more substeps make it smaller, and `implicit_midpoint` or `newmark` take less by themselves",
+            ),
+        };
+        count(
+            "ledger.numerical_damping",
+            &format!(
+                "implicit rules have by themselves {way_of_rules} {} J, more than a twentieth of the energy in motion \
+                 (`loss_numerical`): what is fast for the step fades, or grows, by the rule and by no law of physics; {help_with_rules}",
+                number(by_rules)
+            ),
+            // A body that begins at rest has so little in motion in its first frames that any rule takes much of that.
+            if self.energy.is_damped_by_rules() { self.flows.damped_frames } else { 0 },
+        );
         count(
             "ledger.closure",
             &format!(

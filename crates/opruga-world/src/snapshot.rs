@@ -75,10 +75,12 @@ impl<const D: usize> World<D> {
             write_progress(&mut out, &running.progress);
         }
         let f = &self.flows;
-        for x in [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.start, f.changed, f.largest] {
+        let works = [f.user, f.gas, f.damping, f.friction, f.contact, f.correction, f.numerical];
+        for x in works.into_iter().chain([f.start, f.changed, f.largest]) {
             out.number(x);
         }
-        for n in [f.limited_forces, f.limited_velocities, f.limited_pulls, f.lost_bodies, f.open_frames] {
+        let limited = [f.limited_forces, f.limited_velocities, f.limited_pulls];
+        for n in limited.into_iter().chain([f.lost_bodies, f.open_frames, f.damped_frames]) {
             out.count(n);
         }
         let s = &f.solver;
@@ -211,11 +213,11 @@ impl<const D: usize> World<D> {
                 return refuse("a command holds what is not there");
             }
         }
-        let mut numbers = [0.0; 9];
+        let mut numbers = [0.0; 10];
         for x in &mut numbers {
             *x = reader.number()?;
         }
-        let mut counts = [0; 5];
+        let mut counts = [0; 6];
         for n in &mut counts {
             *n = reader.count()?;
         }
@@ -230,8 +232,8 @@ impl<const D: usize> World<D> {
         if !reader.0.is_empty() {
             return refuse("it goes on after its end");
         }
-        let [user, gas, damping, friction, contact, correction, start, changed, largest] = numbers;
-        let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames] = counts;
+        let [user, gas, damping, friction, contact, correction, numerical, start, changed, largest] = numbers;
+        let [limited_forces, limited_velocities, limited_pulls, lost_bodies, open_frames, damped_frames] = counts;
         let [
             steps,
             iterations,
@@ -252,6 +254,7 @@ impl<const D: usize> World<D> {
             friction,
             contact,
             correction,
+            numerical,
             start,
             changed,
             largest,
@@ -260,6 +263,7 @@ impl<const D: usize> World<D> {
             limited_pulls,
             lost_bodies,
             open_frames,
+            damped_frames,
             solver: SolverWork {
                 steps,
                 iterations,

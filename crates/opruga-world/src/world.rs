@@ -7,7 +7,7 @@ use crate::commands::Running;
 use crate::error::WorldError;
 use crate::inputs::Input;
 use crate::island::{FramePlan, Island};
-use crate::ledger::{Energy, Flows, LARGEST_CLOSURE, Momentum};
+use crate::ledger::{Energy, Flows, Momentum};
 use crate::loads::ForceLaw;
 use crate::looks::Looks;
 use crate::rebuild::Touched;
@@ -184,6 +184,7 @@ impl<const D: usize> World<D> {
         let start = world.stock_energy();
         (world.flows.start, world.flows.changed) = (start, 0.0);
         world.refresh_ledger();
+        world.check_sums()?;
         Ok(world)
     }
 
@@ -256,17 +257,29 @@ impl<const D: usize> World<D> {
         self.looks.fresh = true;
         for island in &mut self.islands {
             let work = std::mem::take(&mut island.work);
-            self.flows.add(&island.system, &work);
+            self.flows.add(island, &work);
         }
         self.flows.limited_pulls = self.limited_pulls.load(Ordering::Relaxed);
         self.refresh_ledger();
-        // What implicit rules damp by themselves is known of them.
-        let damped =
-            self.energy.loss_integrator > 0.0 && self.islands.iter().all(|island| island.integrator.damps_by_itself());
-        self.flows.open_frames += u64::from(self.energy.closure > LARGEST_CLOSURE && !damped);
+        if !(self.energy.is_finite() && self.momentum.is_finite()) {
+            return Err(self.take_back_frame());
+        }
+        self.flows.count_frame(&self.energy);
         self.warn_of_crushed_bodies();
         self.warn_of_turned_cells();
         self.take_away_what_is_far()
+    }
+
+    /// Goes back to the last good frame, from one whose states are sound and whose sums are not.
+    fn take_back_frame(&mut self) -> WorldError {
+        for island in &mut self.islands {
+            island.restore();
+            island.refresh();
+        }
+        self.frames -= 1;
+        (self.flows, self.looks.fresh) = (self.looks.flows, false);
+        self.refresh_ledger();
+        WorldError::Overflow { last: self.time() }
     }
 
     /// The time [s].

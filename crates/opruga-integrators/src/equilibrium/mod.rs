@@ -361,9 +361,6 @@ impl<const D: usize> Integrator<D> for Equilibrium {
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         self.arc_length.is_none() && same_bits_everywhere(&self.settings, system)
     }
-    fn damps_by_itself(&self) -> bool {
-        true
-    }
     fn is_static(&self) -> bool {
         true
     }

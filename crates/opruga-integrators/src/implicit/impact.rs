@@ -120,6 +120,8 @@ impl<const D: usize> Ending<'_, D> {
         let (node, lane) = (contacts[0].node, contacts[0].node % WIDTH);
         let (x0, v0) = (self.part(node, self.x0), self.part(node, self.v0));
         let share = if motion.fresh { self.balance.impulse } else { 1.0 };
+        // What is entered of a force beyond its part of this step stands for what the rule remembers of it, and is none of its own.
+        let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
         for (k, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.is_held()) {
@@ -132,12 +134,14 @@ impl<const D: usize> Ending<'_, D> {
             }
             work.user[lane] += share * normal_force * dot(normal, &ride);
             work.contact[lane] -= share * normal_force * dot(normal, &own);
+            work.numerical[lane] += beyond(share, normal_force * (dot(normal, &ride) + dot(normal, &own)));
             let along = if contact.hold == Hold::Stick { share } else { 1.0 };
             carrier = carrier.or(Some((ride, own, along)));
         }
         if let Some((ride, own, share)) = carrier {
             work.user[lane] += share * dot(&rest, &ride);
             work.friction[lane] -= share * dot(&rest, &own);
+            work.numerical[lane] += beyond(share, dot(&rest, &ride) + dot(&rest, &own));
         }
     }
 }

@@ -60,6 +60,7 @@ pub(crate) mod linear;
 pub(crate) mod memory;
 mod mixing;
 pub(crate) mod newton;
+mod own_loss;
 mod real_time;
 mod rigid;
 pub(crate) mod room;

@@ -334,7 +334,10 @@ fn disturb_state<const D: usize>(
         system.state.x = kept;
         return system.evaluate(Stage::Current, 0.0, 0.0, force);
     }
-    system.work.user[0] += system.stored_energy(Stage::Current, 0.0) - before;
+    let given = system.stored_energy(Stage::Current, 0.0) - before;
+    system.work.user[0] += given;
+    // The rule had no part in it.
+    system.work.numerical[0] += given;
     Ok(())
 }
 

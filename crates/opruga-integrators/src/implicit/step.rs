@@ -6,6 +6,7 @@ use super::holding;
 use super::impact::Ending;
 use super::memory;
 use super::newton::{self, Balance, Solved};
+use super::own_loss::{self, given};
 use super::real_time;
 use super::room::{Room, write};
 use super::settings::{Otherwise, Settings};
@@ -103,7 +104,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
     fn shares_threads(&self) -> bool {
         self.settings.real_time
     }
-    fn damps_by_itself(&self) -> bool {
+    fn measures_its_damping(&self) -> bool {
         true
     }
     fn takes_mass_matrix(&self) -> bool {
@@ -171,6 +172,7 @@ fn attempt<R: Rule<D>, const D: usize>(
     if R::TRAPEZOID {
         system.evaluate(Stage::Current, 0.0, 0.5 * h, &mut room.force)?;
     }
+    own_loss::add_given(&mut system.work, &given(&work_before));
     let begun = system.work;
     let in_contact = rule.in_contact();
     let mut used = in_contact.filter(|_| touches(system, room, h)).unwrap_or(rule);
@@ -224,10 +226,12 @@ fn attempt<R: Rule<D>, const D: usize>(
     if R::TRAPEZOID && !rule.is_trapezoid() {
         take_back(&mut system.work, &begun, &work_before);
     }
+    let entered = given(&system.work);
     if !rule.is_trapezoid() {
         // Damping, loads and pins by the forces of the stage, which was evaluated last.
         system.evaluate_again(Room::<D>::STAGE, balance.time, h, &mut room.force);
     }
+    own_loss::add_given(&mut system.work, &entered);
     if system.inertia.is_some() {
         // Where held nodes are coupled, they have the velocity of the step to its end.
         let Room { v0, v1, .. } = &mut *room;
@@ -237,7 +241,9 @@ fn attempt<R: Rule<D>, const D: usize>(
     commit(system, room);
     if rule.is_trapezoid() {
         system.hold(Stage::Current, h);
+        let entered = given(&system.work);
         system.evaluate(Stage::Current, h, 0.5 * h, &mut room.force)?;
+        own_loss::add_given(&mut system.work, &entered);
     }
     rule.remember(system, room, h);
     if settings.real_time {
@@ -253,6 +259,7 @@ fn take_back(work: &mut Work8, after: &Work8, before: &Work8) {
         work.user[lane] -= after.user[lane] - before.user[lane];
         work.gas[lane] -= after.gas[lane] - before.gas[lane];
         work.damping[lane] -= after.damping[lane] - before.damping[lane];
+        work.numerical[lane] -= after.numerical[lane] - before.numerical[lane];
     }
 }
 
@@ -287,6 +294,7 @@ fn solve<R: Rule<D>, const D: usize>(
 /// Works out the end of a step: displacement and velocity, with what obstacles do to them.
 fn end<R: Rule<D>, const D: usize>(rule: R, system: &mut System<D>, room: &mut Room<D>, balance: &Balance, h: f64) {
     rule.end(system, room, balance, h);
+    own_loss::take_impulses(system, room, balance);
     room.struck.clear();
     if system.contacts.is_none() {
         return;

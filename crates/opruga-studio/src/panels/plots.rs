@@ -48,6 +48,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
             words.of_gravity(),
             words.work(),
             words.losses(),
+            words.numerical_damping(),
             words.integration_error(),
         ];
         let lines = energies.into_iter().zip(0..).map(|(name, k)| (name, curve(&|s| Some(s.energy[k])))).collect();

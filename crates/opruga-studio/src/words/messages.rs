@@ -285,6 +285,11 @@ impl Language {
                     None => format!("{place}: {why}\n{}", self.english(&source.to_string())),
                 }
             }
+            WorldError::Overflow { last } => format!(
+                "Energija ili količina gibanja svih tijela zajedno prerasla je konačne brojeve u sličici od t = {} s\n\
+                 Svijet je na zadnjoj dobroj sličici; jesu li mase, krutosti i brzine u jedinicama koje idu zajedno (metri, kilogrami, sekunde)?",
+                number(*last)
+            ),
             WorldError::BrokenOff => "Sličica je prekinuta; svijet je na zadnjoj dobroj sličici".into(),
             WorldError::Path { path, message } => format!("`{path}` ne može: {}", self.detail(message)),
             WorldError::Snapshot(why) => format!("Snimljeno stanje ne može se vratiti\n{}", self.english(why)),

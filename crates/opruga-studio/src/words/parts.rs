@@ -29,6 +29,8 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("a date", "datum"),
     ("gained", "previše"),
     ("lost", "premalo"),
+    ("taken", "uzela"),
+    ("made", "dodala"),
     ("1 rigid mode", "jedan kruti pomak"),
     ("{} rigid modes", "krutih pomaka: {}"),
     ("1 iteration", "jedna iteracija"),

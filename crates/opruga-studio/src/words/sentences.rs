@@ -26,6 +26,27 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
          (metri, sekunde, radijani)?",
     ),
     (
+        "`{}` is {}, with which node {} has a mass of {} kg; allowed: such that every node has at least {} kg and at most {} kg; hint: are \
+         its units mixed (metres, kilograms)?",
+        "`{}` je {}, pa čvor {} ima masu {} kg; dopušteno: takvo da svaki čvor ima najmanje {} kg i najviše {} kg; savjet: jesu li mu \
+         jedinice pomiješane (metri, kilogrami)?",
+    ),
+    (
+        "a weight of {} m/s² takes the energy of the bodies beyond the finite numbers; allowed: at most {} m/s² along an axis",
+        "težina od {} m/s² vodi energiju tijela izvan konačnih brojeva; dopušteno: najviše {} m/s² duž jedne osi",
+    ),
+    (
+        "`{}` is {}, which takes the energy or the momentum of the body beyond the finite numbers; allowed: numbers whose squares are \
+         finite, up to {}",
+        "`{}` je {}, što energiju ili količinu gibanja tijela vodi izvan konačnih brojeva; dopušteno: brojevi čiji su kvadrati \
+         konačni, do {}",
+    ),
+    (
+        "its energy or its momentum is beyond the finite numbers; hint: are its units mixed (metres, kilograms, seconds)?",
+        "njegova energija ili količina gibanja izvan je konačnih brojeva; savjet: jesu li mu jedinice pomiješane (metri, kilogrami, \
+         sekunde)?",
+    ),
+    (
         "`modulus` needs triangles next to the edges; give `stiffness` for a chain or outline",
         "`modulus` treba trokute uz bridove; za lanac ili obris zadaj `stiffness`",
     ),
@@ -422,6 +443,24 @@ pub(super) const SENTENCES: &[(&str, &str)] = &[
     (
         "bodies went farther than `world.largest_distance` and were taken away",
         "tijela su otišla dalje od `world.largest_distance` i uklonjena su",
+    ),
+    (
+        "implicit rules have by themselves {~} {} J, more than a twentieth of the energy in motion (`loss_numerical`): what is fast \
+         for the step fades, or grows, by the rule and by no law of physics; {~}",
+        "implicitna su pravila sama {~} {} J, više od dvadesetine energije gibanja (`loss_numerical`): što je brzo za korak nestaje ili \
+         raste zbog pravila, a ne po zakonu fizike; {~}",
+    ),
+    (
+        "more substeps make it smaller, and `backward_euler` damps what would grow",
+        "više podkoraka to smanjuje, a `backward_euler` prigušuje što bi raslo",
+    ),
+    (
+        "more substeps make it smaller, and `implicit_midpoint` or `newmark` take less by themselves",
+        "više podkoraka to smanjuje, a `implicit_midpoint` ili `newmark` sami uzimaju manje",
+    ),
+    (
+        "implicit rules leave unexplained what their equations are left out of balance: a smaller `tolerance`, or `accuracy = \"exact\"`",
+        "kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: manji `tolerance` ili `accuracy = \"exact\"`",
     ),
     (
         "a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {~} by the end: the error of \

@@ -147,7 +147,7 @@ fn flight(lab: &Lab, h: f64, rule: &str, kept: Kept) -> Result<f64, Trouble> {
         let change = match kept {
             Kept::Momentum => (now.linear.0[0] - first.linear.0[0]).hypot(now.linear.0[1] - first.linear.0[1]) / sum,
             Kept::AngularMomentum => (now.angular[2] - first.angular[2]).abs() / turning,
-            Kept::Energy => world.energy().closure,
+            Kept::Energy => world.energy().drift(),
         };
         worst = worst.max(change);
     }

@@ -200,7 +200,7 @@ enum Gauge<const D: usize> {
         count: f64,
     },
     Drift {
-        closure: f64,
+        drift: f64,
     },
     /// Measured by the clock, elsewhere.
     Speed,
@@ -230,7 +230,7 @@ impl<const D: usize> Meter<D> {
                 },
                 Quantity::SettlingTime => Gauge::Settling { kinetic: Vec::new() },
                 Quantity::EquilibriumRadius(body) => Gauge::Radius { body: body.clone(), sum: 0.0, count: 0.0 },
-                Quantity::EnergyDrift => Gauge::Drift { closure: 0.0 },
+                Quantity::EnergyDrift => Gauge::Drift { drift: 0.0 },
                 Quantity::NanosecondsPerStep => Gauge::Speed,
                 Quantity::Probe(column, statistic) => {
                     let mut place = probe_columns(blueprint).iter().position(|c| c == column).unwrap_or(usize::MAX);
@@ -300,7 +300,7 @@ impl<const D: usize> Meter<D> {
                         *count += 1.0;
                     }
                 }
-                Gauge::Drift { closure } => *closure = world.energy().closure,
+                Gauge::Drift { drift } => *drift = world.energy().drift(),
                 Gauge::Probe { number, place, least, largest, sum, count, last, .. } => {
                     let Some((_, x)) = world.probe(*number).get(*place).cloned().filter(|(_, x)| x.is_finite()) else {
                         continue;
@@ -322,7 +322,7 @@ impl<const D: usize> Meter<D> {
                 Gauge::Bounce { rise, lowest, .. } => finite(lowest).map(|_| rise),
                 Gauge::Settling { kinetic } => settled(&kinetic),
                 Gauge::Radius { sum, count, .. } => finite(sum / count),
-                Gauge::Drift { closure } => finite(closure),
+                Gauge::Drift { drift } => finite(drift),
                 Gauge::Speed => None,
                 Gauge::Probe { statistic, least, largest, sum, count, last, .. } => finite(match statistic {
                     Statistic::Least => least,
