@@ -125,8 +125,8 @@ impl Metric {
             Quantity::Probe(column, _) => {
                 let word = column.rsplit('.').next().unwrap_or_default();
                 // Either of the two dimensions has a column of this word.
-                let what = Recorded::ALL.map(|(_, what)| what).into_iter();
-                let what = what.filter(|what| [2, 3].iter().any(|d| what.columns(*d).contains(&word))).next();
+                let mut all = Recorded::ALL.map(|(_, what)| what).into_iter();
+                let what = all.find(|what| [2, 3].iter().any(|d| what.columns(*d).contains(&word)));
                 match (what, length) {
                     (Some(Recorded::Position), _) => length.to_string(),
                     (Some(Recorded::Velocity), _) => format!("{length}/s"),
