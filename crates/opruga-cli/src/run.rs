@@ -208,6 +208,8 @@ impl Job<'_> {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
         let mut recorder = Recorder::new(&mut world, call.wanted(), frames)?;
+        // From before the first file on, a signal ends the run with whole files.
+        let stop = interrupt::asked_to_stop();
         let folder = output_folder(call, source)?;
         let calling = Calling {
             overrides: self.reading.overrides.clone(),
@@ -220,7 +222,6 @@ impl Job<'_> {
         let tape = recorded.map(|path| recordings::begin(path, call.force, every, source, &calling, &mut world));
         let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
-        let stop = interrupt::asked_to_stop();
         // What is odd from the start is told before the run, the rest behind it.
         let early = world.warnings();
         if !call.json {

@@ -76,7 +76,7 @@ pub enum StepError {
         /// How many cells are flat or inside out where the step begins, and how many there are; none if none is.
         flat_cells: Option<[usize; 2]>,
         /// What helps under the settings of the rule.
-        hint: String,
+        hint: Box<str>,
     },
     /// The step was broken off from outside.
     #[error("the step was broken off")]

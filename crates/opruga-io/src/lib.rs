@@ -11,6 +11,7 @@ pub mod catalogue;
 pub mod checkpoint;
 mod document;
 pub mod files;
+mod machine;
 pub mod meshes;
 pub mod output_folder;
 pub mod outputs_apart;

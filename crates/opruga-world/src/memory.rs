@@ -7,6 +7,7 @@ use crate::registry::Registry;
 use opruga_core::error::BuildError;
 use opruga_core::integrator::Integrator;
 use opruga_core::memory::Counts;
+use opruga_math::Lane;
 use opruga_mesh::Mesh;
 use std::sync::Arc;
 
@@ -95,5 +96,5 @@ fn is_given(bytes: f64) -> bool {
     /// Less than this is not asked for: it is there, or nothing works.
     const LITTLE: f64 = 16_777_216.0;
     let mut probe: Vec<u8> = Vec::new();
-    bytes < LITTLE || probe.try_reserve_exact(bytes.min(isize::MAX as f64) as usize).is_ok()
+    bytes < LITTLE || probe.try_reserve_exact(bytes.smaller(isize::MAX as f64) as usize).is_ok()
 }

@@ -248,7 +248,7 @@ impl<const D: usize> World<D> {
                     WorldError::Step { body: body(0), message: format!("{model}: {message}") }
                 }
                 Err(error @ StepError::NotConverged { hint, .. }) => {
-                    WorldError::NotConverged { body: body(0), message: error.to_string(), hint: hint.clone() }
+                    WorldError::NotConverged { body: body(0), message: error.to_string(), hint: hint.to_string() }
                 }
                 Ok(()) => WorldError::Step { body: body(0), message: String::new() },
             });

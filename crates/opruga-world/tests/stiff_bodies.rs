@@ -57,7 +57,10 @@ fn falls_by(rule: &str, steps: usize) -> f64 {
     x
 }
 
-const RULES: [(&str, &[(&str, f64)], bool); 7] = [
+/// A rule, its parameters, and whether it runs in real time.
+type RuleRow = (&'static str, &'static [(&'static str, f64)], bool);
+
+const RULES: [RuleRow; 7] = [
     ("backward_euler", &[], false),
     ("bdf2", &[], false),
     ("newmark", &[], false),

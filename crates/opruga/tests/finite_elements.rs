@@ -248,6 +248,7 @@ fn a_bar_that_is_pressed_until_it_buckles_is_followed_by_default() {
         let bow = (up * up + aside * aside).sqrt();
         println!("{rule}: the middle is bowed out by {bow} m");
         assert!(bow > 0.05, "{rule}: {bow}");
-        assert!(world.inverted_cells().is_none(), "{rule}");
+        // Corners of quadratic cells may fold, which no integration point feels; no cell is inside out at one.
+        assert!(world.cell_states(0).iter().all(|cell| cell.smallest_volume_ratio > 0.0), "{rule}");
     }
 }

@@ -192,7 +192,7 @@ impl Equilibrium {
             }
             StepError::NotConverged { beyond, hint, .. } => {
                 *beyond = from.map(|from| format!("{} of the load", number(from.load)));
-                if hint == self.settings.hint() {
+                if **hint == *self.settings.hint() {
                     *hint = helps.into();
                 }
             }

@@ -4,6 +4,7 @@
 
 use super::settings::{Settings, Solver};
 use opruga_core::memory::Counts;
+use opruga_math::Lane;
 
 /// Vectors of a step: with a matrix, and without one.
 const VECTORS: f64 = 38.0;
@@ -24,18 +25,18 @@ pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, coup
     let block = 8.0 * dimension * dimension;
     // Those below the diagonal too, each with its index.
     let matrix = (nodes + 2.0 * couplings) * (block + 16.0);
-    let whole = |number: f64| number.min(f64::from(u32::MAX)) as usize;
+    let whole = |number: f64| number.smaller(f64::from(u32::MAX)) as usize;
     let direct = match settings.solver {
         Solver::Auto if settings.real_time => D == 2 || nodes <= 600.0,
         solver => solver.is_direct::<D>(whole(nodes)),
     };
     let copies = if settings.real_time && !direct { COPIES_IN_REAL_TIME } else { COPIES };
     let kept = if settings.real_time && direct { 16.0 * vector / dimension } else { 0.0 };
-    let of_each = couplings / nodes.max(1.0);
+    let of_each = couplings / nodes.larger(1.0);
     // Fill of a factor by least degree: of surfaces as N log N, of bodies that fill space as N to the power 4/3.
     let blocks = match (direct, is_bulk) {
         (false, _) => 0.0,
-        (true, false) => 1.2 * of_each * nodes * libm::log2(nodes.max(2.0)),
+        (true, false) => 1.2 * of_each * nodes * libm::log2(nodes.larger(2.0)),
         (true, true) => (6.0 + 0.95 * of_each) * nodes * libm::cbrt(nodes),
     };
     VECTORS * vector + copies * matrix + kept + blocks * block

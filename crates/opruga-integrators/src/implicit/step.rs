@@ -431,7 +431,7 @@ fn refusal<const D: usize>(
         time,
         beyond: None,
         flat_cells,
-        hint: if is_rounding { hint_of_rounding(solved.floor) } else { hint.into() },
+        hint: if is_rounding { hint_of_rounding(solved.floor).into() } else { hint.into() },
     }
 }
 

@@ -97,7 +97,8 @@ fn balance_with<const D: usize>(
         Filter { free: &room.free, projectors: &room.projectors }.apply(&mut room.step);
         let way = longest(&room.step, D);
         // A part of the last digit of positions is no way.
-        if !(way > (1e-3 * EPSILON * size).larger(least)) {
+        let moves = way > (1e-3 * EPSILON * size).larger(least);
+        if !moves {
             break;
         }
         room.trial.copy_from_slice(&room.u);
@@ -107,10 +108,13 @@ fn balance_with<const D: usize>(
         evaluate(system, room, balance, false)?;
         let next = sums(rigid, system, room, balance, settings);
         let [before, now] = [&left, &next].map(|sums| sums.iter().map(|x| x * x).sum::<f64>());
-        if !(now < before) {
+        let falls = now < before;
+        if !falls {
             room.u.copy_from_slice(&room.trial);
             evaluate(system, room, balance, false)?;
-            if moved == 0.0 && way > (EPSILON * size).larger(least) {
+            // What is no more than the tolerance may stay, if nothing makes it less.
+            let allowed = (EPSILON * size).larger(least).larger(settings.tolerance * room.extent);
+            if moved == 0.0 && way > allowed {
                 return Ok(None);
             }
             break;

@@ -5,6 +5,7 @@ use opruga_core::integrator::Integrator;
 use opruga_core::spec::{Value, Values};
 use opruga_core::state::Columns;
 use opruga_core::system::{Pin, Stage, System};
+use opruga_math::Lane;
 use std::sync::Arc;
 
 const NODES: usize = 2;
@@ -195,7 +196,10 @@ fn the_ledger_of_implicit_rules_closes_whatever_acts() {
                 let work = &system.work;
                 let taken = sum(&work.damping) - sum(&work.user) + sum(&work.numerical) + stored - now;
                 let left = begun - ended - taken;
-                assert!(left.abs() < 1e-10 * begun.abs().max(ended.abs()), "{formula:?}, {led}, step {step}: {left}");
+                assert!(
+                    left.abs() < 1e-10 * begun.abs().larger(ended.abs()),
+                    "{formula:?}, {led}, step {step}: {left}"
+                );
             }
         }
     }

@@ -3,7 +3,6 @@
 use super::scanner::Scanner;
 use crate::budget::{NOTICES, VALUES};
 use crate::problem::SceneError;
-use opruga_math::words::counted;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Elements that Opruga knows, numbered as in [`opruga_mesh::Cells`].
@@ -184,8 +183,11 @@ impl Found {
     pub(crate) fn all_notices(&self) -> Vec<SceneError> {
         let mut all = self.notices.clone();
         if self.more > 0 {
-            let message = format!("{} left out", counted(self.more as u64, "more thing is", "more things are"));
-            all.push(SceneError::new("mesh.left_out", message).value(self.more.to_string()));
+            // The count is one of those that are listed.
+            all.truncate(NOTICES - 1);
+            let more = self.more + self.notices.len() - all.len();
+            let message = format!("{more} more things are left out");
+            all.push(SceneError::new("mesh.left_out", message).value(more.to_string()));
         }
         all
     }

@@ -10,7 +10,6 @@ mod copies;
 mod cost;
 mod dimension;
 mod lifetimes;
-mod machine;
 mod moments;
 mod names;
 mod parameters;
@@ -68,7 +67,7 @@ impl Default for Limits {
     /// Those of this machine.
     fn default() -> Limits {
         let limits = Limits::of_addresses(usize::BITS);
-        Limits { memory_bytes: machine::memory_bytes().unwrap_or(limits.memory_bytes), ..limits }
+        Limits { memory_bytes: crate::machine::memory_bytes().unwrap_or(limits.memory_bytes), ..limits }
     }
 }
 

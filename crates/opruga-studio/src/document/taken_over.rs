@@ -34,6 +34,23 @@ impl Document {
         }
         (gone + ended > 0).then_some(gone)
     }
+
+    /// Takes those of the first `kept` commands back that begin on a body after a time \[s\]: it is not there any more then. How many went.
+    pub fn forget_later(&mut self, kept: usize, body: &str, time: f64) -> usize {
+        let Some(commands) = self.text.get_mut("command").and_then(tables) else { return 0 };
+        let before = commands.len();
+        for number in (0..kept.min(before)).rev() {
+            let Some(table) = commands.get(number) else { continue };
+            let text = |key: &str| table.get(key).and_then(Item::as_str).unwrap_or_default();
+            let below = text("path").strip_prefix("body.").and_then(|path| path.strip_prefix(body));
+            let names_it = text("body") == body || below.is_some_and(|rest| rest.starts_with('.'));
+            let at = table.get("at").and_then(|at| at.as_float().or_else(|| at.as_integer().map(|whole| whole as f64)));
+            if names_it && at.is_some_and(|at| at > time) {
+                commands.remove(number);
+            }
+        }
+        before - commands.len()
+    }
 }
 
 #[cfg(test)]

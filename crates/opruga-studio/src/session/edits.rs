@@ -360,6 +360,7 @@ impl Session {
         self.release();
         let now = self.engine.time();
         if let Some(name) = old {
+            self.forget_later(name)?;
             let given = self.engine.remove(name).map_err(Said::World)?;
             self.write(given);
         }

@@ -254,6 +254,20 @@ impl Session {
         let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];
         let mut document = self.document.clone();
         let Some(gone) = document.take_over(self.own_commands, &name, times) else { return Ok(()) };
+        self.go_on_with(document, gone)
+    }
+
+    /// What the scene would do to a body that is taken away now does not come about.
+    pub(super) fn forget_later(&mut self, name: &str) -> Result<(), Said> {
+        let mut document = self.document.clone();
+        match document.forget_later(self.own_commands, name, self.engine.time()) {
+            0 => Ok(()),
+            gone => self.go_on_with(document, gone),
+        }
+    }
+
+    /// Goes on from here with a document in which so many commands of the scene itself are gone.
+    fn go_on_with(&mut self, document: Document, gone: usize) -> Result<(), Said> {
         let mut engine = self.build(&document)?;
         engine.rewind(&self.engine.snapshot()).map_err(Said::World)?;
         (self.document, self.engine) = (document, engine);

@@ -8,7 +8,7 @@ const PART: f64 = 0.8;
 
 /// What bodies may take on a machine that says what it has: the least of its physical memory, of what groups of processes
 /// that this one belongs to may take (cgroups, as containers have), and of the limit of its address space [bytes].
-pub(super) fn memory_bytes() -> Option<u64> {
+pub(crate) fn memory_bytes() -> Option<u64> {
     let physical = read_to_string("/proc/meminfo").ok().and_then(|text| physical(&text));
     let group = read_to_string("/proc/self/cgroup").ok().and_then(|text| group(&text, Path::new("/sys/fs/cgroup")));
     let own = read_to_string("/proc/self/limits").ok().and_then(|text| address_space(&text));
