@@ -7,6 +7,7 @@ mod aside;
 pub mod base64;
 mod brackets;
 mod budget;
+mod canonical;
 pub mod catalogue;
 pub mod checkpoint;
 mod document;

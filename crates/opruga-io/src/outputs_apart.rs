@@ -7,7 +7,6 @@ use crate::aside::is_aside;
 use crate::safe_write::WriteError;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
-use unicode_normalization::UnicodeNormalization as _;
 
 /// The files that a call reads and those that it will write.
 #[derive(Default)]
@@ -141,7 +140,7 @@ impl Found {
     /// Whether two names mean one file, or will once they are written. Names that are not there yet and differ by case or by the form of
     /// their letters alone are one file on many systems: which kind this one is shows only when it is too late.
     fn would_be(&self, other: &Found) -> bool {
-        let form = |found: &Found| found.real.to_string_lossy().to_lowercase().nfc().collect::<String>();
+        let form = |found: &Found| crate::canonical::decomposed(&found.real.to_string_lossy().to_lowercase());
         self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)
     }
 }

@@ -174,10 +174,11 @@ fn row_98_where_there_is_no_thread_the_bits_are_the_same_and_what_no_memory_hold
     let codes: Vec<&str> = told.expect_err("it does not fit").iter().map(|error| error.code).collect();
     assert_eq!(codes, ["limit.memory"]);
     let hash = together.hash();
-    together.handle(Request::Open { name: "vast".into(), text: vast("1000000000"), files: files.clone() });
+    let many = vast("33000000").replacen("shape = {", "copies = { count = [10], spacing = [2.0, 2.0] }\nshape = {", 1);
+    together.handle(Request::Open { name: "vast".into(), text: many, files: files.clone() });
     let message = together.shown().message.expect("it is told");
     assert_eq!(message.severity, Severity::Refused);
-    // More than any machine is asked for has another code.
+    // What is too much for every machine has another code.
     assert!(message.text.contains("limit.nodes") && message.text.contains("allowed: at most"), "{}", message.text);
     assert_eq!((together.name(), together.hash()), ("balloons", hash), "the old scene stays");
     together.handle(Request::Step);

@@ -2,7 +2,6 @@
 
 use crate::problem::{SceneError, visible};
 use std::collections::BTreeMap;
-use unicode_normalization::UnicodeNormalization as _;
 
 /// What bears the names.
 #[derive(Clone, Copy)]
@@ -15,7 +14,7 @@ pub(super) enum What {
 /// two bodies apart that differ by that alone, so both are one name here.
 pub(super) struct Names<P> {
     what: What,
-    /// The composed form (NFC) of a name → the name as it was written first, and its place.
+    /// The decomposed form (NFD) of a name → the name as it was written first, and its place.
     seen: BTreeMap<String, (String, P)>,
 }
 
@@ -28,7 +27,7 @@ impl<P> Names<P> {
     /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `wording` adds what is
     /// known of the place of the first one.
     pub(super) fn take(&mut self, name: &str, place: P, wording: impl FnOnce(&P) -> String) -> Option<SceneError> {
-        let form: String = name.nfc().collect();
+        let form: String = crate::canonical::decomposed(name);
         let Some((first, at)) = self.seen.get(&form) else {
             self.seen.insert(form, (name.to_string(), place));
             return None;
