@@ -58,7 +58,7 @@ const GROWTH: f64 = 0.1;
 const SMALL: f64 = 240.0;
 
 /// Where more than this part of all modes is asked for, the dense matrix costs less than a basis of twice as many vectors.
-const MANY: f64 = 0.3;
+const MANY: f64 = 0.2;
 
 /// A vector of which less than this part is left by making it orthogonal to others lies in their space.
 const SPENT: f64 = 1e-10;

@@ -79,7 +79,7 @@ fn check(count: usize, coupled: bool) -> usize {
 /// Each vector of a basis takes one solution of the equations; no frequency is left out, those that occur twice neither.
 #[test]
 fn few_modes_take_a_basis_that_grows_with_their_number() {
-    for count in [1, 60, 120] {
+    for count in [1, 30, 60] {
         let solves = check(count, false);
         assert!(solves <= 2 * count + 200, "{count} modes took {solves} solutions");
     }
